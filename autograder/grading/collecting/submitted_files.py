@@ -14,7 +14,7 @@ from autograder.grading.classes.timestamps import TIMESTAMP, timestamp_text
 from autograder.grading.collecting.handed_out import HandedOut
 from autograder.grading.collecting.outcomes import Outcome, State
 from autograder.grading.collecting.records import Collected, CollectedRecords, History, repository_of
-from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
+from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes, why_unreadable
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
@@ -115,13 +115,46 @@ class Placing:
         for candidate in candidates:
             groups[candidate.assignment, candidate.student, candidate.collected.notebook].append(candidate)
         for key in sorted(groups):
-            newest, others = _newest(self._looked_into(groups[key]))
+            readable, unreadable = self._readable(groups[key])
+            yield from unreadable
+            newest, others = _newest(self._looked_into(readable))
             for other, outcome in others:
                 if outcome.state == State.EARLIER:
                     self._keep(other)
                 yield outcome
             if newest is not None:
                 yield self._put(newest)
+
+    def _readable(self, group: list[Candidate]) -> tuple[list[Candidate], list[Outcome]]:
+        """Set aside the files that are not readable notebooks, and keep their bytes.
+
+        A file that was cut off on its way never replaces work. If nothing else of the student is there, it is
+        graded, with zero points and the reason.
+        """
+        reasons = [(one, why_unreadable(one.data)) for one in group]
+        readable = [one for one, reason in reasons if not reason]
+        if len(readable) == len(group) or not (readable or self._has_readable_work(group[0])):
+            return group, []
+        outcomes = []
+        for one, reason in reasons:
+            if reason:
+                self._keep(one)
+                what_to_do = f"Other work of {one.student} counts: ask for this file again if it is newer."
+                outcomes.append(one.outcome(State.NOT_PLACED, f"{reason} {what_to_do}"))
+        return readable, outcomes
+
+    def _has_readable_work(self, one: Candidate) -> bool:
+        """Return True if a readable notebook is at the path where this file belongs."""
+        try:
+            there = _lying(self._path(one))
+        except UnreadableSubmission:
+            return False
+        return there is not None and not why_unreadable(there)
+
+    def _path(self, one: Candidate) -> Path:
+        """Return the path of the notebook in ``submitted``."""
+        folder = self._directory.path / "submitted" / one.student / one.assignment
+        return folder / f"{one.collected.notebook}{SUFFIX}"
 
     def note_times(self, times: Iterable[tuple[str, str, datetime]]) -> Iterator[tuple[str, str, datetime]]:
         """Write down the times of work that is in ``submitted`` already.
@@ -164,8 +197,7 @@ class Placing:
 
     def _put(self, newest: Candidate) -> Outcome:
         notebook = newest.collected.notebook
-        folder = self._directory.path / "submitted" / newest.student / newest.assignment
-        path = folder / f"{notebook}{SUFFIX}"
+        path = self._path(newest)
         try:
             there = _lying(path)
         except UnreadableSubmission as error:
@@ -203,9 +235,7 @@ class Placing:
             return None
         if self._has_work(newest, newest.data):
             return None
-        reason = (
-            "the one that is there has answers, and this one is as it was handed out, or cannot be read: kept"
-        )
+        reason = "the one that is there has answers, and this one is as it was handed out: kept"
         return newest.outcome(State.EARLIER, reason)
 
     def _write(self, student: str, assignment: str, history: History) -> None:
@@ -303,7 +333,7 @@ def _best(
 def _why_it_counts(best: Candidate, other: Candidate) -> str:
     """The reason why a file counts and another one of the same student does not."""
     if best.has_work > other.has_work:
-        return "has answers and counts; this one is as it was handed out, or cannot be read, and is kept"
+        return "has answers and counts; this one is as it was handed out, and is kept"
     if best.is_named <= other.is_named:
         return "is newer and counts; this one is kept"
     place = f"submitted/{best.student}/{best.assignment}/{best.collected.notebook}{SUFFIX}"

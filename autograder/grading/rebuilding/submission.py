@@ -205,7 +205,20 @@ def without_garbage_collection() -> Iterator[None]:
             gc.enable()
 
 
+def why_unreadable(data: bytes) -> str:
+    """Return the reason why these bytes cannot be taken as a notebook, for the student; empty if they can be."""
+    try:
+        parse(data)
+    except UnreadableSubmission as error:
+        return str(error)
+    return ""
+
+
 def _decoded(data: bytes) -> Any:
+    if not data.strip(b"\0 \t\r\n"):
+        raise UnreadableSubmission(
+            f"The file is empty: {len(data)} bytes, and no text. Save the notebook in JupyterLab and hand in that file."
+        )
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -65,8 +65,37 @@ def test_work_goes_before_a_hand_out(
 def test_what_cannot_be_read_goes_behind_work(klass: TinyClass, tmp_path: Path) -> None:
     cut = work(klass, 4)[:-100]
     report = gathered(klass, tmp_path, {"lab_1_2.ipynb": cut, "lab_1_2_ada.ipynb": work(klass, 3)})
-    assert (why(report), lies(klass, "ada")) == ("", work(klass, 3))
-    assert kept(klass) == [cut]
+    assert "it is not JSON" in why(report)
+    assert (report.exit_code, lies(klass, "ada"), kept(klass)) == (2, work(klass, 3), [cut])
+
+
+@pytest.mark.parametrize("damaged", ["", "\n", "\0" * 4096, "{", '{"nbformat": 4}', "<!DOCTYPE html>Log in"])
+@pytest.mark.parametrize("together", [False, True])
+def test_a_later_file_that_is_not_a_notebook_replaces_no_work(
+    klass: TinyClass, tmp_path: Path, damaged: str, *, together: bool
+) -> None:
+    """The browser cut an upload off, or saved the login page: Ada keeps her points, and her instructor asks her."""
+    name = "Lab_ada_attempt_2025-10-0{}-14-00-00_lab_1_2.ipynb"
+    first, second = {name.format(3): work(klass, 3)}, {name.format(4): damaged}
+    parts = [first | second] if together else [first, second]
+    reports = [
+        collect(klass.path, [write_zip(tmp_path / f"{number}.zip", part)])
+        for number, part in enumerate(parts)
+    ]
+    assert (lies(klass, "ada"), kept(klass)) == (work(klass, 3), [damaged])
+    assert "Other work of ada counts: ask for this file again" in why(reports[-1])
+    third = {name.format(5): work(klass, 5)}
+    assert collect(klass.path, [write_zip(tmp_path / "new.zip", third)]).exit_code == 0
+    assert lies(klass, "ada") == work(klass, 5)
+
+
+def test_a_damaged_file_alone_is_graded_and_says_that_it_is_empty(klass: TinyClass, tmp_path: Path) -> None:
+    report = gathered(klass, tmp_path, {"lab_1_2.ipynb": ""})
+    assert (why(report), lies(klass, "ada")) == ("", "")
+    (row, _) = [row for row in klass.grade().rows if row.student == "ada"]
+    assert (row.score, "The file is empty: 0 bytes" in row.reason) == (0, True)
+    gathered(klass, tmp_path, {"lab_1_2.ipynb": work(klass, 3)})
+    assert lies(klass, "ada") == work(klass, 3)
 
 
 def test_a_cell_of_the_students_own_is_work(klass: TinyClass, tmp_path: Path) -> None:

@@ -75,7 +75,8 @@ def test_a_lone_surrogate_can_be_written_again() -> None:
 @pytest.mark.parametrize(
     ("data", "says"),
     [
-        (b"", "not JSON"),
+        (b"", "empty"),
+        (b"\0" * 512, "empty"),
         (b"hello", "not JSON"),
         (b"\xff\xfe\x00", "not UTF-8"),
         (b"PK\x03\x04", "not JSON"),
