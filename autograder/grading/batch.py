@@ -267,13 +267,13 @@ class _Batch:
         url = self._directory.gradebook_url
         works = {work.key: work for work in (*self._works, *self._others)}
         entries = read_entries(url)
-        judged = {key: work.rows for key, work in works.items() if work.rows is not None}
-        for student, assignment in sorted(entries.keys() - works.keys()):
-            if (student, assignment) in self._entered:
-                judged[student, assignment] = self._entered[student, assignment].rows
-                self._notices.append(
-                    f"{student}/{assignment} is not in submitted any more; its points stay in the gradebook"
-                )
+        # What this run did not grade keeps the judge's words of the run that entered its points.
+        judged = {key: one.rows for key, one in self._entered.items()}
+        judged |= {key: work.rows for key, work in works.items() if work.rows is not None}
+        for student, assignment in sorted((entries.keys() & self._entered.keys()) - works.keys()):
+            self._notices.append(
+                f"{student}/{assignment} is not in submitted any more; its points stay in the gradebook"
+            )
         rows = true_rows(
             self._roster.names,
             self._cells,

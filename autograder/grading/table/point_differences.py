@@ -42,7 +42,9 @@ class Difference:
         """One line for a person."""
         points = " → ".join("–" if points is None else f"{points:g}" for points in (self.before, self.after))
         words = ""
-        if self.diagnosis_before != self.diagnosis_after:
+        if self.before is None and self.diagnosis_after:
+            words = f" ({self.diagnosis_after})"
+        elif self.diagnosis_before != self.diagnosis_after:
             words = f" ({self.diagnosis_before or 'no mistake'} → {self.diagnosis_after or 'no mistake'})"
         return f"{self.student}  {self.exercise}  {points}{words}{f', {self.note}' if self.note else ''}"
 
@@ -56,8 +58,8 @@ def differences(before: Iterable[Row], after: Iterable[Row]) -> list[Difference]
         old, new = earlier.get(key), later.get(key)
         difference = Difference(
             *key,
-            old.score if old else None,
-            new.score if new else None,
+            old.shown_score if old else None,
+            new.shown_score if new else None,
             old.diagnosis if old else "",
             new.diagnosis if new else "",
         )

@@ -58,6 +58,28 @@ def test_a_dry_run_enters_nothing_and_says_who_would_get_other_points(
     assert "Nothing was entered. No result would change." in shown(tiny.grade(dry_run=True))
 
 
+def test_a_run_of_one_student_changes_no_words_about_the_others(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    """Ben has handed in again, and waits for his own run: his row is that of the run that graded him."""
+    tiny.submit("ada", 4, 7)
+    tiny.submit("ben", "1/0", 7)
+    tiny.grade()
+    tiny.submit("ada", 5, 7)
+    tiny.submit("ben", 9, 7)
+    tiny.submit("eve", 9, 7)
+    tiny.grade(students=["ada"])
+    said = CliRunner().invoke(cli, ["compare", str(tiny.path)]).output
+    assert [line for line in said.splitlines() if "→" in line][1:] == ["ada  lab_1_2.talker  4 → 5"], said
+    tiny.grade()
+    said = CliRunner().invoke(cli, ["compare", str(tiny.path)]).output
+    assert [line.strip() for line in said.splitlines() if "→" in line][1:] == [
+        "ben  lab_1_2.talker  0 → 9 (crashed → wrong_text)",
+        "eve  lab_1_2.listener  – → 7 (wrong_text)",
+        "eve  lab_1_2.talker  – → 9 (wrong_text)",
+    ], said
+
+
 def test_a_dry_run_foresees_what_being_late_costs(tiny: TinyClass, fake_engine: FakeEngine) -> None:
     penalty(tiny)
     due(tiny, DUE)
