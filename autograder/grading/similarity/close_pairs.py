@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from autograder.grading.collecting.tidying import tidy
 from autograder.grading.errors import GradingError, check_known
 from autograder.grading.similarity.own_code import LONGEST, Given, compared
-from autograder.grading.similarity.pairs import Pair, close_pairs, closest_first
+from autograder.grading.similarity.pairs import Pair, by_students, close_pairs, closest_first
 from autograder.grading.similarity.student_texts import given_texts, read_answers
 from autograder.grading.table.roster import read_roster
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from autograder.grading.classes.class_directory import ClassDirectory, Refused
 
 MOST = 100
-"""Pairs that are shown: nobody reads more, and they are the closest."""
+"""Pairs of students that are shown: nobody reads more, and they are the closest."""
 
 
 @dataclass(frozen=True)
@@ -28,8 +29,8 @@ class Similar:
 
     Attributes:
         path: The class.
-        pairs: The close pairs, the closest first.
-        more: The number of further pairs, which are not shown.
+        pairs: The close pairs of answers, the closest first.
+        more: The number of further pairs of students, which are not shown.
         names: The students' names, by id.
         compared: The number of notebooks that were compared.
         notes: Lines that are worth reading.
@@ -92,12 +93,12 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
                 if one.is_cut
             ]
             pairs += close_pairs(answers)
-    pairs = closest_first(pairs)
+    groups = by_students(closest_first(pairs))
     students = read_roster(directory).students
     return Similar(
         directory.path,
-        tuple(pairs[:MOST]),
-        len(pairs[MOST:]),
+        tuple(itertools.chain.from_iterable(groups[:MOST])),
+        len(groups[MOST:]),
         {id_: student.name for id_, student in students.items() if student.name},
         read,
         tuple(notes),

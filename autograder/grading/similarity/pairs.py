@@ -12,7 +12,7 @@ from rapidfuzz.distance import LCSseq
 from autograder.grading.similarity.own_code import SEQUENCE
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from autograder.grading.similarity.own_code import Compared
 
@@ -77,6 +77,11 @@ class Pair:
         return f"{int(100 * self.share)} %"
 
     @property
+    def students(self) -> tuple[str, str]:
+        """The ids of the two students."""
+        return self.one.answer.student, self.other.answer.student
+
+    @property
     def place(self) -> str:
         """The notebook and cell that it is in."""
         cells = dict.fromkeys((self.one.answer.cell, self.other.answer.cell))
@@ -96,6 +101,14 @@ def close_pairs(answers: Sequence[Compared]) -> list[Pair]:
 def closest_first(pairs: Sequence[Pair]) -> list[Pair]:
     """Pairs in the order in which they are shown."""
     return sorted(pairs, key=lambda pair: (-round(pair.share, 2), -pair.shared, _names(pair)))
+
+
+def by_students(pairs: Iterable[Pair]) -> list[list[Pair]]:
+    """Return the pairs of answers of each two students together, in the order in which they come first."""
+    found: dict[tuple[str, str], list[Pair]] = {}
+    for pair in pairs:
+        found.setdefault(pair.students, []).append(pair)
+    return list(found.values())
 
 
 def _candidates(answers: Sequence[Compared]) -> list[tuple[Compared, Compared]]:

@@ -10,7 +10,7 @@ from autograder.cards.page_templates import page_templates
 from autograder.cards.readable import one_line
 from autograder.grading.errors import clear_place_errors
 from autograder.grading.returning.page_exporter import POLICY
-from autograder.grading.similarity.pairs import HINT, LEAST_SHARE, SHORTEST, nothing_found
+from autograder.grading.similarity.pairs import HINT, LEAST_SHARE, SHORTEST, by_students, nothing_found
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ def page(found: Similar) -> str:
         compared=found.compared,
         shortest=SHORTEST,
         least=f"{100 * LEAST_SHARE:g}\N{NO-BREAK SPACE}%",
-        pairs=[_shown_pair(pair, found.names) for pair in found.pairs],
+        groups=[[_shown_pair(pair, found.names) for pair in pairs] for pairs in by_students(found.pairs)],
         more=found.more,
         lines=[one_line(line, 1000) for line in (*found.notes, *found.troubles)],
     )

@@ -11,7 +11,7 @@ from rich.text import Text
 
 from autograder.cards.readable import printable
 from autograder.grading.running.progress import plain_line
-from autograder.grading.similarity.pairs import HINT, nothing_found
+from autograder.grading.similarity.pairs import HINT, by_students, nothing_found
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -54,11 +54,11 @@ def _table(found: Similar) -> Table:
     shown.add_column("notebook, cell", overflow="fold")
     shown.add_column("shared", justify="right", no_wrap=True)
     shown.add_column("own words", justify="right", no_wrap=True)
-    for pair in found.pairs:
+    for pairs in by_students(found.pairs):
         shown.add_row(
-            Text(printable(f"{pair.one.answer.student}, {pair.other.answer.student}")),
-            Text(printable(pair.place)),
-            pair.percent,
-            f"{pair.shared} of {pair.one.length} and {pair.other.length}",
+            Text(printable(", ".join(pairs[0].students))),
+            Text("\n".join(printable(pair.place) for pair in pairs)),
+            "\n".join(pair.percent for pair in pairs),
+            "\n".join(f"{pair.shared} of {pair.one.length} and {pair.other.length}" for pair in pairs),
         )
     return shown

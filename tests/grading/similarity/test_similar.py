@@ -141,6 +141,23 @@ def test_the_command_prints_a_table_a_hint_and_the_page(class_: TinyClass, tmp_p
     assert "no assignment named lab_9_9" in output
 
 
+def test_two_students_are_one_pair_however_many_cells_they_share(class_: TinyClass) -> None:
+    """Ben has copied two of Ada's answers, and the first one into a cell of his own, too."""
+    second = COPIED.replace("worker", "beeper").replace("* 2", "** 3 // 7")
+    hand_in(class_, "ada", OF_ONES_OWN, second)
+    hand_in(class_, "ben", OF_ONES_OWN, f"{second}\n{OF_ONES_OWN}")
+    hand_in(class_, "eve", NEAR)
+    similar = found(class_)
+    assert set(students(similar)) == {("ada", "ben")}
+    assert len(similar.pairs) > 2
+    _, output = run(class_)
+    assert output.count("ada, ben") == 1
+    shown = BeautifulSoup(page(similar), "html.parser")
+    assert [heading.get_text() for heading in shown.find_all("h2")] == ["1. ada and ben"]
+    assert [link["href"] for link in shown.find_all("a")] == ["#pair-1"]
+    assert len(shown.find_all("section")) == 2 * len(similar.pairs)
+
+
 def test_the_page_shows_both_sides_and_runs_nothing(class_: TinyClass) -> None:
     (class_.path / "students.csv").write_text("id,first_name\nada,<img src=x onerror=alert(1)>\n")
     hand_in(class_, "ada", OF_ONES_OWN)
