@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 # Where the programs of the environment come first, as in every activated environment.
 _IN_FRONT = ("PATH",)
 # A change of these reaches a running process too late: the loader and the interpreter read them at the start.
-READ_AT_START = ("LD_LIBRARY_PATH", "PYTHONPATH")
+READ_AT_START = ("LD_LIBRARY_PATH", "PYTHONPATH", "PYTHONUTF8")
 # Set for the length of one second start, so that it can not become a third.
 _SECOND_START = "_COURSE_SECOND_START"
 _BOOTSTRAPPER = "ros_wheels_bootstrapper"

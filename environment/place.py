@@ -105,6 +105,8 @@ def environment_values(place: Place) -> dict[str, str]:
         "ROS_DISTRO": DISTRO,
         "ROS_VERSION": "2",
         "ROS_PYTHON_VERSION": "3",
+        # Names of students and files are UTF-8, whatever the terminal's locale says.
+        "PYTHONUTF8": "1",
     }
 
 

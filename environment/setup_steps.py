@@ -249,7 +249,7 @@ class Setup:
         (site_packages / "course_process.pth").write_text(
             "import course_process; course_process.begin()\n", "utf-8"
         )
-        wanted = course_process.variables(paths, {}, {})
+        wanted = course_process.variables(paths, values, {})
         names = [name for name in course_process.READ_AT_START if name in wanted]
         exports = "".join(f"export {name}={shlex.quote(wanted[name])}\n" for name in names)
         (self.place.notes / "libraries.sh").write_text(exports, encoding="utf-8")

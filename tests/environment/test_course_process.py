@@ -124,6 +124,21 @@ def test_arguments_input_and_options_survive_the_second_start(bare: dict[str, st
     assert done.stdout == "['--ros-args', '', 'ü ß'] 1 typed\n"
 
 
+@pytest.mark.parametrize("locale", [{"PYTHONUTF8": "0", "LC_ALL": "C"}, {"PYTHONUTF8": "0", "LANG": "POSIX"}])
+def test_names_are_utf_8_whatever_the_locale_says(
+    bare: dict[str, str], tmp_path: Path, locale: dict[str, str]
+) -> None:
+    code = "import pathlib, sys; path = pathlib.Path(sys.argv[1]); path.touch(); print(path.name)"
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(tmp_path / "Müller_學生")],
+        env={**bare, **locale},
+        capture_output=True,
+        check=True,
+    )
+    assert done.stdout == "Müller_學生\n".encode()
+    assert (tmp_path / "Müller_學生").exists()
+
+
 @pytest.mark.ros
 def test_the_marker_of_the_second_start_does_not_reach_children(bare: dict[str, str]) -> None:
     assert start(bare, "-c", "import os; print('_COURSE_SECOND_START' in os.environ)") == "False\n"

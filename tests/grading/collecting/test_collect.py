@@ -6,6 +6,8 @@ import gzip
 import io
 import os
 import struct
+import subprocess
+import sys
 import tracemalloc
 import unicodedata
 import zipfile
@@ -586,6 +588,17 @@ def test_the_command_says_everything(klass: TinyClass, tmp_path: Path) -> None:
         assert CliRunner().invoke(cli, ["collect", str(klass.path), *arguments]).exit_code == 2
     with pytest.raises(GradingError, match="There is no nowhere"):
         collect(klass.path, [Path("nowhere.zip")])
+
+
+def test_a_terminal_without_utf_8_collects_the_same(klass: TinyClass, tmp_path: Path) -> None:
+    archive = write_zip(tmp_path / "m.zip", {"José Núñez_7_assignsubmission_file_lab_1_2.ipynb": work(klass)})
+    command = [sys.executable, "-m", "autograder", "collect", str(klass.path), str(archive)]
+    (klass.path / "students.csv").unlink()
+    environ = {**os.environ, "PYTHONUTF8": "0", "LC_ALL": "C"}
+    done = subprocess.run(command, env=environ, capture_output=True, check=False)
+    assert (done.returncode, done.stderr) == (0, b""), done
+    assert "José" in done.stdout.decode()
+    assert [path.name for path in (klass.path / "submitted").iterdir()] == ["José Núñez"]
 
 
 def test_times_of_a_download_are_in_the_zone_of_the_class(klass: TinyClass, tmp_path: Path) -> None:
