@@ -75,9 +75,10 @@ COMMANDS: Mapping[str, Command] = {
         {
             "list": Word("List all interface types available", "interface"),
             "package": Word("Output a list of available interface types within one package", "interface"),
+            "packages": Word("Output a list of packages that provide interfaces", "interface"),
             "show": Word("Output the interface definition", "interface_show"),
         },
-        frozenset({"packages", "proto"}),
+        frozenset({"proto"}),
     ),
     "launch": Command("Run a launch file", itself=Word("", "launch")),
     "node": Command(
@@ -90,11 +91,14 @@ COMMANDS: Mapping[str, Command] = {
     "param": Command(
         "Various param related sub-commands",
         {
+            "describe": Word("Show descriptive information about declared parameters", "param"),
+            "dump": Word("Show all of the parameters of a node in a YAML file format", "param_file"),
             "get": Word("Get parameter", "param"),
             "list": Word("Output a list of available parameters", "param"),
+            "load": Word("Load parameter file for a node", "param_file"),
             "set": Word("Set parameter", "param"),
         },
-        frozenset({"delete", "describe", "dump", "load"}),
+        frozenset({"delete"}),
     ),
     "pkg": Command(
         "Various package related sub-commands",
@@ -112,24 +116,26 @@ COMMANDS: Mapping[str, Command] = {
         {
             "call": Word("Call a service", "service_call"),
             "find": Word("Output a list of available services of a given type", "service"),
+            "info": Word("Print information about a service", "service"),
             "list": Word("Output a list of available services", "service"),
             "type": Word("Output a service's type", "service"),
         },
-        frozenset({"echo", "info"}),
+        frozenset({"echo"}),
         option=("--include-hidden-services", "Consider hidden services as well"),
     ),
     "topic": Command(
         "Various topic related sub-commands",
         {
+            "bw": Word("Display bandwidth used by topic", "topic_traffic"),
+            "delay": Word("Display delay of topic from timestamp in header", "topic_traffic"),
             "echo": Word("Output messages from a topic", "topic_echo"),
             "find": Word("Output a list of available topics of a given type", "topic"),
-            "hz": Word("Print the average publishing rate to screen", "topic_hz"),
+            "hz": Word("Print the average publishing rate to screen", "topic_traffic"),
             "info": Word("Print information about a topic", "topic"),
             "list": Word("Output a list of available topics", "topic"),
             "pub": Word("Publish a message to a topic", "topic_pub"),
             "type": Word("Print a topic's type", "topic"),
         },
-        frozenset({"bw", "delay"}),
         option=("--include-hidden-topics", "Consider hidden topics as well"),
     ),
 }

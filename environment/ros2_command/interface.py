@@ -1,4 +1,4 @@
-"""`ros2 interface list` and `package`."""
+"""`ros2 interface list`, `package` and `packages`."""
 
 from __future__ import annotations
 
@@ -54,4 +54,16 @@ def _package(args: argparse.Namespace) -> Outcome:
     return None
 
 
-VERBS = {"list": Verb(_kind_arguments, _list), "package": Verb(_package_arguments, _package)}
+def _packages(args: argparse.Namespace) -> Outcome:
+    kinds = [kind for kind, _ in _chosen(args)]
+    for package in interface_packages():
+        if any(interfaces_of(package, kind) for kind in kinds):
+            print(package)
+    return None
+
+
+VERBS = {
+    "list": Verb(_kind_arguments, _list),
+    "package": Verb(_package_arguments, _package),
+    "packages": Verb(_kind_arguments, _packages),
+}

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import os
+import shlex
 import sys
-from typing import NoReturn
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from environment.ros2_command.commands import COMMANDS, ELSEWHERE, TERMINATED, Command, Outcome, Verb
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
 
 FULL = "the full ros2cli (a ROS 2 Jazzy installation)"
 _EPILOG = (
@@ -20,12 +26,34 @@ _NEEDED = ("rclpy", "ament_index_python", "yaml")
 
 
 class _Parser(argparse.ArgumentParser):
-    """An argument parser that says, where an option is not known here, who does know it."""
+    """An argument parser that says first what is wrong, and then how to write it."""
+
+    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Parse a command line; words too many are an error that names them and how to quote them."""
+        words = list(args)
+        found, extra = self.parse_known_args(words, namespace)
+        if extra:
+            self.error("\n".join(_about_extra(self.prog, words, extra)))
+        return found
 
     def error(self, message: str) -> NoReturn:
-        if message.startswith("unrecognized arguments"):
-            message += f"\nWhat `{self.prog} -h` does not list needs {FULL}."
-        super().error(message)
+        self.exit(2, f"{self.prog}: error: {message}\n\n{self.format_usage()}")
+
+
+def _about_extra(prog: str, words: Sequence[str], extra: Sequence[str]) -> Iterator[str]:
+    """Say what is wrong with words that no argument takes."""
+    options = [word for word in extra if word.startswith("-")]
+    rest = [word for word in extra if word not in options]
+    if rest:
+        yield f"too many words: {' '.join(rest)}"
+        # A shell cuts `{data: Hello you}` into three words.
+        at = words.index(rest[0])
+        whole = " ".join(words[max(at - 1, 0) : at + len(rest)])
+        if ":" in whole or whole.startswith(("{", "[")):
+            yield f"Put a value with spaces into quotes: {shlex.quote(whole)}"
+    if options:
+        yield f"unknown option: {' '.join(options)}"
+        yield f"`{prog} -h` lists the options that the course's ros2 has; any other needs {FULL}."
 
 
 def _parser(prog: str, description: str, epilog: str | None = None) -> _Parser:
@@ -90,9 +118,18 @@ def _group(prog: str, command: Command, argv: list[str]) -> Outcome:
     if command.option:
         parser.add_argument(command.option[0], action="store_true", help=command.option[1])
     _add_words(parser, {name: word.summary for name, word in command.verbs.items()}, prog)
+    _check_word(parser, name, command.verbs)
     parser.parse_args(argv)
     parser.print_help()
     return 0
+
+
+def _check_word(parser: _Parser, name: str, known: Iterable[str]) -> None:
+    """End with an error if a word is not known, with the one that was probably meant."""
+    if name and name not in known:
+        close = difflib.get_close_matches(name, known, n=1)
+        meant = f"Did you mean `{parser.prog} {close[0]}`? " if close else ""
+        parser.error(f"there is no word '{name}' here. {meant}`{parser.prog} -h` lists all.")
 
 
 def _dispatch(argv: list[str]) -> Outcome:
@@ -103,7 +140,12 @@ def _dispatch(argv: list[str]) -> Outcome:
     if name not in COMMANDS or {"-h", "--help"} & set(argv[:at]):
         parser = _parser("ros2", "ros2 is an extensible command-line tool for ROS 2.", _EPILOG)
         parser.add_argument("--use-python-default-buffering", action="store_true", help=argparse.SUPPRESS)
+        parser.add_argument("--version", action="store_true", help="Print the version and exit")
+        if "--version" in argv[:at]:
+            print(_version())
+            return 0
         _add_words(parser, {name: command.summary for name, command in COMMANDS.items()}, "ros2")
+        _check_word(parser, name, COMMANDS)
         parser.parse_args(argv)
         parser.print_help()
         return 0
@@ -114,6 +156,16 @@ def _dispatch(argv: list[str]) -> Outcome:
         verb = command.itself.load(name)
         return verb.main(_parse(f"ros2 {name}", command.summary, verb, rest))
     return _group(f"ros2 {name}", command, rest)
+
+
+def _version() -> str:
+    """Return which ros2 this is, and the version of the rclpy that it uses."""
+    from ament_index_python import get_resource
+
+    _, prefix = get_resource("packages", "rclpy")
+    manifest = Path(prefix, "share", "rclpy", "package.xml").read_text(encoding="utf-8")
+    version = manifest.partition("<version>")[2].partition("</version>")[0]
+    return f"ros2 of the course, for ROS 2 Jazzy (rclpy {version})"
 
 
 def _line_buffered() -> None:
@@ -170,4 +222,9 @@ def main() -> int:
     from environment.ros2_command.real_installation import run_real_command
 
     run_real_command()
+    if "_ARGCOMPLETE" in os.environ:
+        from environment.ros2_command.completion import complete
+
+        _find_packages_here()
+        complete()
     return run(sys.argv[1:])

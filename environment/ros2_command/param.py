@@ -1,4 +1,4 @@
-"""`ros2 param list`, `get` and `set`: they call the parameter services of a node."""
+"""`ros2 param list`, `describe`, `get` and `set`: they call the parameter services of a node."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _TYPES = (
 )
 
 
-def _call(node: Node, node_name: str, service: str, request: Any, kind: Any) -> Any | None:
+def ask(node: Node, node_name: str, service: str, request: Any, kind: Any) -> Any | None:
     """Call a parameter service; return None when the service does not appear.
 
     A server drops its answer where it does not know the client yet (rmw_fastrtps waits 0.1 s), so whoever gets
@@ -58,11 +58,19 @@ def _call(node: Node, node_name: str, service: str, request: Any, kind: Any) -> 
             return future.result()
 
 
-def _timed_out(node_name: str) -> str:
+def plain_value(given: Any) -> Any:
+    """Return the value in an ``rcl_interfaces/msg/ParameterValue``, None if it is not set."""
+    value_field = _TYPES[given.type][2]
+    value: Any = getattr(given, value_field) if value_field else None
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def timed_out(node_name: str) -> str:
+    """Return the error about a node whose parameter services do not appear."""
     return f"Wait for service timed out waiting for parameter services for node {node_name}"
 
 
-def _find(node: Node, args: argparse.Namespace) -> bool:
+def find_node(node: Node, args: argparse.Namespace) -> bool:
     """Wait, as long as --timeout says, until the node is there."""
     limit = time.monotonic() + args.timeout
     name = absolute(args.node_name)
@@ -73,18 +81,20 @@ def _find(node: Node, args: argparse.Namespace) -> bool:
     return True
 
 
-def _hidden_option(parser: argparse.ArgumentParser) -> None:
+def hidden_option(parser: argparse.ArgumentParser) -> None:
+    """Add the option that finds nodes whose names begin with an underscore."""
     parser.add_argument("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
 
 
 def _parameter_arguments(parser: argparse.ArgumentParser) -> None:
     add_graph_arguments(parser)
     parser.add_argument("node_name", help="Name of the ROS node")
-    _hidden_option(parser)
+    hidden_option(parser)
     parser.add_argument("parameter_name", help="Name of the parameter")
 
 
-def _timeout_option(parser: argparse.ArgumentParser) -> None:
+def timeout_option(parser: argparse.ArgumentParser) -> None:
+    """Add the option that says how long to wait for the node."""
     parser.add_argument(
         "--timeout",
         metavar="N",
@@ -101,7 +111,7 @@ def _list_arguments(parser: argparse.ArgumentParser) -> None:
         "--filter",
         help="Only parameters matching the regex expression will be showed. Supports `re` regex syntax.",
     )
-    _hidden_option(parser)
+    hidden_option(parser)
     parser.add_argument(
         "--param-prefixes", nargs="+", default=[], help="Only list parameters with the provided prefixes"
     )
@@ -110,14 +120,14 @@ def _list_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _types(node: Node, node_name: str, names: list[str]) -> list[str]:
+def _descriptors(node: Node, node_name: str, names: list[str]) -> list[Any]:
     from rcl_interfaces.srv import DescribeParameters
 
     request = DescribeParameters.Request(names=names)
-    response = _call(node, node_name, "describe_parameters", request, DescribeParameters)
+    response = ask(node, node_name, "describe_parameters", request, DescribeParameters)
     if response is None:
-        raise RuntimeError(_timed_out(node_name))
-    return [_TYPES[descriptor.type][0] for descriptor in response.descriptors]
+        raise RuntimeError(timed_out(node_name))
+    return list(response.descriptors)
 
 
 def _list(args: argparse.Namespace) -> Outcome:
@@ -131,42 +141,69 @@ def _list(args: argparse.Namespace) -> Outcome:
             names = [absolute(args.node_name)]
         for name in names:
             request = ListParameters.Request(prefixes=args.param_prefixes)
-            response = _call(node, name, "list_parameters", request, ListParameters)
+            response = ask(node, name, "list_parameters", request, ListParameters)
             if response is None:
-                print(_timed_out(name))
+                print(timed_out(name))
                 continue
             found = sorted(p for p in response.result.names if not args.filter or re.match(args.filter, p))
             if found and not args.node_name:
                 print(f"{name}:")
-            types = _types(node, name, found) if args.param_type else []
+            described = _descriptors(node, name, found) if args.param_type else []
             for i, parameter in enumerate(found):
-                print(f"  {parameter} (type: {types[i]})" if args.param_type else f"  {parameter}")
+                kind = f" (type: {_TYPES[described[i].type][0]})" if args.param_type else ""
+                print(f"  {parameter}{kind}")
+    return None
+
+
+def _describe_arguments(parser: argparse.ArgumentParser) -> None:
+    add_graph_arguments(parser)
+    parser.add_argument("node_name", help="Name of the ROS node")
+    hidden_option(parser)
+    parser.add_argument("parameter_names", nargs="+", help="Names of the parameters")
+    timeout_option(parser)
+
+
+def _describe(args: argparse.Namespace) -> Outcome:
+    with graph_node(args) as node:
+        if not find_node(node, args):
+            return "Node not found"
+        described = _descriptors(node, absolute(args.node_name), args.parameter_names)
+    for one in described:
+        print(f"Parameter name: {one.name}\n  Type: {_TYPES[one.type][0]}")
+        if one.description:
+            print(f"  Description: {one.description}")
+        print("  Constraints:")
+        if one.read_only:
+            print("    Read only: true")
+        for allowed in [*one.floating_point_range, *one.integer_range][:1]:
+            print(f"    Min value: {allowed.from_value}\n    Max value: {allowed.to_value}")
+            if allowed.step:
+                print(f"    Step: {allowed.step}")
+        if one.additional_constraints:
+            print(f"    Additional constraints: {one.additional_constraints}")
     return None
 
 
 def _get_arguments(parser: argparse.ArgumentParser) -> None:
     _parameter_arguments(parser)
     parser.add_argument("--hide-type", action="store_true", help="Hide the type information")
-    _timeout_option(parser)
+    timeout_option(parser)
 
 
 def _get(args: argparse.Namespace) -> Outcome:
     from rcl_interfaces.srv import GetParameters
 
     with graph_node(args) as node:
-        if not _find(node, args):
+        if not find_node(node, args):
             return "Node not found"
         request = GetParameters.Request(names=[args.parameter_name])
-        response = _call(node, absolute(args.node_name), "get_parameters", request, GetParameters)
+        response = ask(node, absolute(args.node_name), "get_parameters", request, GetParameters)
     if response is None:
-        return _timed_out(args.node_name)
+        return timed_out(args.node_name)
     if not response.values:
         return "Parameter not set"
-    given = response.values[0]
-    _, words, value_field = _TYPES[given.type]
-    value: Any = getattr(given, value_field) if value_field else None
-    if hasattr(value, "tolist"):
-        value = value.tolist()
+    _, words, value_field = _TYPES[response.values[0].type]
+    value = plain_value(response.values[0])
     if args.hide_type:
         print(value)
     elif value_field:
@@ -179,7 +216,7 @@ def _get(args: argparse.Namespace) -> Outcome:
 def _set_arguments(parser: argparse.ArgumentParser) -> None:
     _parameter_arguments(parser)
     parser.add_argument("value", help="Value of the parameter")
-    _timeout_option(parser)
+    timeout_option(parser)
 
 
 def _set(args: argparse.Namespace) -> Outcome:
@@ -189,12 +226,12 @@ def _set(args: argparse.Namespace) -> Outcome:
 
     parameter = Parameter(name=args.parameter_name, value=get_parameter_value(args.value))
     with graph_node(args) as node:
-        if not _find(node, args):
+        if not find_node(node, args):
             return "Node not found"
         request = SetParameters.Request(parameters=[parameter])
-        response = _call(node, absolute(args.node_name), "set_parameters", request, SetParameters)
+        response = ask(node, absolute(args.node_name), "set_parameters", request, SetParameters)
     if response is None:
-        return _timed_out(args.node_name)
+        return timed_out(args.node_name)
     result = response.results[0]
     reason = f": {result.reason}" if result.reason else ""
     if result.successful:
@@ -205,6 +242,7 @@ def _set(args: argparse.Namespace) -> Outcome:
 
 
 VERBS = {
+    "describe": Verb(_describe_arguments, _describe),
     "get": Verb(_get_arguments, _get),
     "list": Verb(_list_arguments, _list),
     "set": Verb(_set_arguments, _set),

@@ -1,4 +1,4 @@
-"""`ros2 service list`, `type` and `find`: what the graph says about services."""
+"""`ros2 service list`, `info`, `type` and `find`: what the graph says about services."""
 
 from __future__ import annotations
 
@@ -60,6 +60,23 @@ def _type(args: argparse.Namespace) -> Outcome:
     return 0 if types else 1
 
 
+def _info_arguments(parser: argparse.ArgumentParser) -> None:
+    add_graph_arguments(parser)
+    parser.add_argument("service_name", help="Name of the ROS service to get info (e.g. '/add_two_ints')")
+    _hidden_option(parser)
+
+
+def _info(args: argparse.Namespace) -> Outcome:
+    with graph_node(args) as node:
+        types = dict(node.get_service_names_and_types()).get(args.service_name)
+        if types is None:
+            return f"Unknown service '{args.service_name}'"
+        print(f"Type: {types[0] if len(types) == 1 else types}")
+        print(f"Clients count: {node.count_clients(args.service_name)}")
+        print(f"Services count: {node.count_services(args.service_name)}")
+    return None
+
+
 def _find_arguments(parser: argparse.ArgumentParser) -> None:
     add_graph_arguments(parser)
     parser.add_argument(
@@ -78,6 +95,7 @@ def _find(args: argparse.Namespace) -> Outcome:
 
 VERBS = {
     "find": Verb(_find_arguments, _find),
+    "info": Verb(_info_arguments, _info),
     "list": Verb(_list_arguments, _list),
     "type": Verb(_type_arguments, _type),
 }

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import re
 import signal
+import time
 from typing import TYPE_CHECKING
 
 import pytest
+import yaml
 
 if TYPE_CHECKING:
     import subprocess
     from collections.abc import Callable, Iterator
+    from pathlib import Path
 
     from conftest import Running
 
@@ -113,6 +116,26 @@ def test_hz_measures_the_rate(talker: Running, start: Callable[..., Running]) ->
     assert re.fullmatch(r"\tmin: \d\.\d{3}s max: \d\.\d{3}s std dev: \d\.\d{5}s window: \d+", hz.lines[1])
 
 
+def test_bw_measures_bytes(talker: Running, start: Callable[..., Running]) -> None:
+    bw = start("topic", "bw", "/chatter")
+    bw.wait_for("B/s from ")
+    bw.wait_for("Message size mean: ")
+    assert bw.lines[0] == "Subscribed to [/chatter]"
+    assert re.fullmatch(r"\d+ B/s from \d+ messages", bw.lines[1])
+    assert re.fullmatch(r"\tMessage size mean: (\d+) B min: \d+ B max: \d+ B", bw.lines[2])
+
+
+def test_delay_is_the_age_of_a_message_and_needs_a_header(start: Callable[..., Running], call: Call) -> None:
+    old = "{header: {stamp: {sec: 1}}}"
+    start("topic", "pub", "-r", "20", "/range", "sensor_msgs/msg/Range", old)
+    delay = start("topic", "delay", "/range")
+    seconds = float(delay.wait_for("average delay: ").split()[-1])
+    assert seconds == pytest.approx(time.time(), rel=0.01), "since the first second of 1970"
+    delay.wait_for("std dev: ")
+    start("topic", "pub", "-r", "20", "/chatter", "std_msgs/msg/String", "{data: x}")
+    assert "The messages on /chatter have no header" in call("topic", "delay", "/chatter", code=1)
+
+
 def test_pub_reaches_a_listener(start: Callable[..., Running], call: Call) -> None:
     listener = start("listener", program=True)
     listener.wait_for("ready")
@@ -138,6 +161,10 @@ def test_a_service_is_found_and_called(servers: Running, call: Call) -> None:
     assert not any("/_action/" in name for name in call("service", "list").splitlines())
     assert call("service", "type", "/add_two_ints") == "my_robot_interfaces/srv/AddTwoInts\n"
     assert call("service", "find", "my_robot_interfaces/srv/AddTwoInts") == "/add_two_ints\n"
+    assert call("service", "info", "/add_two_ints") == (
+        "Type: my_robot_interfaces/srv/AddTwoInts\nClients count: 0\nServices count: 1\n"
+    )
+    assert call("service", "info", "/add", code=1) == "Unknown service '/add'\n"
     answer = call("service", "call", "/add_two_ints", "my_robot_interfaces/srv/AddTwoInts", "{a: 10, b: 20}")
     assert answer == (
         "requester: making request: my_robot_interfaces.srv.AddTwoInts_Request(a=10, b=20)\n\n"
@@ -249,6 +276,26 @@ def test_parameters(talker: Running, call: Call) -> None:
     talker.wait_for("said Good day")
     assert call("param", "get", "/talker", "nothing", code=1) == "Parameter not set\n"
     assert call("param", "get", "/nobody", "words", "--timeout", "0", code=1) == "Node not found\n"
+
+
+def test_parameters_are_described_written_to_a_file_and_read_from_one(
+    talker: Running, call: Call, tmp_path: Path
+) -> None:
+    assert call("param", "describe", "talker", "rate", "use_sim_time") == (
+        "Parameter name: rate\n  Type: double\n  Constraints:\n"
+        "Parameter name: use_sim_time\n  Type: boolean\n  Constraints:\n"
+    )
+    file = tmp_path / "talker.yaml"
+    file.write_text(call("param", "dump", "/talker"))
+    assert yaml.safe_load(file.read_text())["/talker"]["ros__parameters"]["words"] == "Hello"
+    file.write_text(file.read_text().replace("Hello", "Good night"))
+    assert "Set parameter words successful\n" in call("param", "load", "/talker", str(file))
+    talker.wait_for("said Good night")
+    assert "cannot be read" in call("param", "load", "/talker", "no_such.yaml", code=1)
+    file.write_text("[1, 2]")
+    assert "`ros2 param dump /talker` prints one" in call("param", "load", "/talker", str(file), code=1)
+    file.write_text("/other:\n  ros__parameters:\n    words: no\n")
+    assert "does not contain parameters for /talker" in call("param", "load", "/talker", str(file), code=1)
 
 
 def test_setting_a_wrong_type_fails(

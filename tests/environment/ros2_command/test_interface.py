@@ -94,3 +94,14 @@ def test_list_and_package(ros2: Callable[..., subprocess.CompletedProcess[str]])
     assert "    my_robot_interfaces/srv/AddTwoInts" in services
     assert not any("/msg/" in line for line in services)
     assert ros2("interface", "package", "nothing").returncode == 1
+
+
+def test_packages_with_interfaces_are_listed_by_kind(
+    ros2: Callable[..., subprocess.CompletedProcess[str]],
+) -> None:
+    every = ros2("interface", "packages").stdout.split()
+    actions = ros2("interface", "packages", "--only-actions").stdout.split()
+    assert every == sorted(every)
+    assert {"std_msgs", "my_robot_interfaces"} <= set(every)
+    assert "my_robot_interfaces" in actions
+    assert "std_msgs" not in actions

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 
 import pytest
@@ -61,18 +62,64 @@ def test_the_rest_of_ros2cli_is_named_as_such(
     assert f"`ros2 {' '.join(words)}` needs the full ros2cli" in capsys.readouterr().err
 
 
-def test_a_wrong_word_is_an_error_that_lists_the_right_ones(capsys: pytest.CaptureFixture[str]) -> None:
-    assert exit_code("topics") == 2
-    assert "invalid choice: 'topics'" in capsys.readouterr().err
-    assert exit_code("topic", "lst") == 2
-    assert "invalid choice: 'lst'" in capsys.readouterr().err
+@pytest.mark.parametrize(
+    ("words", "meant"),
+    [
+        (("topics",), "ros2 topic"),
+        (("topic", "lst"), "ros2 topic list"),
+        (("param", "lode"), "ros2 param load"),
+    ],
+)
+def test_a_wrong_word_is_an_error_that_names_the_right_one(
+    words: tuple[str, ...], meant: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert exit_code(*words) == 2
+    first, *rest = capsys.readouterr().err.splitlines()
+    assert f"there is no word '{words[-1]}' here. Did you mean `{meant}`?" in first
+    assert rest[1].startswith("usage: ros2")
 
 
 def test_an_unknown_option_is_an_error_that_says_who_may_know_it(capsys: pytest.CaptureFixture[str]) -> None:
     assert exit_code("topic", "list", "--pretty") == 2
+    first, second, *_ = capsys.readouterr().err.splitlines()
+    assert first == "ros2 topic list: error: unknown option: --pretty"
+    assert "any other needs the full ros2cli" in second
+
+
+@pytest.mark.parametrize(
+    ("words", "quoted"),
+    [
+        (
+            ("topic", "pub", "/chatter", "std_msgs/msg/String", "{data:", "hello", "you}"),
+            "'{data: hello you}'",
+        ),
+        (("topic", "pub", "--once", "/x", "std_msgs/String", "data:", "hello", "-r", "2"), "'data: hello'"),
+        (("service", "call", "/add", "std_srvs/srv/SetBool", "{data:", "true}"), "'{data: true}'"),
+        (("action", "send_goal", "/f", "a/action/F", "{order:", "5}", "--feedback"), "'{order: 5}'"),
+    ],
+)
+def test_a_value_that_the_shell_has_cut_says_first_that_it_needs_quotes(
+    words: tuple[str, ...], quoted: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert exit_code(*words) == 2
     error = capsys.readouterr().err
-    assert "unrecognized arguments: --pretty" in error
-    assert "needs the full ros2cli" in error
+    assert error.splitlines()[1] == f"Put a value with spaces into quotes: {quoted}"
+    assert "full ros2cli" not in error
+
+
+def test_a_word_too_many_is_named(capsys: pytest.CaptureFixture[str]) -> None:
+    assert exit_code("topic", "type", "/chatter", "please") == 2
+    error = capsys.readouterr().err
+    assert error.startswith("ros2 topic type: error: too many words: please\n")
+    assert "quotes" not in error
+
+
+@pytest.mark.ros
+def test_the_version(capsys: pytest.CaptureFixture[str]) -> None:
+    assert exit_code("--version") == 0
+    assert re.fullmatch(
+        r"ros2 of the course, for ROS 2 Jazzy \(rclpy 7\.\d+\.\d+\)\n", capsys.readouterr().out
+    )
 
 
 def test_options_may_stand_before_the_verb(capsys: pytest.CaptureFixture[str]) -> None:
