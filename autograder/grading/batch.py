@@ -267,7 +267,7 @@ class _Batch:
         url = self._directory.gradebook_url
         works = {work.key: work for work in (*self._works, *self._others)}
         entries = read_entries(url)
-        # What this run did not grade keeps the judge's words of the run that entered its points.
+        # A submission that this run did not grade keeps the judge's words from the run that entered the points.
         judged = {key: one.rows for key, one in self._entered.items()}
         judged |= {key: work.rows for key, work in works.items() if work.rows is not None}
         for student, assignment in sorted((entries.keys() & self._entered.keys()) - works.keys()):
