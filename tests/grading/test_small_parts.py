@@ -130,7 +130,7 @@ def test_a_printed_command_can_be_typed_for_a_class_in_a_folder_with_blanks() ->
     path = Path("/classes/Ada's robots 2026")
     missing = str(NotAClass(path, "no gradebook")).rpartition(": ")[2]
     assert shlex.split(missing) == ["./course", "new-class", str(path)]
-    made = NewClass(path, ()).summary().rpartition("Then ")[2]
+    made = NewClass(path, (), "UTC").summary().rpartition("Then ")[2]
     assert shlex.split(made) == ["./course", "grade", str(path)]
 
 
