@@ -7,12 +7,17 @@ import signal
 import sys
 from pathlib import Path
 
+from environment.python_child import SAFE_PATH
+
 TERMINATED = 143
 """A shell's exit code for a program that SIGTERM ended: 128 and the signal's number."""
 
 
 def main() -> None:
     """Run the command line; a closed pipe, Ctrl-C and SIGTERM end it quietly, with all that it has started."""
+    # Python has read it at the start of this process. A student's program that this one starts imports what is beside
+    # it, as Python always does.
+    os.environ.pop(SAFE_PATH, None)
     from autograder.cli import cli
 
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(TERMINATED))

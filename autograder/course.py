@@ -80,7 +80,7 @@ def root() -> Path:
     Raises:
         NoCourse: There is no course there.
     """
-    folder = Path(os.environ.get(VARIABLE) or Path(__file__).resolve().parents[1])
+    folder = Path(os.environ.get(VARIABLE) or Path(__file__).resolve().parents[1]).absolute()
     if not _written(folder).is_dir():
         raise NoCourse(
             f"{folder} holds no course: set {VARIABLE} to the folder with solutions/ and chapters/"

@@ -27,6 +27,8 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.rebuilding.task_making import tasks_of
 from benchmarks.classes import make_class
 from benchmarks.machine import Machine, Watch, machine
+from benchmarks.ours import AUTOGRADER
+from environment.python_child import installed_program
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -173,14 +175,13 @@ def _grade(path: Path, folder: Path) -> _Spent:
         "--port",
         address.rpartition(":")[2],
     ]
-    bin_folder = Path(sys.executable).parent
     with (
-        _running([str(bin_folder / dask[0]), *dask[1:]], folder, "Scheduler at") as scheduler,
-        _running([sys.executable, "-m", "autograder", "worker", address], folder, "waits for work") as worker,
+        _running([str(installed_program(dask[0])), *dask[1:]], folder, "Scheduler at") as scheduler,
+        _running([*AUTOGRADER, "worker", address], folder, "waits for work") as worker,
         Watch() as grader,
     ):
         done = subprocess.run(
-            [sys.executable, "-m", "autograder", "grade", str(path), "--json", "--scheduler", address],
+            [*AUTOGRADER, "grade", str(path), "--json", "--scheduler", address],
             stdout=subprocess.PIPE,
             preexec_fn=grader.prepare,
             check=False,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import subprocess
-import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -14,6 +13,7 @@ import msgspec
 from autograder import exercises
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.rebuilding.task_making import tasks_of
+from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -79,7 +79,7 @@ def measure_floor(
 def _run(tasks: Sequence[Task]) -> list[Floor]:
     """In one warm process, one after the other."""
     done = subprocess.run(
-        [sys.executable, "-m", "benchmarks.warm_notebook"],
+        python_child("-m", "benchmarks.warm_notebook").command,
         input=b"".join(msgspec.json.encode(task) + b"\n" for task in tasks),
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import statistics
 import subprocess
-import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +13,7 @@ import msgspec
 from benchmarks.machine import Usage, Watch
 from benchmarks.memory import MemorySample, MemoryWatch
 from benchmarks.stock import Points, points_in
+from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
     from benchmarks.classes import BenchmarkClass
 
-GRADE = (sys.executable, "-m", "autograder", "grade")
+AUTOGRADER = tuple(python_child("-m", "autograder").command)
+GRADE = (*AUTOGRADER, "grade")
 
 
 @dataclass(frozen=True)

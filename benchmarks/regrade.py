@@ -20,6 +20,7 @@ from autograder.grading.running import backends
 from autograder.grading.running.engine import Done
 from autograder.verdict import State, Verdict
 from benchmarks.ours import GRADE
+from environment.python_child import python_child
 
 _MORE_TURNS = 2
 """When somebody edits the course meanwhile, the class is graded anew once and is unchanged again after that."""
@@ -44,7 +45,7 @@ def measure_regrade(made: BenchmarkClass, turns: int) -> list[tuple[float, float
         RuntimeError: Something was executed or written after all.
     """
     # In a process of its own: this one has read the course's code a while ago, and would know an older one.
-    subprocess.run([sys.executable, "-m", "benchmarks.regrade", str(made.path)], check=True)
+    subprocess.run(python_child("-m", "benchmarks.regrade", str(made.path)).command, check=True)
     spent: list[tuple[float, float]] = []
     said = ""
     for _ in range(turns + _MORE_TURNS):

@@ -30,6 +30,7 @@ from autograder.masters.layout import chapter_path, lab_name, masters
 from autograder.masters.source import source_notebook
 from autograder.student import journal
 from autograder.student.lab import join_domain
+from environment.python_child import installed_program
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -42,7 +43,7 @@ CELL_LIMIT = 600.0
 """Seconds that a cell may take: it may build a workspace while others do."""
 LONG_LOOK = "5"
 """Seconds of the look that every other one is compared with."""
-ROS2 = Path(sys.executable).with_name("ros2")
+ROS2 = installed_program("ros2")
 TOPIC, NODE = "/counted_ticks", "/tick_counter"
 TALKER = f"""
 from rclpy.node import Node

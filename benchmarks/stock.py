@@ -11,7 +11,6 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
-import sys
 import time
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
@@ -23,6 +22,7 @@ from autograder.boxes.limits import Limits
 from autograder.grading.classes.class_directory import CONFIG_NAME
 from autograder.judge.serving.domain import lease
 from benchmarks.machine import Usage, Watch
+from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -143,7 +143,7 @@ def _start_seconds(folder: Path) -> float:
     return time.monotonic() - began
 
 
-_COMMAND = (sys.executable, "-W", "ignore", "-m", "nbgrader")
+_COMMAND = tuple(python_child("-W", "ignore", "-m", "nbgrader").command)
 
 
 def _nbgrader(

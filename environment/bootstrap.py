@@ -19,6 +19,7 @@ from typing import IO, TYPE_CHECKING
 from environment import ros_flavour, system_packages
 from environment.lock import EXTRAS
 from environment.place import Place, may_write, owner
+from environment.python_child import INTERPRETER
 from environment.ros_flavour import Machine, NoRosError, Ros
 from environment.setup_steps import Setup, SetupError
 from environment.steps import run_steps
@@ -56,7 +57,7 @@ def choose_ros(place: Place, environ: Mapping[str, str]) -> tuple[Ros, dict[str,
 
 def _find_base_python() -> Path:
     # Run by the Python of an environment, this must not make the next one out of it.
-    return Path(os.path.realpath(getattr(sys, "_base_executable", sys.executable)))
+    return Path(os.path.realpath(getattr(sys, "_base_executable", INTERPRETER)))
 
 
 def _check_place(place: Place) -> None:

@@ -83,7 +83,8 @@ def variables(
 def _start_again(environ: MutableMapping[str, str]) -> None:
     """Replace this process by the same one, so that it starts with the environment it has now."""
     environ[_SECOND_START] = "1"
-    os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], dict(environ))
+    python = sys.executable  # noqa: TID251  (this file stands alone in site-packages, and starts nothing new)
+    os.execve(python, [python, *sys.orig_argv[1:]], dict(environ))
 
 
 def begin() -> None:

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Literal
 
 from environment import jupyter_files, loopback, ros_flavour, system_packages
 from environment.place import Place, may_write, owner
+from environment.python_child import INTERPRETER, PythonChild, python_child
 from environment.ros_report import INTERFACE_FIELDS
 
 if TYPE_CHECKING:
@@ -77,11 +78,14 @@ def as_text(findings: Iterable[Finding]) -> str:
     return "\n".join(lines)
 
 
-def _output(command: list[str]) -> tuple[int, str]:
+def _output(program: list[str] | PythonChild) -> tuple[int, str]:
     """Run a command and return its exit code and all it printed; 127 if it could not be started or hung."""
+    child = program if isinstance(program, PythonChild) else PythonChild(program, dict(os.environ), None)
     try:
         done = subprocess.run(
-            command,
+            child.command,
+            env=child.environment,
+            cwd=child.folder,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -105,9 +109,9 @@ def _last_line(text: str) -> str:
 
 def python() -> list[Finding]:
     """Look at the Python that runs this, and at the environment of the course."""
-    detail = f"{sys.version.split()[0]}, {sys.executable}"
+    detail = f"{sys.version.split()[0]}, {INTERPRETER}"
     if Path(sys.prefix) == PREFIX:
-        warning = Place(ROOT, Path(sys.executable)).warning
+        warning = Place(ROOT, Path(INTERPRETER)).warning
         return [
             Finding("Python", "ok", detail),
             *([Finding("Folder", "optional", warning)] if warning else []),
@@ -122,7 +126,7 @@ def ros() -> list[Finding]:
     """Look at the ROS 2 that was set up, at its middleware and at the interface package."""
     recorded = ros_flavour.load(Path(sys.prefix))
     # The last line: a library that is loaded may have printed before.
-    report = _parsed(_last_line(_output([sys.executable, "-m", "environment.ros_report"])[1]))
+    report = _parsed(_last_line(_output(python_child("-m", "environment.ros_report"))[1]))
     return [_ros(recorded, report), _middleware(report), _interfaces(report)]
 
 
@@ -169,7 +173,7 @@ def _interfaces(report: dict[str, object]) -> Finding:
 def talk() -> list[Finding]:
     """Let two processes talk to each other over ROS."""
     name = "Two nodes talk"
-    if _output([sys.executable, "-c", "import rclpy"])[0] != 0:
+    if _output(python_child("-c", "import rclpy"))[0] != 0:
         return [Finding(name, "unchecked", "rclpy is missing")]
     seconds = loopback.seconds_to_first_message()
     if seconds is None:
@@ -286,7 +290,7 @@ def sandbox() -> list[Finding]:
     if path is None:
         return _not_there("sandbox")
     # A process of its own: this one must also run where the course's package is not installed yet.
-    line = _last_line(_output([sys.executable, "-m", "autograder.boxes.sandbox"])[1])
+    line = _last_line(_output(python_child("-m", "autograder.boxes.sandbox"))[1])
     try:
         report = json.loads(line)
         why, guards = report["why_impossible"], report["guards"]

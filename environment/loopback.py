@@ -10,6 +10,12 @@ import subprocess
 import sys
 import time
 import uuid
+from typing import TYPE_CHECKING
+
+from environment.python_child import python_child
+
+if TYPE_CHECKING:
+    from subprocess import Popen
 
 # Discovery on one host takes well under a second. Where it takes ten, the labs will not work either.
 LIMIT = 10.0
@@ -35,9 +41,9 @@ def seconds_to_first_message(limit: float = LIMIT) -> float | None:
             talker.kill()
 
 
-def _start(role: str, topic: str, limit: float) -> subprocess.Popen[bytes]:
-    command = [sys.executable, "-m", "environment.loopback", role, topic, str(limit)]
-    return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+def _start(role: str, topic: str, limit: float) -> Popen[bytes]:
+    partner = python_child("-m", "environment.loopback", role, topic, str(limit))
+    return partner.start(stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
 def main(role: str, topic: str, limit: float) -> int:

@@ -15,6 +15,7 @@ import pytest
 from autograder.authoring.answers import folder_of, named
 from autograder.boxes.sandbox import why_impossible
 from autograder.kit.recipes.sent_texts import AT_PACE
+from environment.python_child import SAFE_PATH, installed_program
 
 TALKER = folder_of("lab_1_2.talker")
 LISTENER = folder_of("lab_1_2.listener")
@@ -166,3 +167,13 @@ def test_a_judge_that_cannot_judge_ends_with_2_and_accuses_nobody(
     assert done.returncode == 2
     assert "COULD NOT BE CHECKED" in done.stdout
     assert "./course record lab_1_2.talker" in " ".join(done.stdout.split())
+
+
+@pytest.mark.ros
+def test_a_students_program_finds_the_modules_beside_it(tmp_path: Path) -> None:
+    shutil.copy(TALKER / "right" / "text_as_it_stands.py", tmp_path / "my_talker.py")
+    (tmp_path / "run.py").write_text("from my_talker import main\n\nmain()\n")
+    command = (str(installed_program("autograder")), "check", "lab_1_2.talker", "--", "python3")
+    environ = os.environ | {SAFE_PATH: "1"}  # as ./course sets it
+    done = subprocess.run([*command, str(tmp_path / "run.py")], env=environ, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr

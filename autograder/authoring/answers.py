@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import exercises
@@ -12,14 +10,16 @@ from autograder.authoring.answer_tables import WORKSPACE, Listed, listed, settin
 from autograder.authoring.edits import unpack
 from autograder.boxes.scratch import HeldFolder
 from autograder.verdict import State, to_json
+from environment.python_child import installed_program
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
+    from pathlib import Path
 
     from autograder.judge.verdicts.trial import Checked
     from autograder.verdict import Verdict
 
-_PROGRAMS = {"python3": sys.executable, "ros2": str(Path(sys.executable).with_name("ros2"))}
+_PROGRAMS = {name: str(installed_program(name)) for name in ("python3", "ros2")}
 """The programs that answers are run with, those of this environment."""
 
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import os
-import re
+import re  # noqa: TID251  (not what a student handed in)
 import subprocess
-import sys
 from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING
 from autograder import course, exercises
 from autograder.authoring.house_rules import broken_rules
 from autograder.masters.source import named_cells
+from environment.python_child import installed_program
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -99,7 +99,7 @@ def _of_linters(lab: Path) -> Iterator[str]:
     """The lines of ruff and mypy about the files of a lab, or that it is not installed; none without settings."""
     if not _SETTINGS.is_file():
         return
-    programs = {name: Path(sys.executable).with_name(name) for name in ("ruff", "mypy")}
+    programs = {name: installed_program(name) for name in ("ruff", "mypy")}
     for name, program in programs.items():
         if not program.is_file():
             yield f"{name}: not installed, so nothing was looked at: `./course setup --tests` installs it"

@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import secrets
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,6 +18,7 @@ from autograder.judge.serving.process import JudgeDied, JudgeProcess
 from autograder.masters.master_errors import MasterError
 from autograder.masters.solutions import reference_source
 from autograder.messages.checks import SOCKET_VARIABLE
+from environment.python_child import installed_program
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -122,7 +122,7 @@ def program(exercise_id: str) -> str:
 def _run(file: Path, socket: Path) -> str:
     """Run the program; what it printed, for the case that it fails."""
     done = subprocess.run(
-        [sys.executable, str(file)],
+        [str(installed_program("python3")), str(file)],
         # A solution about files writes them where it runs.
         cwd=file.parent,
         env=os.environ | {SOCKET_VARIABLE: str(socket)},

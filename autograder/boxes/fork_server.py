@@ -33,6 +33,7 @@ from autograder.boxes.environment import base_environment
 from autograder.boxes.limits import raise_own
 from autograder.boxes.scratch import HeldFolder
 from autograder.process_trees import end_soon
+from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -202,26 +203,12 @@ class ForkServer:
             listener.bind(self.address)
             # From here on one can connect: whoever comes while the process warms up is served when it is warm.
             listener.listen(128)
-            self._process = subprocess.Popen(
-                [
-                    sys.executable,
-                    "-P",
-                    "-m",
-                    "autograder.boxes.fork_server",
-                    mode,
-                    module,
-                    str(listener.fileno()),
-                    *words,
-                ],
+            arguments = ("-m", "autograder.boxes.fork_server", mode, module, str(listener.fileno()), *words)
+            variables = {**base_environment(), "PYDEVD_DISABLE_FILE_VALIDATION": "1", **(extra or {})}
+            self._process = python_child(*arguments, environment=variables).start(
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL if log is None else log,
-                env={
-                    **base_environment(),
-                    "PYDEVD_DISABLE_FILE_VALIDATION": "1",
-                    **(extra or {}),
-                },
-                cwd="/",
                 pass_fds=(listener.fileno(),),
                 # Ctrl-C goes to the grader, which then ends its boxes in good order.
                 start_new_session=True,

@@ -26,6 +26,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from autograder.boxes.fork_server import INTERFACES, RCLPY, preload, preload_ros
+from environment.python_child import INTERPRETER
 from environment.ros2_command import main as ros2
 from environment.ros2_command import run as ros2_run
 
@@ -140,7 +141,7 @@ def _python_path(environment: Mapping[str, str]) -> list[str]:
 def _is_ours(script: str) -> bool:
     """True for the text of a program for this interpreter, which can also start an archive (``zipapp``)."""
     line = _head(Path(script)).split(b"\n")[0]
-    return line == f"#!{sys.executable}".encode() and pkgutil.get_importer(script) is None
+    return line == f"#!{INTERPRETER}".encode() and pkgutil.get_importer(script) is None
 
 
 def _head(script: Path) -> bytes:
@@ -196,7 +197,7 @@ def _be(command: Sequence[str], standard_path: Sequence[str]) -> NoReturn:
     if os.environ.get("PYTHONFAULTHANDLER"):
         faulthandler.enable(file=2)
     sys.argv = list(command)
-    sys.orig_argv = [sys.executable, *command]
+    sys.orig_argv = [INTERPRETER, *command]
     sys.path[:] = [str(Path(script).resolve().parent), *_python_path(os.environ), *standard_path]
     importlib.invalidate_caches()
     _open_standard_streams()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
@@ -12,6 +11,7 @@ import re2
 from autograder.workspaces.failures import telling_line
 from autograder.workspaces.install_folder import entry_points, package_prefixes, programs
 from autograder.workspaces.packages import find_packages, needed
+from environment.python_child import INTERPRETER, python_child
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -138,14 +138,15 @@ def command(packages: Iterable[Package], folder: Path, cmake: Sequence[str] = ()
     Release defines NDEBUG: without it a value of the wrong type in a field of a generated message ends the whole
     process with SIGABRT instead of raising an exception.
     """
-    return [
-        sys.executable, "-m", "colcon", "--log-base", str(folder / "log"),
+    words = [
+        "-m", "colcon", "--log-base", str(folder / "log"),
         "build", "--paths", *(str(package.folder) for package in packages),
         "--build-base", str(folder / "build"), "--install-base", str(folder / "install"),
         "--event-handlers", "console_cohesion+", "console_start_end+", "desktop_notification-", "status-",
-        "--cmake-args", f"-DPython3_EXECUTABLE={sys.executable}", "-DCMAKE_BUILD_TYPE=Release",
+        "--cmake-args", f"-DPython3_EXECUTABLE={INTERPRETER}", "-DCMAKE_BUILD_TYPE=Release",
         "-DBUILD_TESTING=OFF", "--no-warn-unused-cli", "-Wno-dev", *cmake,
     ]  # fmt: skip
+    return python_child(*words).command
 
 
 def _log_of(log: str, package: str) -> str:

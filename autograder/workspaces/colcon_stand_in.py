@@ -16,6 +16,7 @@ from autograder.workspaces.colcon import look
 from autograder.workspaces.install_folder import BESIDE, CannotPlace, place
 from autograder.workspaces.own_builds import GRADERS, OwnBuilds
 from autograder.workspaces.packages import needed
+from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -41,7 +42,8 @@ def main(arguments: Sequence[str]) -> int:
                 return _told(made)
             except CannotPlace:
                 pass  # colcon says why
-    os.execv(sys.executable, [sys.executable, "-m", "colcon", *arguments])
+    command = python_child("-m", "colcon", *arguments).command
+    os.execv(command[0], command)
     return 1
 
 

@@ -8,11 +8,11 @@ import select
 import shutil
 import signal
 import subprocess
-import sys
 import time
 from typing import TYPE_CHECKING, Self
 
 from autograder import process_trees
+from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -46,7 +46,7 @@ class OwnSession:
     ) -> None:
         if shutil.which(command[0], path=environment.get("PATH", os.defpath)) is None:
             raise FileNotFoundError(command[0])
-        keeper = [sys.executable, "-I", "-S", process_trees.__file__, str(os.getpid())]
+        keeper = python_child("-I", "-S", process_trees.__file__, str(os.getpid())).command
         self._process = subprocess.Popen(
             [*keeper, *command],
             cwd=cwd,

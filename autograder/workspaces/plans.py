@@ -18,6 +18,7 @@ from autograder.kit.workspace_report import AMENT_PACKAGE
 from autograder.workspaces.install_folder import files_of_interfaces, has_service, is_indexed
 from autograder.workspaces.packages import WORKSPACE
 from autograder.workspaces.room import Room
+from environment.python_child import installed_program, python_child
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -94,7 +95,7 @@ def _interface_plan(runner: ServesInterface) -> Plan:
 
     def probe(made: Build) -> Sequence[str]:
         service_type = f"{generated(made)[0].name}/srv/{interface}"
-        return [sys.executable, "-m", "autograder.workspaces.probe", service_type, runner.service]
+        return python_child("-m", "autograder.workspaces.probe", service_type, runner.service).command
 
     return Plan(
         targets=lambda found: [package.name for package in holders(found)],
@@ -156,7 +157,7 @@ def course_interfaces() -> tuple[Path, ...]:
 
 def ros2() -> str:
     """The ``ros2`` command of this environment."""
-    beside = Path(sys.executable).with_name("ros2")
+    beside = installed_program("ros2")
     return str(beside) if beside.exists() else shutil.which("ros2") or "ros2"
 
 

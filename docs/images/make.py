@@ -16,6 +16,7 @@ from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
+from environment.python_child import python_child
 from environment.system_packages import CHROMIUM_NAMES, find_program
 
 HERE = Path(__file__).resolve().parent
@@ -54,7 +55,7 @@ def main() -> int:
 
 def see_the_lab(folder: Path) -> None:
     """Run the browser tests with a folder for their pictures."""
-    test = [sys.executable, "-m", "pytest", "-q", *TESTS]
+    test = python_child("-m", "pytest", "-q", *TESTS).command
     subprocess.run(test, cwd=HERE.parents[1], env=os.environ | {"SCREENSHOTS": str(folder)}, check=True)
 
 
@@ -63,7 +64,7 @@ def see_a_class(folder: Path) -> tuple[str, ...]:
     made = folder / "ros2"
     # Its exit code is 2: the sample class has a submission that is refused.
     for command in ("demo", "report"):
-        subprocess.run([sys.executable, "-m", "autograder", command, str(made)], check=False)
+        subprocess.run([*python_child("-m", "autograder").command, command, str(made)], check=False)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(
             executable_path=find_program(*CHROMIUM_NAMES), args=["--no-sandbox"]

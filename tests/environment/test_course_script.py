@@ -238,3 +238,22 @@ def test_a_named_python_that_is_none_is_an_error_and_no_other_is_taken(course: C
     assert done.returncode == 2
     assert "/nowhere/my python" in done.stderr
     assert course.ran() == []
+
+
+def test_what_it_starts_finds_no_code_and_no_program_in_the_current_folder(course: Course) -> None:
+    program = course.root / ".venv/bin/autograder"
+    program.write_text('#!/bin/sh\necho "$PYTHONSAFEPATH|$PATH|${PYTHONPATH:-}|${LD_LIBRARY_PATH:-}"\n')
+    program.chmod(0o755)
+    done = course.run(
+        "grade", PATH=f".:{os.environ['PATH']}:", PYTHONPATH=":/opt/ros/a b:tools", LD_LIBRARY_PATH="."
+    )
+    assert done.stdout == f"1|{os.environ['PATH']}|/opt/ros/a b|\n", done.stderr
+
+
+def test_the_set_up_and_the_tests_run_as_if_typed_without_it(course: Course) -> None:
+    for name in ("ruff", "mypy", "pytest"):
+        program = course.root / ".venv/bin" / name
+        program.write_text('#!/bin/sh\necho "${PYTHONSAFEPATH:-none}"\n')
+        program.chmod(0o755)
+    done = course.run("test")
+    assert (done.returncode, [*map(str.strip, done.stdout.splitlines())].count("none")) == (0, 4), done.stderr

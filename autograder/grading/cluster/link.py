@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import queue
 import socket
-import subprocess
 import sys
 import tempfile
 import threading
@@ -16,6 +15,7 @@ import msgspec
 from autograder.grading.cluster.messages import Broken, Command, News
 from autograder.messages.lines import Hangup, Lines
 from autograder.process_trees import end_soon
+from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -38,8 +38,9 @@ class Link:
         self._log = tempfile.TemporaryFile()
         own, its_own = socket.socketpair()
         self._lines = Lines(own, sys.maxsize)
-        self._client = subprocess.Popen(
-            [sys.executable, "-m", "autograder.grading.cluster.dask_client", self._address],
+        # In the folder of this process: the settings of Dask may name certificates by relative paths.
+        client = python_child("-m", "autograder.grading.cluster.dask_client", self._address, folder=None)
+        self._client = client.start(
             stdin=its_own.fileno(),
             stdout=self._log,
             stderr=self._log,

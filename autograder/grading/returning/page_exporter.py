@@ -181,7 +181,8 @@ def without_scripts(head: str) -> str:
     return _SCRIPT.sub("", head).replace("<head>", f"<head>\n{policy}", 1)
 
 
-_NBCONVERTS = HTMLExporter()
+# By default nbconvert also looks for templates in the current folder, and runs what a file named conf.json there names.
+_NBCONVERTS = HTMLExporter(extra_template_basedirs=[str(_OURS)])
 
 
 @functools.lru_cache(maxsize=8)

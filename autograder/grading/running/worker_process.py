@@ -8,9 +8,8 @@ it ends.
 from __future__ import annotations
 
 import atexit
+import os
 import socket
-import subprocess
-import sys
 import tempfile
 import threading
 from dataclasses import replace
@@ -25,8 +24,10 @@ from autograder.grading.running.worker import JUDGE
 from autograder.judge.settings import boxed_ros_environment, ros_environment
 from autograder.messages.lines import Hangup, Lines, Silent, TooLong
 from autograder.process_trees import end_processes_in, end_soon
+from environment.python_child import python_child
 
 if TYPE_CHECKING:
+    import subprocess
     from pathlib import Path
 
     from autograder.boxes.fork_server import Addresses
@@ -58,7 +59,7 @@ class WorkerProcess:
 
     def __init__(self, scratch: Path, *, judge: str = JUDGE, boxed: bool = True) -> None:
         self._scratch = scratch
-        self._command = [sys.executable, "-m", "autograder.grading.running.worker", str(scratch), judge]
+        self._command = ("-m", "autograder.grading.running.worker", str(scratch), judge)
         self._boxed = boxed
         # What the worker prints goes to a file: a pipe that nobody reads would fill up. Lives with the worker.
         self._log = tempfile.TemporaryFile()  # noqa: SIM115
@@ -143,8 +144,9 @@ class WorkerProcess:
                 own, its_own = socket.socketpair()
                 lines = Lines(own, _RESULT_BYTES)
                 with its_own:
-                    self._worker = subprocess.Popen(
-                        [*self._command, addresses],
+                    variables = {**os.environ, **course.variables()}
+                    child = python_child(*self._command, addresses, environment=variables)
+                    self._worker = child.start(
                         stdin=its_own.fileno(),
                         stdout=self._log,
                         stderr=self._log,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-import sys
+import shlex
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,7 @@ from autograder.workspaces import cache, own_builds
 from autograder.workspaces.boxed_jobs import BoxedJobs
 from autograder.workspaces.plain_jobs import PlainJobs
 from autograder.workspaces.service import ServiceSockets, WorkspaceService
+from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -107,7 +108,6 @@ def _furnish(shared: Path) -> None:
     programs = shared / _PROGRAMS
     programs.mkdir()
     colcon = programs / "colcon"
-    colcon.write_text(
-        f'#!/bin/sh\nexec "{sys.executable}" -P -m autograder.workspaces.colcon_stand_in "$@"\n'
-    )
+    stand_in = python_child("-m", "autograder.workspaces.colcon_stand_in").command
+    colcon.write_text(f'#!/bin/sh\nexec {shlex.join(stand_in)} "$@"\n')
     colcon.chmod(0o755)

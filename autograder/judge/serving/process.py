@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import signal
 import socket
 import subprocess
-import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Protocol, Self
 
 import msgspec
 
+from autograder import course
 from autograder.messages.lines import Hangup, Lines, Silent, listen
 from autograder.messages.orders import Close, Open, Report
 from autograder.process_trees import signal_group
+from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -153,8 +155,9 @@ class _Child:
     """A judge as a child of this process."""
 
     def __init__(self, listener: int, orders: int) -> None:
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "autograder.judge", "--attached", str(listener), str(orders)],
+        words = ("-m", "autograder.judge", "--attached", str(listener), str(orders))
+        judge = python_child(*words, environment={**os.environ, **course.variables()})
+        self._process = judge.start(
             stdin=subprocess.DEVNULL,
             pass_fds=(listener, orders),
             start_new_session=True,

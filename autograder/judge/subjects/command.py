@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import secrets
 import shutil
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +15,7 @@ from autograder.judge.serving.fork import Child
 from autograder.kit.runners import Launches
 from autograder.messages.orders import Report
 from autograder.verdict import Verdict, not_checked
+from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -86,7 +86,7 @@ def check_and_keep(
 
 def as_run(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> Sequence[str]:
     """The command that is really run: a path in place of a command is built, run or launched by a runner."""
-    runner = [sys.executable, "-m", "autograder.workspaces", exercise.id]
+    runner = python_child("-m", "autograder.workspaces", exercise.id).command
     if is_path(exercise, command, cwd):
         return [*runner, command[0]]
     return [*runner, "--", *command] if exercise.wraps_commands else command

@@ -11,13 +11,13 @@ import contextlib
 import os
 import secrets
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.messages.checks import SOCKET_VARIABLE, FromJudge
 from autograder.messages.lines import Hangup, Lines, NotUnderstood
+from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from autograder.messages.lines import Message
@@ -76,12 +76,11 @@ class OwnJudge:
         self._folder = tempfile.TemporaryDirectory(prefix="judge-", ignore_cleanup_errors=True)
         self._socket = Path(self._folder.name) / f"{secrets.token_hex(8)}.socket"
         environment = {k: v for k, v in os.environ.items() if not k.startswith("RCUTILS_LOGGING")}
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "autograder.judge", "--socket", str(self._socket)],
+        judge = python_child("-m", "autograder.judge", "--socket", str(self._socket), environment=environment)
+        self._process = judge.start(
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            env=environment,
             # Interrupting the kernel must not end the judge.
             start_new_session=True,
         )

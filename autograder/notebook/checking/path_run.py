@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 import threading
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +13,7 @@ from autograder.workspaces.jobs import output_lines
 from autograder.workspaces.own_session import OwnSession
 from autograder.workspaces.packages import workspace_of
 from autograder.workspaces.sources import BadSources, collect_launch, collect_workspace
+from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -31,7 +31,7 @@ class PathRun:
         self, number: int, exercise: str, path: str | os.PathLike[str], domain: int, tell: Tell
     ) -> None:
         self._number = number
-        self._command = [sys.executable, "-m", "autograder.workspaces", exercise, os.fspath(path)]
+        self._command = python_child("-m", "autograder.workspaces", exercise, os.fspath(path)).command
         self._domain = domain
         self._tell = tell
         self._program: OwnSession | None = None

@@ -1,0 +1,102 @@
+"""The one way to start a Python process of this project: its command line, its environment, its folder.
+
+A command of the course is typed in any folder, also in one that a student has filled. Python imports from the current
+folder, from relative folders of ``PYTHONPATH``, and from what other variables name. A process of ours must not: a
+``json.py`` there would run with the rights of the instructor. The linter forbids ``sys.executable`` everywhere else.
+
+A student's own program is not started with this. It finds the modules beside it, as Python always does.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+INTERPRETER = sys.executable  # noqa: TID251  (here it is made into a command line)
+"""The path of this Python. To start it, use :func:`python_child`."""
+SAFE_PATH = "PYTHONSAFEPATH"
+"""Has the effect of ``-P``, and every Python below inherits it, so it must not reach a student's program."""
+_SEARCH_PATHS = ("PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH")
+_OF_PYTHON = "PYTHON"
+_KEPT_OF_PYTHON = {
+    "PYTHONPATH",
+    "PYTHONCOERCECLOCALE",
+    "PYTHONDONTWRITEBYTECODE",
+    "PYTHONFAULTHANDLER",
+    "PYTHONHASHSEED",
+    "PYTHONIOENCODING",
+    "PYTHONNOUSERSITE",
+    "PYTHONUNBUFFERED",
+    "PYTHONUTF8",
+}
+"""They decide how a process reads, writes and prints. The other variables of Python name code that it runs or files
+that it reads."""
+
+
+@dataclass(frozen=True)
+class PythonChild:
+    """A Python process that can be started.
+
+    Attributes:
+        command: The command line.
+        environment: The whole environment.
+        folder: The current folder.
+    """
+
+    command: list[str]
+    environment: dict[str, str]
+    folder: str | None
+
+    def start(self, **options: Any) -> subprocess.Popen[bytes]:
+        """Start the process.
+
+        Args:
+            options: Further arguments of :class:`subprocess.Popen`.
+        """
+        return subprocess.Popen(self.command, env=self.environment, cwd=self.folder, **options)
+
+
+def python_child(
+    *words: str, environment: Mapping[str, str] | None = None, folder: str | None = "/"
+) -> PythonChild:
+    """Describe a Python process that imports nothing from the current folder.
+
+    Args:
+        words: The arguments of Python, such as ``"-m"``, the name of a module and the arguments of the module.
+        environment: The environment to clean; the one of this process if None.
+        folder: The current folder of the process. No student can write to the root of the file system. None means the
+            folder of this process, for a process that is given relative paths.
+    """
+    cleaned = clean_environment(os.environ if environment is None else environment)
+    return PythonChild([INTERPRETER, "-P", *words], cleaned, folder)
+
+
+def clean_environment(environment: Mapping[str, str]) -> dict[str, str]:
+    """Return an environment without relative folders in search paths, and without what makes Python run other code.
+
+    The folders of a sourced ROS are absolute, so they stay. An empty entry of a search path means the current folder.
+    """
+    kept = {
+        name: value
+        for name, value in environment.items()
+        if not name.startswith(_OF_PYTHON) or name in _KEPT_OF_PYTHON
+    }
+    for name in _SEARCH_PATHS:
+        if name in kept:
+            absolute = [entry for entry in kept[name].split(os.pathsep) if entry.startswith("/")]
+            kept[name] = os.pathsep.join(absolute)
+            if not absolute:
+                del kept[name]
+    return kept
+
+
+def installed_program(name: str) -> Path:
+    """Return the path of a program that the set-up has installed beside this Python; it may not exist."""
+    return Path(INTERPRETER).with_name(name)

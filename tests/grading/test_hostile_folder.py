@@ -1,0 +1,143 @@
+"""An instructor's commands, typed in a folder that a student has filled: nothing in that folder runs."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from importlib.metadata import packages_distributions
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from environment.python_child import installed_program
+
+if TYPE_CHECKING:
+    from conftest import TinyClass
+
+ROOT = Path(__file__).resolve().parents[2]
+# Read by Python, Jupyter, nbgrader, jupytext, pytest and colcon in one folder or another.
+SETTINGS = (
+    *("sitecustomize.py", "usercustomize.py", "conftest.py", "setup.py", ".jupytext.py", "ipython_config.py"),
+    *("jupyter_config.py", "jupyter_server_config.py", "jupyter_nbconvert_config.py", "nbgrader_config.py"),
+)
+PROGRAMS = (
+    "python3",
+    "python",
+    "autograder",
+    "bwrap",
+    "rm",
+    "git",
+    "cat",
+    "cksum",
+    "dirname",
+    "readlink",
+    "sh",
+)
+TEMPLATES = ("lab", "base", "classic", "autograder_feedback", "feedback")
+
+
+class Hostile:
+    """A folder in which every file that anything might read leaves a mark."""
+
+    def __init__(self, folder: Path) -> None:
+        self.path = folder / "mallory"
+        self.path.mkdir()
+        self._marks = folder / "marks"
+        code = f"open({str(self._marks)!r}, 'a').write(__name__ + ' ' + __file__ + '\\n')\n"
+        modules = {*sys.stdlib_module_names, *packages_distributions(), "autograder", "environment"}
+        for name in (*(f"{module}.py" for module in modules if "/" not in module), *SETTINGS):
+            (self.path / name).write_text(code)
+        (self.path / "mallory.pth").write_text(f"import os; {code}")
+        for name in PROGRAMS:
+            (self.path / name).write_text(f"#!/bin/sh\necho program {name} >> '{self._marks}'\n")
+            (self.path / name).chmod(0o755)
+        runs = {"type": "subprocess.Popen", "args": ["sh", "-c", f"echo template >> '{self._marks}'"]}
+        for name in TEMPLATES:
+            (self.path / name).mkdir()
+            (self.path / name / "conf.json").write_text(json.dumps({"preprocessors": {"x": runs}}))
+
+    def marks(self) -> str:
+        return self._marks.read_text() if self._marks.exists() else ""
+
+
+@pytest.fixture
+def hostile(tmp_path: Path) -> Hostile:
+    return Hostile(tmp_path)
+
+
+@pytest.fixture
+def course(tmp_path: Path) -> Path:
+    """The script ``course``, with the commands of this environment and nothing to set up."""
+    root = tmp_path / "course"
+    for name in (
+        "environment/requirements",
+        "environment/ros2_command",
+        "environment/interfaces",
+        ".venv/bin",
+    ):
+        (root / name).mkdir(parents=True)
+    shutil.copy(ROOT / "course", root / "course")
+    for name in (
+        "pyproject.toml",
+        "environment/requirements/course.lock",
+        "environment/ros2_command/install.py",
+    ):
+        (root / name).touch()
+    bootstrap = "import os, shutil, sys\nos.makedirs('.venv/course', exist_ok=True)\n"
+    bootstrap += "open('.venv/course/token', 'w').write(sys.argv[2] + '\\n')\n"
+    bootstrap += f"shutil.copy({str(Path(sys.prefix, 'course/libraries.sh'))!r}, '.venv/course')\n"
+    (root / "environment/bootstrap.py").write_text(bootstrap)
+    for name in ("python", "autograder"):
+        (root / ".venv/bin" / name).write_text(f'#!/bin/sh\nexec "{installed_program(name)}" "$@"\n')
+        (root / ".venv/bin" / name).chmod(0o755)
+    return root / "course"
+
+
+def typed(course: Path, hostile: Hostile, *words: str) -> subprocess.CompletedProcess[str]:
+    """Type a command in the folder, with search paths that have it in them as many terminals' have."""
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONSAFEPATH"}
+    environment["PATH"] = f":.:{environment['PATH']}"
+    environment["PYTHONPATH"] = f":{environment.get('PYTHONPATH', '')}"
+    environment["LD_LIBRARY_PATH"] = f":{environment.get('LD_LIBRARY_PATH', '')}"
+    return subprocess.run(
+        ["/bin/sh", str(course), *words],
+        cwd=hostile.path,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_the_folder_itself_would_run(hostile: Hostile) -> None:
+    subprocess.run([sys.executable, "-m", "autograder"], cwd=hostile.path, capture_output=True, check=False)
+    assert hostile.marks()
+
+
+@pytest.mark.slow
+def test_nothing_of_the_current_folder_runs_while_a_class_is_graded(
+    tiny: TinyClass, course: Path, hostile: Hostile
+) -> None:
+    tiny.submit("ada")
+    (tiny.path / "students.csv").write_text("id\nada\nben\n")
+    graded = typed(course, hostile, "grade", str(tiny.path))
+    assert "ada" in graded.stdout, graded.stderr
+    assert (tiny.path / "feedback/ada/lab_1_2/lab_1_2.html").is_file(), graded.stdout + graded.stderr
+    more = shutil.copytree(tiny.path / "submitted/ada/lab_1_2", tiny.path / "download/ben")
+    for command, *words in (["collect", str(more)], ["report"], ["similar"], ["export", "--to", "csv"]):
+        done = typed(course, hostile, command, str(tiny.path), *words)
+        assert done.returncode == 0, done.stdout + done.stderr
+    assert hostile.marks() == ""
+
+
+@pytest.mark.slow
+def test_nothing_of_the_current_folder_runs_while_the_machine_is_looked_at(
+    course: Path, hostile: Hostile
+) -> None:
+    done = typed(course, hostile, "doctor")
+    assert "rclpy" in done.stdout, done.stdout + done.stderr
+    assert hostile.marks() == ""
