@@ -134,6 +134,20 @@ def test_nothing_of_the_current_folder_runs_while_a_class_is_graded(
     assert hostile.marks() == ""
 
 
+@pytest.mark.parametrize("command", ["grade", "report", "similar", "new-class", "nbgrader", "jupyter"])
+def test_a_class_that_a_student_has_handed_in_is_not_used(
+    tiny: TinyClass, course: Path, hostile: Hostile, command: str
+) -> None:
+    handed_in = tiny.submit("mallory").parent
+    shutil.copytree(tiny.path / "source", handed_in / "source")
+    shutil.copy(hostile.path / "nbgrader_config.py", handed_in)
+    hostile.path = handed_in
+    done = typed(course, hostile, command, ".")
+    assert done.returncode == 2
+    assert str(tiny.path) in done.stderr
+    assert hostile.marks() == ""
+
+
 @pytest.mark.slow
 def test_nothing_of_the_current_folder_runs_while_the_machine_is_looked_at(
     course: Path, hostile: Hostile

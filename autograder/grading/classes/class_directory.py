@@ -32,6 +32,8 @@ CONFIG_NAME = "nbgrader_config.py"
 STATE_NAME = ".autograder"
 SUFFIX = ".ipynb"
 _LONGEST_NAME = 100
+_STUDENTS_FILES = ("submitted", "autograded", "feedback", "downloaded")
+"""The folders of a class that hold what students have written, as nbgrader calls them."""
 
 
 @dataclass(frozen=True)
@@ -80,6 +82,7 @@ class ClassDirectory:
             raise NotAClass(path, f"there is no {CONFIG_NAME} in it")
         if not (self.path / "source").is_dir():
             raise NotAClass(path, "there is no folder named source in it")
+        refuse_students_folder(self.path)
 
     @property
     def state(self) -> Path:
@@ -259,6 +262,23 @@ class ClassDirectory:
                     "folder of your own."
                 )
         return folder
+
+
+def refuse_students_folder(folder: Path) -> None:
+    """Make sure that a folder does not lie among the files of students in a class.
+
+    A student may have put a whole class there, and the configuration of a class is a program.
+
+    Raises:
+        ClassIncomplete: The folder lies there; the message names the class.
+    """
+    place = folder.resolve()
+    for outer in place.parents:
+        if place.relative_to(outer).parts[0] in _STUDENTS_FILES and (outer / CONFIG_NAME).is_file():
+            raise ClassIncomplete(
+                f"{folder} holds files of students, so it is not used as a class. "
+                f"The class is {outer}: name that folder."
+            )
 
 
 def reason_against_name(name: str) -> str:

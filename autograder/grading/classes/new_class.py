@@ -19,7 +19,13 @@ from nbgrader.coursedir import CourseDirectory
 
 from autograder.boxes.limits import Limits
 from autograder.grading.class_store import ClassStore
-from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, SUFFIX, ClassDirectory
+from autograder.grading.classes.class_directory import (
+    CONFIG_NAME,
+    STATE_NAME,
+    SUFFIX,
+    ClassDirectory,
+    refuse_students_folder,
+)
 from autograder.grading.classes.origins import note_origins
 from autograder.grading.classes.seeds import create_secret
 from autograder.grading.entering.writer import quiet
@@ -157,6 +163,7 @@ def machine_timezone() -> str:
 
 
 def _check_place(path: Path, course_root: Path) -> None:
+    refuse_students_folder(path)
     if path.is_symlink() or (path.exists() and not path.is_dir()):
         raise ClassExists(f"{path} is there already and is not a folder. Choose another name.")
     if path.is_dir() and any(path.iterdir()):
