@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import secrets
 import stat
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
@@ -49,9 +50,10 @@ def write_whole(path: Path, data: bytes) -> None:
     """
     changed = [path.parent, *(one.parent for one in path.parents if not one.exists())]
     path.parent.mkdir(parents=True, exist_ok=True)
-    beside = path.with_name(f".{path.name}.{os.getpid()}.new")
+    # In a folder like /tmp another user could put a link at a name that can be guessed.
+    beside = path.with_name(f".{path.name}.{secrets.randbelow(10**12)}.new")
     try:
-        with beside.open("wb") as file:
+        with beside.open("xb") as file:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())

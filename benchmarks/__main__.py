@@ -8,7 +8,6 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
 import time
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING
 
 from autograder import course
 from autograder.grading.running.engine import cores
+from autograder.temporary_folders import fresh_folder
 from benchmarks import figures, results
 from benchmarks.box_start import measure_box_start
 from benchmarks.classes import BenchmarkClass, make_class
@@ -221,7 +221,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if chosen.students:
         form = Form(**{**form.__dict__, "students": chosen.students})
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    folder = Path(tempfile.mkdtemp(prefix="benchmark-"))
+    folder = fresh_folder("benchmark-")
     try:
         if chosen.profile:
             profile_grade(folder / "class")

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import statistics
-import tempfile
 from dataclasses import dataclass
-from pathlib import Path
 
 from autograder.boxes.execution import Cell
 from autograder.grading.running.worker_process import WorkerProcess
 from autograder.grading.task import Task
+from autograder.temporary_folders import HeldFolder
 
 
 @dataclass(frozen=True)
@@ -43,8 +42,8 @@ def measure_box_start(turns: int) -> BoxStart:
     with contextlib.ExitStack() as stack:
         workers = {}
         for boxed in spent:
-            scratch = stack.enter_context(tempfile.TemporaryDirectory(prefix="bench-"))
-            workers[boxed] = WorkerProcess(Path(scratch) / "0", boxed=boxed)
+            scratch = stack.enter_context(HeldFolder("autograder-bench-"))
+            workers[boxed] = WorkerProcess(scratch.path / "0", boxed=boxed)
             stack.callback(workers[boxed].end)
         for turn in range(turns + 1):
             for boxed, worker in workers.items():

@@ -12,7 +12,6 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
 import threading
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -25,6 +24,7 @@ from autograder import course
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.rebuilding.task_making import tasks_of
+from autograder.temporary_folders import fresh_folder
 from benchmarks.classes import make_class
 from benchmarks.machine import Machine, Watch, machine
 from benchmarks.ours import AUTOGRADER
@@ -259,7 +259,7 @@ def _rounded(cores: float) -> str:
 def main() -> int:
     """Measure, print, keep, and put into the page."""
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    folder = Path(tempfile.mkdtemp(prefix="cluster-"))
+    folder = fresh_folder("cluster-")
     try:
         costs = measure(folder)
     finally:

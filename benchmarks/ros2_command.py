@@ -14,7 +14,6 @@ import shutil
 import statistics
 import subprocess
 import sys
-import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -30,6 +29,7 @@ from autograder.masters.layout import chapter_path, lab_name, masters
 from autograder.masters.source import source_notebook
 from autograder.student import journal
 from autograder.student.lab import join_domain
+from autograder.temporary_folders import HeldFolder
 from environment.python_child import installed_program
 
 if TYPE_CHECKING:
@@ -171,8 +171,8 @@ def measure(times: int, only: Sequence[str] = ()) -> tuple[int, list[Figure]]:
         only: Names such as ``"lab_1_2"``; all notebooks of the course where empty.
     """
     root = course.root()
-    with tempfile.TemporaryDirectory(prefix="ros2-command-", ignore_cleanup_errors=True) as place:
-        copy = Path(shutil.copytree(root / "chapters", Path(place) / "chapters"))
+    with HeldFolder("autograder-bench-") as place:
+        copy = Path(shutil.copytree(root / "chapters", place.path / "chapters"))
         notebooks = [
             Open(lab_name(master), source_notebook(master), copy / chapter_path(root, master).parent.name)
             for master in masters(root)

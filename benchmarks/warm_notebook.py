@@ -11,17 +11,19 @@ import contextlib
 import io
 import os
 import sys
-import tempfile
 import time
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 import psutil
 
 from autograder.boxes.execution import CellType
 from autograder.grading.task import Task
+from autograder.temporary_folders import HeldFolder
 from benchmarks.machine import CpuGroup
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 _MODULES = (
     "IPython.core.interactiveshell",
@@ -58,8 +60,8 @@ def _floor(task: Task) -> dict[str, Any]:
     from autograder.judge.serving.process import JudgeProcess
 
     group = CpuGroup.make()
-    with tempfile.TemporaryDirectory(prefix="floor-") as name, lease() as domain:
-        folder = Path(name)
+    with HeldFolder("autograder-bench-") as held, lease() as domain:
+        folder = held.path
         reading, writing = os.pipe()
         with JudgeProcess(folder / "judge", seed=task.seed) as judge:
             # From here on, when it is warm, the judge counts.

@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING
 
 import psutil
 
-from autograder.boxes.scratch import HeldFolder
 from autograder.process_trees import adopt_orphans, die_with_parent, end_below
+from autograder.temporary_folders import HeldFolder
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from autograder import exercises
 from autograder.authoring.answer_tables import WORKSPACE, Listed, listed, settings
 from autograder.authoring.edits import unpack
-from autograder.boxes.scratch import HeldFolder
+from autograder.temporary_folders import HeldFolder
 from autograder.verdict import State, to_json
 from environment.python_child import installed_program
 

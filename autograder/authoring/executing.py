@@ -12,9 +12,9 @@ from rich.console import Console
 from autograder.authoring.execution_plan import Planned, plan
 from autograder.authoring.execution_problems import Problem, problems_of, write_report
 from autograder.boxes.execution import CellType
-from autograder.boxes.scratch import HeldFolder
 from autograder.grading.running import engine
 from autograder.grading.running.progress import BatchProgress, plain_line
+from autograder.temporary_folders import HeldFolder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

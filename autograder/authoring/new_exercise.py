@@ -6,12 +6,12 @@ import importlib.util
 import re  # noqa: TID251  (not what a student handed in)
 import shutil
 import sys
-import tempfile
 import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import course, exercises
+from autograder.temporary_folders import HeldFolder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -67,8 +67,8 @@ def new_exercise(
     folder = _chapter(root, chapter) / lab
     _refuse_what_is_there(root, folder)
     types = [_interface_of(root, folder.parent, interface) for interface in interfaces]
-    with tempfile.TemporaryDirectory(prefix="new-exercise-") as scratch:
-        made = Path(scratch) / lab
+    with HeldFolder("autograder-new-") as scratch:
+        made = scratch.path / lab
         shutil.copytree(example, made, ignore=LEFT_OUT)
         _rename(made, f"{example.name}.{_exercise_of(example)}", exercise_id)
         written = [

@@ -9,8 +9,6 @@ from __future__ import annotations
 import os
 import secrets
 import subprocess
-import tempfile
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import course, exercises
@@ -18,10 +16,12 @@ from autograder.judge.serving.process import JudgeDied, JudgeProcess
 from autograder.masters.master_errors import MasterError
 from autograder.masters.solutions import reference_source
 from autograder.messages.checks import SOCKET_VARIABLE
+from autograder.temporary_folders import HeldFolder
 from environment.python_child import installed_program
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from pathlib import Path
 
 RUN_LIMIT = 600.0
 """Seconds of wall time in which one reference solution must have been seen; one may build a workspace twice."""
@@ -79,11 +79,11 @@ def recording(exercise_id: str) -> str:
     except (exercises.UnknownExercise, exercises.BrokenExercise) as error:
         raise CannotRecord(str(error)) from error
     text = program(exercise.id)
-    with tempfile.TemporaryDirectory(prefix="record-") as folder:
-        file = Path(folder) / "reference_solution.py"
+    with HeldFolder("autograder-record-") as folder:
+        file = folder.path / "reference_solution.py"
         file.write_text(text, encoding="utf-8")
         try:
-            with JudgeProcess(Path(folder) / "judge", seed=secrets.token_hex(8)) as judge:
+            with JudgeProcess(folder.path / "judge", seed=secrets.token_hex(8)) as judge:
                 judge.open(exercise.id, record=True)
                 output = _run(file, judge.socket_path)
                 report = judge.close_report()

@@ -31,8 +31,8 @@ from autograder.boxes.channel import Channel
 from autograder.boxes.entering import enter
 from autograder.boxes.environment import base_environment
 from autograder.boxes.limits import raise_own
-from autograder.boxes.scratch import HeldFolder
 from autograder.process_trees import end_soon
+from autograder.temporary_folders import HeldFolder
 from environment.python_child import python_child
 
 if TYPE_CHECKING:

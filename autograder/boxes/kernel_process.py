@@ -13,7 +13,6 @@ import importlib.util
 import os
 import random
 import sys
-import tempfile
 from typing import TYPE_CHECKING, Any
 
 import zmq
@@ -22,6 +21,7 @@ from traitlets.config import Config
 
 from autograder.boxes.fork_server import INTERFACES, RCLPY, preload, preload_ros
 from autograder.boxes.kernel import IOPUB, SHELL
+from autograder.temporary_folders import HeldFolder
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -81,7 +81,8 @@ def _rehearsed() -> list[str]:
 
 
 def _rehearse() -> None:
-    with tempfile.TemporaryDirectory() as folder:
+    with HeldFolder("autograder-rehearsal-") as held:
+        folder = str(held.path)
         os.environ["IPYTHONDIR"] = folder
         app = _kernel_app(b"rehearsal", f"{folder}/k", {})
         app.initialize([])

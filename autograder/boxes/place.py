@@ -17,7 +17,7 @@ from autograder.boxes.environment import box_environment, kernel_environment
 from autograder.boxes.guards import BoxGuard, NoGuard
 from autograder.boxes.mounts import HOME, WORK, Bind
 from autograder.boxes.sandbox import Enclosure
-from autograder.boxes.scratch import write_files
+from autograder.temporary_folders import write_files
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -28,7 +28,7 @@ from autograder.boxes.entering import Entrance
 from autograder.boxes.environment import box_environment
 from autograder.boxes.fork_server import BESIDE, SUPERVISOR_MODULE, ForkServer, library_folders
 from autograder.boxes.mounts import HOME, WORK, Bind, Link, box_arguments
-from autograder.boxes.scratch import HeldFolder, write_files
+from autograder.temporary_folders import HeldFolder, write_files
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -93,18 +93,18 @@ def check(
 
 @contextmanager
 def _box(command: Sequence[str]) -> Iterator[OneCommandBox]:
-    import tempfile
     from contextlib import closing
 
     from autograder.boxes.one_command import OneCommandBox
     from autograder.boxes.sandbox import why_impossible
+    from autograder.temporary_folders import HeldFolder
 
     why = why_impossible()
     if why:
         fail(f"no box is possible here: {why}")
-    with tempfile.TemporaryDirectory(prefix="box-") as scratch:
+    with HeldFolder("autograder-box-") as scratch:
         try:
-            box = OneCommandBox(Path(scratch), Path.cwd(), command)
+            box = OneCommandBox(scratch.path, Path.cwd(), command)
         except ValueError as error:
             fail(str(error))
         with closing(box):

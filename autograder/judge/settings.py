@@ -7,10 +7,13 @@ every 100 ms; no subject needs it.
 
 from __future__ import annotations
 
+import atexit
 import os
-import tempfile
 from pathlib import Path
 
+from autograder.temporary_folders import HeldFolder
+
+_LOG_FOLDER = "ROS_LOG_DIR"
 PROFILE = Path(__file__).with_name("fastdds_profile.xml")
 
 
@@ -48,7 +51,7 @@ def prepare_judge(*, boxed: bool = False) -> None:
     os.environ["FASTDDS_DEFAULT_PROFILES_FILE"] = str(PROFILE)
     os.environ["FASTRTPS_DEFAULT_PROFILES_FILE"] = str(PROFILE)
     os.environ.pop("RMW_IMPLEMENTATION", None)
-    os.environ.setdefault("ROS_LOG_DIR", log_folder())
+    provide_log_folder()
 
 
 def subject_environment(domain_id: int, *, boxed: bool = False) -> dict[str, str]:
@@ -64,11 +67,16 @@ def subject_environment(domain_id: int, *, boxed: bool = False) -> dict[str, str
     return environment
 
 
-def log_folder() -> str:
-    """A folder that is always writable; rclpy fails to start without one.
+def provide_log_folder() -> None:
+    """Name a folder for ROS's logs, for as long as this process lives; rclpy fails to start without one.
 
-    The error is "Failed opening file", raised by rcl_logging_spdlog.
+    The error is "Failed opening file", raised by rcl_logging_spdlog. Nothing is made if ``ROS_LOG_DIR`` names a folder.
     """
-    folder = Path(tempfile.gettempdir()) / f"autograder-ros-logs-{os.getuid()}"
-    folder.mkdir(mode=0o700, exist_ok=True)
-    return str(folder)
+    if not os.environ.get(_LOG_FOLDER):
+        folder, owner = HeldFolder("autograder-ros-logs-"), os.getpid()
+        os.environ[_LOG_FOLDER] = str(folder.path)
+
+        @atexit.register
+        def remove() -> None:
+            if os.getpid() == owner:  # and not in a fork, which ends as well
+                folder.remove()

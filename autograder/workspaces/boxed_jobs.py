@@ -6,7 +6,6 @@ import contextlib
 import os
 import shlex
 import shutil
-import tempfile
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -18,6 +17,7 @@ from autograder.boxes.guards import BoxGuard
 from autograder.boxes.limits import Limits
 from autograder.boxes.mounts import HOME, WORK
 from autograder.boxes.sandbox import Bind, Enclosure
+from autograder.temporary_folders import fresh_folder
 from autograder.workspaces import cache
 from autograder.workspaces.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES, Built
 from autograder.workspaces.plans import ros2
@@ -109,7 +109,7 @@ class BoxedJobs:
     ) -> tuple[Built, bool]:
         """The build, and whether it came to the end of its share of memory."""
         place = self.place(order.name, entry)
-        folder = Path(tempfile.mkdtemp(prefix="build-", dir=self._folder))
+        folder = fresh_folder("build-", self._folder)
         binds = [Bind(entry / "src", place / "src"), *_covers(order.hidden, folder)]
         environment = box_environment(order.variables)
         guard = BoxGuard(limits)

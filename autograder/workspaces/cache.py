@@ -14,7 +14,6 @@ import functools
 import os
 import shutil
 import stat
-import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,6 +21,7 @@ from typing import IO, TYPE_CHECKING
 
 import platformdirs
 
+from autograder.temporary_folders import fresh_folder
 from autograder.workspaces.artefacts import BLOCK
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ def _own(folder: Path) -> Path:
 def _in_place_of(folder: Path) -> Path:
     """A folder for this process alone, and for as long as it lives."""
     del folder
-    made, owner = Path(tempfile.mkdtemp(prefix="workspace-builds-")), os.getpid()
+    made, owner = fresh_folder("workspace-builds-"), os.getpid()
 
     @atexit.register
     def remove() -> None:

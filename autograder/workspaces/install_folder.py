@@ -9,11 +9,12 @@ from __future__ import annotations
 import os
 import shutil
 import sys
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import re2
+
+from autograder.temporary_folders import scratch_folder
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -167,8 +168,8 @@ def place(made: Build) -> Path:
         raise CannotPlace(f"{target} was built with --merge-install: delete it, and build again")
     try:
         target.mkdir(exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=".new-", dir=target) as fresh:
-            copied = Path(fresh) / "install"
+        with scratch_folder(target, ".new-") as fresh:
+            copied = fresh / "install"
             shutil.copytree(made.install, copied, symlinks=True, ignore=shutil.ignore_patterns("__pycache__"))
             rename_paths(copied, str(made.install), str(target))
             for entry in sorted(copied.iterdir()):

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import tempfile
 from typing import TYPE_CHECKING
 
+from autograder.temporary_folders import HeldFolder
 from autograder.workspaces.artefacts import pack
 from autograder.workspaces.install_folder import BESIDE, without_workspaces
 from autograder.workspaces.jobs import BUILD_SECONDS, MAX_LOG_BYTES, Built
@@ -76,12 +76,12 @@ class PlainProgram(OwnSession):
     def __init__(
         self, command: Sequence[str], environment: Mapping[str, str], cwd: Path, holds: Sequence[int] = ()
     ) -> None:
-        self._home = tempfile.TemporaryDirectory(prefix="job-", ignore_cleanup_errors=True)
-        folders = dict.fromkeys(("HOME", "TMPDIR", "ROS_LOG_DIR"), self._home.name)
+        self._home = HeldFolder("autograder-job-")
+        folders = dict.fromkeys(("HOME", "TMPDIR", "ROS_LOG_DIR"), str(self._home.path))
         super().__init__(command, {**environment, **folders}, cwd, holds)
 
     def end(self, polite: float = 0.0) -> None:
         """Kill it, and take its files away."""
         super().end(polite)
         self._output.close()
-        self._home.cleanup()
+        self._home.remove()

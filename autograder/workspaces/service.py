@@ -15,14 +15,13 @@ from __future__ import annotations
 import contextlib
 import shutil
 import socket
-import tempfile
 import threading
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, Lines, NotUnderstood, listen
+from autograder.temporary_folders import fresh_folder
 from autograder.workspaces.artefacts import pack
 from autograder.workspaces.builds import BuildTookTooLong
 from autograder.workspaces.colcon import look
@@ -33,6 +32,7 @@ from autograder.workspaces.sources import BadSources, receive
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
+    from pathlib import Path
 
     from autograder.workspaces.colcon import Build
     from autograder.workspaces.jobs import Jobs
@@ -72,7 +72,7 @@ class WorkspaceService:
     ) -> None:
         self._builds = GradedBuilds(builds, jobs)
         self._variables = variables
-        self._folder = Path(tempfile.mkdtemp(prefix="sources-", dir=folder))
+        self._folder = fresh_folder("sources-", folder)
         self._left = threading.Semaphore(MAX_BUILDS)
         self._conversations: set[Lines] = set()
         self._threads: list[threading.Thread] = []
@@ -119,7 +119,7 @@ class WorkspaceService:
             if self._closing.is_set():
                 lines.close()
                 return
-            folder = Path(tempfile.mkdtemp(prefix="c-", dir=self._folder))
+            folder = fresh_folder("c-", self._folder)
             try:
                 serve(lines, folder)
             except Hangup:

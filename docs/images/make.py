@@ -11,11 +11,11 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
+from autograder.temporary_folders import HeldFolder
 from environment.python_child import python_child
 from environment.system_packages import CHROMIUM_NAMES, find_program
 
@@ -34,18 +34,19 @@ PAGE = Path("feedback", "partly-right", "lab_1_2", "lab_1_2.html")
 
 def main() -> int:
     """Take the pictures, all or only those of a class; the exit code."""
-    with tempfile.TemporaryDirectory() as folder:
+    with HeldFolder("autograder-pictures-") as held:
+        folder = held.path
         taken: tuple[str, ...] = ()
         if sys.argv[1:] != ["class"]:
-            see_the_lab(Path(folder))
+            see_the_lab(folder)
             taken = TAKEN
-        taken += see_a_class(Path(folder))
-        missing = [name for name in taken if not (Path(folder) / name).exists()]
+        taken += see_a_class(folder)
+        missing = [name for name in taken if not (folder / name).exists()]
         if missing:
             print(f"no pictures: the browser tests must pass first {missing}", file=sys.stderr)
             return 1
         for name in taken:
-            picture = Path(folder) / name
+            picture = folder / name
             if picture.stat().st_size > LARGEST:
                 print(f"{name} is larger than {LARGEST} bytes: make the window smaller", file=sys.stderr)
                 return 1

@@ -20,8 +20,8 @@ from autograder.boxes.limits import Limits
 from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.boxes.runner import run_notebook
 from autograder.boxes.sandbox import why_impossible
-from autograder.boxes.scratch import scratch_folder
 from autograder.judge.serving import attached
+from autograder.temporary_folders import scratch_folder
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -20,8 +20,8 @@ from autograder.boxes.fork_server import Addresses
 from autograder.boxes.limits import Left, Limits, Patient, wall_time
 from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.boxes.runner import Unfinished, run_notebook
-from autograder.boxes.scratch import scratch_folder
 from autograder.boxes.zmtp import ZmtpConnection
+from autograder.temporary_folders import scratch_folder
 from autograder.verdict import State, Verdict
 
 CHECK = Check("lab.one", "One", points=10, worth=10, limit=2)

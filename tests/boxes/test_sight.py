@@ -22,7 +22,7 @@ from autograder.boxes.mounts import installation
 from autograder.boxes.place import BoxedPlace, JudgeSetting
 from autograder.boxes.runner import run_notebook
 from autograder.boxes.sandbox import Bind, Enclosure
-from autograder.boxes.scratch import scratch_folder
+from autograder.temporary_folders import scratch_folder
 from environment.place import Place
 
 if TYPE_CHECKING:

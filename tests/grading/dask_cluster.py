@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Self
 
 import psutil
 
-from autograder.boxes.scratch import remove_tree
+from autograder.temporary_folders import remove_tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -26,6 +26,7 @@ from autograder.grading.errors import (
     MasterUnusable,
     NotAClass,
 )
+from autograder.temporary_folders import fresh_folder
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -104,12 +105,11 @@ def test_what_a_killed_batch_left_goes_also_where_nothing_is_executed(
 ) -> None:
     tiny.submit("ada", 10, 10)
     tiny.grade()
-    left = ClassDirectory(tiny.path).scratch() / "batch" / "0" / "n1" / "lab_1_2.ipynb"
-    left.parent.mkdir(parents=True)
-    left.write_text("{}")
+    left = fresh_folder(ClassDirectory(tiny.path).scratch_prefix)
+    (left / "lab_1_2.ipynb").write_text("{}")
     report = tiny.grade()
     assert report.executed == 0
-    assert not ClassDirectory(tiny.path).scratch().exists()
+    assert not left.exists()
 
 
 def test_again_runs_everything(tiny: TinyClass, fake_engine: FakeEngine) -> None:

@@ -19,8 +19,6 @@ from nbgrader.converters import NbGraderException
 from rich.console import Console
 from test_nbgrader_and_ours import nbgrader_autograde
 
-from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.errors import ClassIncomplete
 from autograder.grading.rebuilding import submission
 from autograder.grading.rebuilding.submission import UnreadableSubmission, parse, read_bytes
 from autograder.grading.reporting.report_table import show
@@ -361,17 +359,6 @@ def test_the_largest_file_that_is_read_is_read_at_once() -> None:
     assert parse(notebook(f"[{printed}]"))[1] == 0, "what a cell has printed is one value"
     with pytest.raises(UnreadableSubmission, match="more than 3,000,000 values"):
         parse(notebook("[" + "[]," * ((submission.MAX_BYTES - 100) // 3) + "0]"))
-
-
-def test_a_scratch_folder_of_somebody_else_is_not_used(
-    tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("tempfile.gettempdir", lambda: str(tmp_path))
-    tiny.submit("ada")
-    scratch = ClassDirectory(tiny.path).scratch()
-    scratch.symlink_to(tmp_path / "class")
-    with pytest.raises(ClassIncomplete, match="is not your folder"):
-        tiny.grade()
 
 
 def test_a_folder_that_cannot_be_listed_is_named_to_whoever_grades_one_student(

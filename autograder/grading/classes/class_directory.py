@@ -5,12 +5,8 @@ from __future__ import annotations
 import contextlib
 import functools
 import hashlib
-import os
-import stat
-import tempfile
 import unicodedata
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 from zoneinfo import ZoneInfo
 
@@ -24,6 +20,7 @@ from autograder.regular_files import remove_unfinished
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
+    from pathlib import Path
 
     from nbformat import NotebookNode
     from traitlets.config import Config
@@ -246,22 +243,10 @@ class ClassDirectory:
                     remove_unfinished(self.path)
                 yield
 
-    def scratch(self) -> Path:
-        """A folder for what runs, outside of the class and with a short name (sockets live in it).
-
-        Raises:
-            ClassIncomplete: Somebody else has a folder of that name, who could then look into ours.
-        """
-        name = hashlib.sha256(str(self.path).encode()).hexdigest()[:8]
-        folder = Path(tempfile.gettempdir()) / f"autograder-{os.getuid()}-{name}"
-        with contextlib.suppress(FileNotFoundError):
-            status = folder.lstat()
-            if not stat.S_ISDIR(status.st_mode) or status.st_uid != os.getuid():
-                raise ClassIncomplete(
-                    f"{folder} is there already and is not your folder. Have it removed, or set TMPDIR to a "
-                    "folder of your own."
-                )
-        return folder
+    @property
+    def scratch_prefix(self) -> str:
+        """The beginning of the names of this class's temporary folders, short because sockets live in them."""
+        return f"autograder-{hashlib.sha256(str(self.path).encode()).hexdigest()[:8]}-"
 
 
 def refuse_students_folder(folder: Path) -> None:

@@ -6,10 +6,7 @@ A worker is given one task at a time and nothing beside it: no class, no secret,
 from __future__ import annotations
 
 import contextlib
-import os
-import tempfile
 import threading
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -18,6 +15,7 @@ from distributed import Worker, WorkerPlugin, get_worker
 from autograder.grading.cluster.messages import LARGEST_ANSWER, Order
 from autograder.grading.running.worker_process import WorkerProcess
 from autograder.grading.task import Task
+from autograder.temporary_folders import HeldFolder
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -46,6 +44,7 @@ class _Lanes:
         self._idle: dict[tuple[str, bool], list[WorkerProcess]] = {}
         self._at_work: dict[str, WorkerProcess] = {}
         self._made = 0
+        self._scratch: HeldFolder | None = None
         self._watched = False
 
     @contextlib.contextmanager
@@ -83,14 +82,17 @@ class _Lanes:
             ]
             self._at_work.clear()
             self._idle.clear()
+            scratch, self._scratch = self._scratch, None
         for process in processes:
             process.stop()
+        if scratch is not None:
+            scratch.remove()
 
     def _new(self, judge: str, boxed: bool) -> WorkerProcess:
         self._made += 1
-        # A short name: sockets are in there.
-        base = Path(tempfile.gettempdir()) / f"autograder-{os.getuid()}-{os.getpid()}"
-        return WorkerProcess(base / str(self._made), judge=judge, boxed=boxed)
+        if self._scratch is None:
+            self._scratch = HeldFolder("autograder-worker-")
+        return WorkerProcess(self._scratch.path / str(self._made), judge=judge, boxed=boxed)
 
 
 _processes = _Lanes()

@@ -6,7 +6,6 @@ import contextlib
 import queue
 import socket
 import sys
-import tempfile
 import threading
 from typing import TYPE_CHECKING, Self
 
@@ -15,6 +14,7 @@ import msgspec
 from autograder.grading.cluster.messages import Broken, Command, News
 from autograder.messages.lines import Hangup, Lines
 from autograder.process_trees import end_soon
+from autograder.temporary_folders import unnamed_file
 from environment.python_child import python_child
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ class Link:
         self._news: queue.SimpleQueue[News] = queue.SimpleQueue()
 
     def __enter__(self) -> Self:
-        self._log = tempfile.TemporaryFile()
+        self._log = unnamed_file()
         own, its_own = socket.socketpair()
         self._lines = Lines(own, sys.maxsize)
         # In the folder of this process: the settings of Dask may name certificates by relative paths.

@@ -7,7 +7,6 @@ import contextlib
 import logging
 import os
 import signal
-import tempfile
 from typing import TYPE_CHECKING
 
 import dask
@@ -19,6 +18,7 @@ from autograder.grading.cluster.messages import Offer
 from autograder.grading.cluster.pool import SchedulerGone
 from autograder.grading.errors import GradingError
 from autograder.grading.rebuilding.course_version import course_version
+from autograder.temporary_folders import HeldFolder
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -73,8 +73,8 @@ def start_worker(
         f"{'WITHOUT a sandbox' if offered.obstacle else 'in boxes'}, with course version {course_version()}."
     )
     logging.getLogger("distributed").setLevel(logging.ERROR)
-    with dask.config.set(_SETTINGS), tempfile.TemporaryDirectory(prefix="autograder-dask-") as folder:
-        asyncio.run(_work(address, name, offered.slots, folder, tell))
+    with dask.config.set(_SETTINGS), HeldFolder("autograder-dask-") as folder:
+        asyncio.run(_work(address, name, offered.slots, str(folder.path), tell))
 
 
 async def _work(address: str, name: str, slots: int, folder: str, tell: Callable[[str], None]) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from typing import TYPE_CHECKING
 
-from autograder.boxes.scratch import remove_tree
+from autograder.temporary_folders import HeldFolder, sweep
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator
@@ -17,20 +17,13 @@ if TYPE_CHECKING:
     Execute = Callable[[Iterable[Task], Callable[[Task], None]], Generator[Done, None, None]]
     """Tasks in the order in which they are begun, and what to call when one is; results as they are ready."""
 
-_BATCH = "batch"
-"""The folder of a class's batch among its temporary files."""
-
 
 def remove_leftovers(directory: ClassDirectory) -> None:
     """Remove what a killed batch has left among the temporary files, also where nothing is to be executed.
 
     To be called by whoever holds the class's lock: nobody else is at work in it.
     """
-    from autograder.grading.errors import ClassIncomplete
-
-    with contextlib.suppress(ClassIncomplete, OSError):
-        remove_tree(directory.scratch() / _BATCH)
-        directory.scratch().rmdir()
+    sweep(directory.scratch_prefix)
 
 
 @contextlib.contextmanager
@@ -51,10 +44,10 @@ def local(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[E
     sandboxing.require(directory)
 
     def execute(tasks: Iterable[Task], on_start: Callable[[Task], None]) -> Generator[Done, None, None]:
-        scratch = directory.scratch() / _BATCH
-        return engine.execute_all(tasks, scratch, jobs, on_start=on_start, judge=judge or JUDGE)
+        return engine.execute_all(tasks, scratch.path, jobs, on_start=on_start, judge=judge or JUDGE)
 
-    yield execute
+    with HeldFolder(directory.scratch_prefix) as scratch:
+        yield execute
 
 
 @contextlib.contextmanager

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import bisect
-import contextlib
 import operator
 import os
 import queue
@@ -15,7 +14,6 @@ from typing import TYPE_CHECKING
 import psutil
 
 from autograder.boxes.limits import Limits
-from autograder.boxes.scratch import remove_tree
 from autograder.grading.running.worker import JUDGE
 from autograder.grading.running.worker_process import GOODBYE_SECONDS, WorkerProcess
 from autograder.workspaces.boxed_jobs import BUILD_LIMITS
@@ -70,7 +68,7 @@ def execute_all(
 
     Args:
         tasks: In the order in which they are begun; each is asked for, from a thread, when there is a place for it.
-        scratch: Where submissions run; emptied at the end.
+        scratch: Where submissions run. The caller removes it.
         workers: How many run at once; as many as :func:`at_once` says where it is None.
         on_start: Called from a thread when a task is begun.
         judge: What makes a judge, as ``module:class``.
@@ -82,9 +80,6 @@ def execute_all(
         yield from crew.results()
     finally:
         crew.end()
-        with contextlib.suppress(OSError):
-            remove_tree(scratch)
-            scratch.parent.rmdir()
 
 
 class _Feed:

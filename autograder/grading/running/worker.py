@@ -28,7 +28,6 @@ from autograder.boxes.limits import raise_own
 from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.boxes.runner import Unfinished, run_notebook
 from autograder.boxes.sandbox import NoSandbox
-from autograder.boxes.scratch import scratch_folder
 from autograder.grading.returning.page_budget import too_costly
 from autograder.grading.running.workspace_service import arrange, served
 from autograder.grading.task import Task
@@ -39,6 +38,7 @@ from autograder.judge.settings import boxed_ros_environment, ros_environment
 from autograder.messages.checks import SOCKET_VARIABLE
 from autograder.messages.lines import Hangup, Lines
 from autograder.process_trees import adopt_orphans, end_descendants
+from autograder.temporary_folders import scratch_folder
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping, Sequence

@@ -10,7 +10,6 @@ from __future__ import annotations
 import atexit
 import os
 import socket
-import tempfile
 import threading
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -24,6 +23,7 @@ from autograder.grading.running.worker import JUDGE
 from autograder.judge.settings import boxed_ros_environment, ros_environment
 from autograder.messages.lines import Hangup, Lines, Silent, TooLong
 from autograder.process_trees import end_processes_in, end_soon
+from autograder.temporary_folders import unnamed_file
 from environment.python_child import python_child
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ class WorkerProcess:
         self._command = ("-m", "autograder.grading.running.worker", str(scratch), judge)
         self._boxed = boxed
         # What the worker prints goes to a file: a pipe that nobody reads would fill up. Lives with the worker.
-        self._log = tempfile.TemporaryFile()  # noqa: SIM115
+        self._log = unnamed_file()
         self._worker: subprocess.Popen[bytes] | None = None
         self._lines: Lines | None = None
         self._addresses: Addresses | None = None

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder import exercises
+from autograder.judge import settings
 from autograder.judge.serving.fork import Child
 from autograder.kit.runners import Launches
 from autograder.messages.orders import Report
@@ -75,6 +76,7 @@ def check_and_keep(
         verdict, checked = checked_here(exercise, command, chosen, cwd, box)
         return msgspec.json.encode(Report(verdict, evidence=_packed(checked)))
 
+    settings.provide_log_folder()  # here, because the child ends without tidying up
     outcome = Child(report, exercise.limit + FOR_BUILDS + SPARE).result()
     if outcome.data is None:
         advice = "Run `autograder doctor`."
@@ -115,8 +117,6 @@ def checked_here(
     exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None, box: Box | None = None
 ) -> tuple[Verdict, Checked | None]:
     """Judge a command in this very process, a fork made for it; no evidence where the judge itself had trouble."""
-    from autograder.judge import settings
-
     settings.prepare_judge(boxed=box is not None)
     if box is not None:
         box.enter()

@@ -11,12 +11,11 @@ import contextlib
 import os
 import secrets
 import subprocess
-import tempfile
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.messages.checks import SOCKET_VARIABLE, FromJudge
 from autograder.messages.lines import Hangup, Lines, NotUnderstood
+from autograder.temporary_folders import HeldFolder
 from environment.python_child import python_child
 
 if TYPE_CHECKING:
@@ -73,8 +72,8 @@ class OwnJudge:
     """The judge process of this kernel; it ends with the kernel, which holds its standard input."""
 
     def __init__(self) -> None:
-        self._folder = tempfile.TemporaryDirectory(prefix="judge-", ignore_cleanup_errors=True)
-        self._socket = Path(self._folder.name) / f"{secrets.token_hex(8)}.socket"
+        self._folder = HeldFolder("autograder-judge-")
+        self._socket = self._folder.path / f"{secrets.token_hex(8)}.socket"
         environment = {k: v for k, v in os.environ.items() if not k.startswith("RCUTILS_LOGGING")}
         judge = python_child("-m", "autograder.judge", "--socket", str(self._socket), environment=environment)
         self._process = judge.start(
@@ -115,7 +114,7 @@ class OwnJudge:
             self._process.wait(timeout=2.0)
         except subprocess.TimeoutExpired:
             self._process.kill()
-        self._folder.cleanup()
+        self._folder.remove()
 
 
 _own: OwnJudge | None = None

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import shutil
 import signal
 import subprocess
+import tempfile
 
 import pytest
 from click.testing import CliRunner
@@ -16,7 +18,7 @@ pytest.importorskip("distributed", reason="./course setup --with cluster install
 from typing import TYPE_CHECKING, Any
 
 from autograder.cli import cli
-from autograder.grading.cluster import pool, start_worker
+from autograder.grading.cluster import dask_worker, pool, start_worker
 from autograder.grading.cluster.connection import connected
 from autograder.grading.cluster.pool import SchedulerGone
 
@@ -127,3 +129,18 @@ def test_it_ends_when_the_scheduler_does() -> None:
         assert process.wait(timeout=180) == 0
         assert process.stdout
         assert "the scheduler at" in process.stdout.read()
+
+
+def test_its_folder_is_its_own_whatever_another_user_has_put_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    guessed = tmp_path / f"autograder-{os.getuid()}-{os.getpid()}"
+    guessed.mkdir(mode=0o777)
+    lanes = dask_worker._Lanes()
+    scratch = lanes._new("fake_judge:FakeJudge", boxed=False)._scratch
+    assert scratch.parent.parent == tmp_path
+    assert not scratch.is_relative_to(guessed)
+    assert scratch.parent.stat().st_mode & 0o777 == 0o700
+    lanes.stop()
+    assert list(tmp_path.iterdir()) == [guessed]

@@ -7,6 +7,7 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -30,7 +31,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
 def leftovers(tiny: TinyClass) -> list[psutil.Process]:
     """Workers of this class have its scratch folder in their command, and supervisors have mounted something there."""
-    scratch = str(ClassDirectory(tiny.path).scratch())
+    scratch = f"{tempfile.gettempdir()}/{ClassDirectory(tiny.path).scratch_prefix}"
     found = []
     for process in psutil.process_iter(["cmdline", "status"]):
         if process.info["status"] == psutil.STATUS_ZOMBIE:
@@ -57,7 +58,7 @@ def test_points_come_from_the_judge_and_nothing_is_left(tiny: TinyClass, with_fa
     assert tiny.scores("ben") == {TALKER: 0, LISTENER: 10}
     assert [row.diagnosis for row in report.rows if row.student == "ben"] == ["crashed", ""]
     assert leftovers(tiny) == []
-    assert not ClassDirectory(tiny.path).scratch().exists()
+    assert not list(Path(tempfile.gettempdir()).glob(f"{ClassDirectory(tiny.path).scratch_prefix}*"))
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.boxes.scratch import HeldFolder
+from autograder.temporary_folders import HeldFolder, UnsafeTemporaryFolder, fresh_folder
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 MAKER = """
 import sys, tempfile
 tempfile.tempdir = sys.argv[1]
-from autograder.boxes.scratch import HeldFolder
+from autograder.temporary_folders import HeldFolder
 folder = HeldFolder("held-")
 (folder.path / "socket").touch()
 print(folder.path, flush=True)
@@ -59,3 +59,28 @@ def test_what_is_no_folder_is_left_alone(temporary: Path) -> None:
     with HeldFolder("held-"):
         pass
     assert {path.name for path in temporary.iterdir()} == {"held-link", "held-file"}
+
+
+def test_its_name_cannot_be_guessed_and_only_its_maker_can_look_into_it(temporary: Path) -> None:
+    first, second = fresh_folder("held-"), fresh_folder("held-")
+    assert first.name.removeprefix("held-") != second.name.removeprefix("held-")
+    assert first.stat().st_mode & 0o777 == 0o700
+
+
+def test_where_every_user_can_replace_what_is_made_another_folder_is_taken(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    everybodys, session = tmp_path / "tmp", tmp_path / "session"
+    for folder, mode in ((everybodys, 0o777), (session, 0o700)):
+        folder.mkdir()
+        folder.chmod(mode)
+    monkeypatch.setattr(tempfile, "tempdir", str(everybodys))
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(session))
+    with HeldFolder("held-") as held:
+        assert held.path.parent == session
+    session.chmod(0o777)
+    with pytest.raises(UnsafeTemporaryFolder, match="set TMPDIR to a folder of your own"):
+        HeldFolder("held-")
+    everybodys.chmod(0o1777)
+    with HeldFolder("held-") as held:
+        assert held.path.parent == everybodys

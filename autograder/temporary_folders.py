@@ -1,4 +1,8 @@
-"""Folders that are gone afterwards, whatever was done in them, and also where their makers were killed."""
+"""Temporary folders and files: the one way to make them.
+
+The linter forbids ``tempfile`` everywhere else. On a machine with several users anyone may put anything at a path of
+``/tmp`` that can be guessed. So each name is drawn, and only the user who makes a folder can look into it.
+"""
 
 from __future__ import annotations
 
@@ -7,23 +11,59 @@ import fcntl
 import os
 import shutil
 import stat
-import tempfile
+import tempfile  # noqa: TID251  (here the folders are made)
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import IO, TYPE_CHECKING, Any, Self
+
+import platformdirs
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
+_NAME = "ros2-course"
+_OF_OTHERS = stat.S_IRWXG | stat.S_IRWXO
+
+
+class UnsafeTemporaryFolder(PermissionError):
+    """Other users could replace what is made in the folder of temporary files. The message says what to do."""
+
+
+def fresh_folder(prefix: str, parent: Path | None = None) -> Path:
+    """Make a folder that only this user can read, and return it; its maker removes it.
+
+    Args:
+        prefix: The beginning of the name. Keep it short if Unix sockets will lie in the folder.
+        parent: A folder of this user; the folder of temporary files if None.
+
+    Raises:
+        UnsafeTemporaryFolder: There is no safe place, or the folder does not belong to this user alone.
+    """
+    folder = Path(tempfile.mkdtemp(prefix=prefix, dir=parent or _base()))
+    if parent is not None:
+        return folder
+    found = folder.lstat()
+    if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid() or found.st_mode & _OF_OTHERS:
+        raise UnsafeTemporaryFolder(
+            f"{folder} was made just now and is not a folder of yours alone: set TMPDIR to a folder of your own"
+        )
+    return folder
+
+
+def unnamed_file() -> IO[bytes]:
+    """Open a temporary file without a name; it is gone when it is closed."""
+    return tempfile.TemporaryFile(dir=_base())
+
 
 @contextlib.contextmanager
-def scratch_folder(parent: Path) -> Iterator[Path]:
+def scratch_folder(parent: Path, prefix: str = "n") -> Iterator[Path]:
     """Make a folder in ``parent`` that only we can read, and remove it at the end.
 
     Args:
         parent: Made where it is not there. Keep it short: Unix sockets will have their names in it.
+        prefix: The beginning of the name.
     """
     parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-    folder = Path(tempfile.mkdtemp(prefix="n", dir=parent))
+    folder = fresh_folder(prefix, parent)
     try:
         yield folder
     finally:
@@ -62,16 +102,17 @@ class HeldFolder:
     the folder says whether its maker lives; the system gives it back when a process ends, in whatever way.
 
     Args:
-        prefix: How the names of all folders of this kind begin.
+        prefix: How the names of all folders of this kind begin. Folders of this user with such names are removed, so
+            no other program may have them.
 
     Attributes:
         path: Where it is.
     """
 
     def __init__(self, prefix: str) -> None:
-        _sweep(prefix)
+        sweep(prefix)
         while True:
-            self.path = Path(tempfile.mkdtemp(prefix=prefix))
+            self.path = fresh_folder(prefix)
             try:
                 self._lock = os.open(self.path, os.O_RDONLY | os.O_DIRECTORY)
             except FileNotFoundError:
@@ -96,10 +137,37 @@ class HeldFolder:
         self.remove()
 
 
-def _sweep(prefix: str) -> None:
-    for folder in Path(tempfile.gettempdir()).glob(f"{prefix}*"):
+def sweep(prefix: str) -> None:
+    """Remove the folders of a kind whose makers were killed."""
+    for folder in _base().glob(f"{prefix}*"):
         with contextlib.suppress(OSError), _locked(folder):
             remove_tree(folder)
+
+
+def _base() -> Path:
+    """Return the folder of temporary files; if other users could replace what is in it, one of this user alone.
+
+    Raises:
+        UnsafeTemporaryFolder: There is no such folder.
+    """
+    usual = Path(tempfile.gettempdir())
+    if _is_safe(usual):
+        return usual
+    session = os.environ.get("XDG_RUNTIME_DIR")
+    own = Path(session) if session else platformdirs.user_cache_path(_NAME)
+    with contextlib.suppress(OSError):
+        own.mkdir(mode=0o700, parents=True, exist_ok=True)
+        if _is_safe(own):
+            return own
+    raise UnsafeTemporaryFolder(
+        f"every user can replace what is made in {usual}: set TMPDIR to a folder of your own, "
+        f"or have the mode corrected: chmod 1777 {usual}"
+    )
+
+
+def _is_safe(folder: Path) -> bool:
+    mode = folder.stat().st_mode
+    return bool(mode & stat.S_ISVTX) or not mode & stat.S_IWOTH
 
 
 @contextlib.contextmanager
