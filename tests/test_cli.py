@@ -14,7 +14,9 @@ import pytest
 
 from autograder.authoring.answers import folder_of, named
 from autograder.boxes.sandbox import why_impossible
+from autograder.cli.students import show
 from autograder.kit.recipes.sent_texts import AT_PACE
+from autograder.verdict import not_checked
 from environment.python_child import SAFE_PATH, installed_program
 
 TALKER = folder_of("lab_1_2.talker")
@@ -177,3 +179,11 @@ def test_a_students_program_finds_the_modules_beside_it(tmp_path: Path) -> None:
     environ = os.environ | {SAFE_PATH: "1"}  # as ./course sets it
     done = subprocess.run([*command, str(tmp_path / "run.py")], env=environ, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_printed_json_has_no_character_that_a_terminal_obeys(capsys: pytest.CaptureFixture[str]) -> None:
+    said = "\x9b2J \u202eevil \U000e0041"
+    show(not_checked("lab_1_2.talker", "Talker", 10, said), as_json=True)
+    printed = capsys.readouterr().out.rstrip("\n")
+    assert printed.isprintable()
+    assert json.loads(printed)["diagnosis"]["text"] == said

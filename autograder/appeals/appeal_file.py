@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from autograder.cards.readable import printable_json
 from autograder.judge.verdicts.keeping import Kept, plain, restored
 
 if TYPE_CHECKING:
@@ -125,11 +126,7 @@ def _lines(value: Any, indent: str, before: str = "", after: str = "") -> Iterat
 
 
 def _json(value: Any) -> str:
-    """JSON on one line, in which what would move a cursor or turn a line around is escaped; it reads back the same."""
-    text = json.dumps(value, ensure_ascii=False)
-    return (
-        text if text.isprintable() else "".join(c if c.isprintable() else json.dumps(c)[1:-1] for c in text)
-    )
+    return printable_json(json.dumps(value, ensure_ascii=False))
 
 
 def _is_event(value: Any) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from autograder import exercises
+from autograder.cards.readable import printable_json
 from autograder.judge.verdicts import reference, trial
 from autograder.judge.verdicts.keeping import NoEvidence, evidence_of
 
@@ -110,4 +111,4 @@ def _key(verdict: Verdict) -> str:
 
 
 def _quoted(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False)
+    return printable_json(json.dumps(text, ensure_ascii=False))

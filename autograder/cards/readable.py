@@ -8,6 +8,7 @@ a Python programmer knows (``\x1b``), or cut in the middle with a mark.
 from __future__ import annotations
 
 import functools
+import json
 import unicodedata
 
 import re2
@@ -24,6 +25,15 @@ _NAMED_ESCAPES = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 def printable(text: str) -> str:
     """``text`` with whatever could forge a line or move the cursor shown as an escape; of any length."""
     return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
+
+
+def printable_json(text: str) -> str:
+    """Return JSON in which what would move a cursor or turn a line around is escaped; it reads back the same.
+
+    Args:
+        text: JSON on one line.
+    """
+    return "".join(c if c.isprintable() else json.dumps(c)[1:-1] for c in text)
 
 
 def one_line(text: str, limit: int, *, mark: str = "…") -> str:

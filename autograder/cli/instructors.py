@@ -8,7 +8,7 @@ from zoneinfo import ZoneInfo
 
 import click
 
-from autograder.cards.readable import printable
+from autograder.cards.readable import printable, printable_json
 from autograder.cli.ending import INTERRUPTED, fail, grading_errors
 from autograder.kit.in_words import counted
 
@@ -227,7 +227,7 @@ def grade(
     if as_json:
         from autograder.grading.reporting.report import report_json
 
-        click.echo(report_json(report))
+        click.echo(printable_json(report_json(report).decode()))
     else:
         from autograder.grading.reporting.report_table import show
 

@@ -127,9 +127,10 @@ def list_exercises() -> None:
 def show(verdict: Verdict, *, as_json: bool) -> None:
     """Print a verdict as a card or as JSON."""
     if as_json:
+        from autograder.cards.readable import printable_json
         from autograder.verdict import to_json
 
-        click.echo(to_json(verdict).decode())
+        click.echo(printable_json(to_json(verdict).decode()))
         return
     from autograder.cards.text import card_text
 

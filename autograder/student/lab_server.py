@@ -151,10 +151,12 @@ class OpenedNotebooks(AsyncLargeFileManager):
     async def get(self, path: str, *args: Any, **options: Any) -> dict[str, Any]:
         """The server's answer about a file or folder, with the file's content where that is asked for."""
         model: dict[str, Any] = await super().get(path, *args, **options)  # type: ignore[no-untyped-call]
-        content = model.get("content")
-        if model["type"] == "notebook" and content is not None:
-            language = content["metadata"].get("language_info", {})
-            if language.get("name") == "python":
+        # A notebook may be damaged, or of another program: then it is shown as it is.
+        match model:
+            case {
+                "type": "notebook",
+                "content": {"metadata": {"language_info": {"name": "python"} as language}},
+            }:
                 language["version"] = VERSION
         return model
 

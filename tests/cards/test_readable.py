@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import sys
 
 import pytest
 
-from autograder.cards.readable import _escaped, block, one_line, paragraph, width, wrap
+from autograder.cards.readable import _escaped, block, one_line, paragraph, printable_json, width, wrap
 
 
 @pytest.mark.parametrize(
@@ -83,3 +84,11 @@ def test_no_wrapped_line_is_wider_than_asked_for() -> None:
     lines = wrap(text, 9, "> ", "… ")
     assert max(map(width, lines)) == 9
     assert "".join("".join(line[2:] for line in lines).split()) == "".join(text.split())
+
+
+def test_printed_json_moves_no_cursor_and_reads_back_the_same() -> None:
+    said = "C1 \x9b2J, bidi \u202e, tag \U000e0041, separator \u2028, surrogate \ud800, Grüße, 你好"
+    printed = printable_json(json.dumps({"said": said}, ensure_ascii=False))
+    assert printed.isprintable()
+    assert "Grüße, 你好" in printed
+    assert json.loads(printed) == {"said": said}

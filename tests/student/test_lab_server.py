@@ -8,6 +8,7 @@ import shutil
 from pathlib import Path
 from typing import Any
 
+import pytest
 from ipykernel.ipkernel import IPythonKernel
 
 from autograder.student.lab_server import OpenedNotebooks
@@ -32,6 +33,16 @@ def test_the_version_of_another_computer_is_replaced(tmp_path: Path) -> None:
     assert (
         opened(tmp_path, "mine.ipynb")["content"]["metadata"]["language_info"] == IPythonKernel.language_info
     )
+
+
+@pytest.mark.parametrize("said", ["python", ["python"], 3, None, {"name": ["python"]}, {}])
+def test_what_a_damaged_notebook_says_of_its_language_is_left_to_jupyterlab(
+    tmp_path: Path, said: object
+) -> None:
+    notebook = json.loads(RELEASED.read_text())
+    notebook["metadata"]["language_info"] = said
+    (tmp_path / "odd.ipynb").write_text(json.dumps(notebook))
+    assert opened(tmp_path, "odd.ipynb")["content"]["metadata"]["language_info"] == said
 
 
 def test_what_is_no_notebook_of_python_stays_as_it_is(tmp_path: Path) -> None:
