@@ -187,3 +187,21 @@ def test_printed_json_has_no_character_that_a_terminal_obeys(capsys: pytest.Capt
     printed = capsys.readouterr().out.rstrip("\n")
     assert printed.isprintable()
     assert json.loads(printed)["diagnosis"]["text"] == said
+
+
+PROFILE = """\
+<dds xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles"><profiles>
+<participant profile_name="other" is_default_profile="true"><rtps>
+<builtin><discovery_config><discoveryProtocol>CLIENT</discoveryProtocol></discovery_config></builtin>
+<useBuiltinTransports>false</useBuiltinTransports>
+</rtps></participant></profiles></dds>
+"""
+
+
+@pytest.mark.ros
+def test_a_profile_of_the_middleware_in_the_current_folder_is_not_the_judges(tmp_path: Path) -> None:
+    (tmp_path / "DEFAULT_FASTRTPS_PROFILES.xml").write_text(PROFILE)
+    program = f"cd / && exec python3 '{TALKER / 'right' / 'usual.py'}'"
+    command = (str(installed_program("autograder")), "check", "lab_1_2.talker", "--", "sh", "-c", program)
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr

@@ -129,7 +129,8 @@ def write_report(folder: Path, planned: Planned, execution: Execution, found: Se
     exporter = HTMLExporter(extra_template_basedirs=[])
     exporter.anchor_link_text = ""
     page, _ = exporter.from_notebook_node(
-        _with_outputs(planned, execution, found), {"metadata": {"name": planned.label}}
+        _with_outputs(planned, execution, found),
+        {"metadata": {"name": planned.label}, "config_dir": str(folder)},
     )
     path.write_text(page, encoding="utf-8")
     return path

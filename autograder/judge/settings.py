@@ -15,6 +15,13 @@ from autograder.temporary_folders import HeldFolder
 
 _LOG_FOLDER = "ROS_LOG_DIR"
 PROFILE = Path(__file__).with_name("fastdds_profile.xml")
+OF_THE_JUDGE = {
+    "FASTDDS_DEFAULT_PROFILES_FILE": str(PROFILE),
+    "FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILE),
+    # Otherwise Fast DDS also obeys a DEFAULT_FASTRTPS_PROFILES.xml in the current folder.
+    "SKIP_DEFAULT_XML_FILE": "1",
+}
+"""Variables of a judge's process that a subject must not have."""
 
 
 def ros_environment() -> dict[str, str]:
@@ -48,17 +55,14 @@ def prepare_judge(*, boxed: bool = False) -> None:
         boxed: On a network with nobody on it but its subject.
     """
     os.environ.update(boxed_ros_environment() if boxed else ros_environment())
-    os.environ["FASTDDS_DEFAULT_PROFILES_FILE"] = str(PROFILE)
-    os.environ["FASTRTPS_DEFAULT_PROFILES_FILE"] = str(PROFILE)
+    os.environ.update(OF_THE_JUDGE)
     os.environ.pop("RMW_IMPLEMENTATION", None)
     provide_log_folder()
 
 
 def subject_environment(domain_id: int, *, boxed: bool = False) -> dict[str, str]:
     """The environment of a command that is a subject: the user's own, on the check's domain."""
-    environment = dict(os.environ)
-    for name in ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE"):
-        environment.pop(name, None)
+    environment = {name: value for name, value in os.environ.items() if name not in OF_THE_JUDGE}
     environment.update(boxed_ros_environment() if boxed else ros_environment())
     environment["ROS_DOMAIN_ID"] = str(domain_id)
     environment["PYTHONUNBUFFERED"] = "1"

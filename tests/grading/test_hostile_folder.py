@@ -60,6 +60,9 @@ class Hostile:
             (self.path / name).mkdir()
             (self.path / name / "conf.json").write_text(json.dumps({"preprocessors": {"x": runs}}))
 
+        (self.path / "custom").mkdir()
+        (self.path / "custom/custom.css").write_text(".mallory { color: red }")
+
     def marks(self) -> str:
         return self._marks.read_text() if self._marks.exists() else ""
 
@@ -126,7 +129,7 @@ def test_nothing_of_the_current_folder_runs_while_a_class_is_graded(
     (tiny.path / "students.csv").write_text("id\nada\nben\n")
     graded = typed(course, hostile, "grade", str(tiny.path))
     assert "ada" in graded.stdout, graded.stderr
-    assert (tiny.path / "feedback/ada/lab_1_2/lab_1_2.html").is_file(), graded.stdout + graded.stderr
+    assert "mallory" not in (tiny.path / "feedback/ada/lab_1_2/lab_1_2.html").read_text()
     more = shutil.copytree(tiny.path / "submitted/ada/lab_1_2", tiny.path / "download/ben")
     for command, *words in (["collect", str(more)], ["report"], ["similar"], ["export", "--to", "csv"]):
         done = typed(course, hostile, command, str(tiny.path), *words)

@@ -140,7 +140,8 @@ class PageExporter(HTMLExporter):
         """The resources that nbconvert hands to a template: the same for all, so made for an empty notebook."""
         initialise: Any = self._init_resources
         names = {"notebook": "", "score": 0.0, "max_score": 0.0, "late_penalty": 0.0}
-        resources: dict[str, Any] = initialise({"nbgrader": names})
+        # Below it nbconvert looks for custom/custom.css; without it, below the current folder.
+        resources: dict[str, Any] = initialise({"nbgrader": names, "config_dir": str(_OURS)})
         shown: Any = WidgetsDataTypeFilter(notebook_metadata={}, parent=self, resources=resources)
         self._set_filter("filter_data_type", shown)
         convert: Any = TemplateExporter.from_notebook_node  # HTMLExporter's would parse the page anew

@@ -48,12 +48,10 @@ def environment(*, boxed: bool) -> dict[str, str]:
 
     The folder of the logs is not among them: it is in the box.
     """
-    profile = str(settings.PROFILE)
     return {
         **course.variables(),
         **(settings.boxed_ros_environment() if boxed else settings.ros_environment()),
-        "FASTDDS_DEFAULT_PROFILES_FILE": profile,
-        "FASTRTPS_DEFAULT_PROFILES_FILE": profile,
+        **settings.OF_THE_JUDGE,
     }
 
 
