@@ -23,6 +23,8 @@ INTERPRETER = sys.executable  # noqa: TID251  (here it is made into a command li
 """The path of this Python. To start it, use :func:`python_child`."""
 SAFE_PATH = "PYTHONSAFEPATH"
 """Has the effect of ``-P``, and every Python below inherits it, so it must not reach a student's program."""
+TYPED_PYTHONPATH = "COURSE_PYTHONPATH"
+"""The variable with the terminal's ``PYTHONPATH``, for a student's program: ``./course`` drops relative folders."""
 _SEARCH_PATHS = ("PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH")
 _OF_PYTHON = "PYTHON"
 _KEPT_OF_PYTHON = {

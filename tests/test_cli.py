@@ -17,7 +17,7 @@ from autograder.boxes.sandbox import why_impossible
 from autograder.cli.students import show
 from autograder.kit.recipes.sent_texts import AT_PACE
 from autograder.verdict import not_checked
-from environment.python_child import SAFE_PATH, installed_program
+from environment.python_child import SAFE_PATH, TYPED_PYTHONPATH, installed_program
 
 TALKER = folder_of("lab_1_2.talker")
 LISTENER = folder_of("lab_1_2.listener")
@@ -174,10 +174,12 @@ def test_a_judge_that_cannot_judge_ends_with_2_and_accuses_nobody(
 @pytest.mark.ros
 def test_a_students_program_finds_the_modules_beside_it(tmp_path: Path) -> None:
     shutil.copy(TALKER / "right" / "text_as_it_stands.py", tmp_path / "my_talker.py")
-    (tmp_path / "run.py").write_text("from my_talker import main\n\nmain()\n")
+    (tmp_path / "tools").mkdir()
+    (tmp_path / "tools" / "of_mine.py").touch()
+    (tmp_path / "run.py").write_text("import of_mine\nfrom my_talker import main\n\nmain()\n")
     command = (str(installed_program("autograder")), "check", "lab_1_2.talker", "--", "python3")
-    environ = os.environ | {SAFE_PATH: "1"}  # as ./course sets it
-    done = subprocess.run([*command, str(tmp_path / "run.py")], env=environ, capture_output=True, text=True)
+    environ = os.environ | {SAFE_PATH: "1", TYPED_PYTHONPATH: "tools"}  # as ./course sets them
+    done = subprocess.run([*command, "run.py"], cwd=tmp_path, env=environ, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
 
 

@@ -12,6 +12,7 @@ import os
 from pathlib import Path
 
 from autograder.temporary_folders import HeldFolder
+from environment.python_child import TYPED_PYTHONPATH
 
 _LOG_FOLDER = "ROS_LOG_DIR"
 PROFILE = Path(__file__).with_name("fastdds_profile.xml")
@@ -63,6 +64,8 @@ def prepare_judge(*, boxed: bool = False) -> None:
 def subject_environment(domain_id: int, *, boxed: bool = False) -> dict[str, str]:
     """The environment of a command that is a subject: the user's own, on the check's domain."""
     environment = {name: value for name, value in os.environ.items() if name not in OF_THE_JUDGE}
+    if typed := environment.pop(TYPED_PYTHONPATH, ""):
+        environment["PYTHONPATH"] = os.pathsep.join(filter(None, (typed, environment.get("PYTHONPATH"))))
     environment.update(boxed_ros_environment() if boxed else ros_environment())
     environment["ROS_DOMAIN_ID"] = str(domain_id)
     environment["PYTHONUNBUFFERED"] = "1"

@@ -242,12 +242,14 @@ def test_a_named_python_that_is_none_is_an_error_and_no_other_is_taken(course: C
 
 def test_what_it_starts_finds_no_code_and_no_program_in_the_current_folder(course: Course) -> None:
     program = course.root / ".venv/bin/autograder"
-    program.write_text('#!/bin/sh\necho "$PYTHONSAFEPATH|$PATH|${PYTHONPATH:-}|${LD_LIBRARY_PATH:-}"\n')
+    program.write_text(
+        '#!/bin/sh\necho "$PYTHONSAFEPATH|$PATH|${PYTHONPATH:-}|${LD_LIBRARY_PATH:-}"\necho "$COURSE_PYTHONPATH"\n'
+    )
     program.chmod(0o755)
     done = course.run(
         "grade", PATH=f".:{os.environ['PATH']}:", PYTHONPATH=":/opt/ros/a b:tools", LD_LIBRARY_PATH="."
     )
-    assert done.stdout == f"1|{os.environ['PATH']}|/opt/ros/a b|\n", done.stderr
+    assert done.stdout == f"1|{os.environ['PATH']}|/opt/ros/a b|\n:/opt/ros/a b:tools\n", done.stderr
 
 
 def test_the_set_up_and_the_tests_run_as_if_typed_without_it(course: Course) -> None:
