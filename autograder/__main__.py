@@ -15,8 +15,8 @@ TERMINATED = 143
 
 def main() -> None:
     """Run the command line; a closed pipe, Ctrl-C and SIGTERM end it quietly, with all that it has started."""
-    # Python has read it at the start of this process. A student's program that this one starts imports what is beside
-    # it, as Python always does.
+    # This process has obeyed the variable when it started. A student's program below must not inherit the variable: the
+    # program imports modules from its own folder, as Python always does.
     os.environ.pop(SAFE_PATH, None)
     from autograder.cli import cli
 

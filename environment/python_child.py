@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 INTERPRETER = sys.executable  # noqa: TID251  (here it is made into a command line)
 """The path of this Python. To start it, use :func:`python_child`."""
 SAFE_PATH = "PYTHONSAFEPATH"
-"""Has the effect of ``-P``, and every Python below inherits it, so it must not reach a student's program."""
+"""The variable that has the effect of ``-P``. Every Python below inherits it: it must not reach a student's program."""
 TYPED_PYTHONPATH = "COURSE_PYTHONPATH"
 """The variable with the terminal's ``PYTHONPATH``, for a student's program: ``./course`` drops relative folders."""
 _SEARCH_PATHS = ("PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH")
@@ -38,8 +38,7 @@ _KEPT_OF_PYTHON = {
     "PYTHONUNBUFFERED",
     "PYTHONUTF8",
 }
-"""They decide how a process reads, writes and prints. The other variables of Python name code that it runs or files
-that it reads."""
+"""These decide how a process reads, writes and prints. Python's other variables name code to run or files to read."""
 
 
 @dataclass(frozen=True)

@@ -89,7 +89,7 @@ raise RuntimeError(f"it sees {{found}}")
     done = _boxed(tmp_path, "python3", "talker.py", SECRET="1")
     assert done.returncode == 1
     assert "it sees [False, False, None, ['lo'], False, ['talker.py']]" in done.stdout
-    assert not list(Path(tempfile.gettempdir()).glob("box-*/scratch"))
+    assert not list(Path(tempfile.gettempdir()).glob("autograder-box-*/scratch"))
 
 
 @NO_BOX

@@ -75,9 +75,9 @@ def subject_environment(domain_id: int, *, boxed: bool = False) -> dict[str, str
 
 
 def provide_log_folder() -> None:
-    """Name a folder for ROS's logs, for as long as this process lives; rclpy fails to start without one.
+    """Make a folder for ROS's logs, unless ``ROS_LOG_DIR`` names one; it goes when this process ends.
 
-    The error is "Failed opening file", raised by rcl_logging_spdlog. Nothing is made if ``ROS_LOG_DIR`` names a folder.
+    Without a folder rclpy fails to start, with "Failed opening file" from rcl_logging_spdlog.
     """
     if not os.environ.get(_LOG_FOLDER):
         folder, owner = HeldFolder("autograder-ros-logs-"), os.getpid()
