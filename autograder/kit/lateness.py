@@ -10,12 +10,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from autograder.kit.giving_up import LATENESS, spared
+from autograder.kit.model import mistake
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from autograder.kit.evidence import Event, Part
-    from autograder.kit.model import Bench
+    from autograder.kit.evidence import Event, Evidence, Part
+    from autograder.kit.model import Bench, Mistake
 
 SOON = 0.3
 """Seconds that a server comes late after a client that has missed it by a moment."""
@@ -38,9 +39,41 @@ def answers_late(bench: Bench) -> float:
     return ANSWERS_SOON if bench.in_a_cell else ANSWERS_LATE
 
 
+def called_nobody(part: Part) -> bool:
+    """True if the last call was made before the server existed: ROS delivers such a request to no server.
+
+    Only a notebook tells of its calls. The judge compares them with the start of its own server, so the answer is the
+    same on a busy machine.
+    """
+    calls, serving = part.of("called"), part.first("serving")
+    return bool(calls) and serving is not None and calls[-1].t < serving.t
+
+
+def called_too_early(called: str, wait: str) -> Mistake:
+    """The mistake of a client that calls without waiting for its server.
+
+    Args:
+        called: What the client did, in words.
+        wait: The method that waits for the server.
+    """
+
+    def found(evidence: Evidence) -> bool:
+        return any(map(called_nobody, evidence.parts))
+
+    return mistake(
+        "called_too_early",
+        found,
+        f"Your client {called} before the server was there. Such a request is lost: a server that starts later never "
+        "gets it.",
+        f"Wait for the server before you call: `if not your_client.{wait}(timeout_sec=5.0):` say so and end. "
+        "Without its parentheses it waits for nothing.",
+        certain=True,
+    )
+
+
 def was_patient(part: Part) -> bool:
-    """True if a client that ended had waited as long as anybody may ask, from its first sign of life to its last."""
-    return _waited_since(part, part.first("interface"), PATIENT)
+    """True if a client that ended had waited for its server for :data:`PATIENT` seconds or longer."""
+    return not called_nobody(part) and _waited_since(part, part.first("interface"), PATIENT)
 
 
 def was_patient_with_an_answer(part: Part, requests: Sequence[str]) -> bool:

@@ -89,7 +89,7 @@ class Spared(_RunMessage, frozen=True):
 
 
 class Called(_RunMessage, frozen=True):
-    """The subject has called a service."""
+    """The subject has called a service, or has sent a goal."""
 
 
 class Willing(_RunMessage, frozen=True):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 import pytest
@@ -25,6 +26,8 @@ from autograder.kit.lateness import (
 if TYPE_CHECKING:
     from autograder.kit.model import Bench
 
+CALLED = Event(0.5, "called", "a server")
+SERVING = Event(0.6, "serving", "/fibonacci")
 SEEN = Event(0.4, "interface", "graph", {"nodes": ["/client"]})
 
 
@@ -47,6 +50,9 @@ def said(t: float) -> Event:
         ([SEEN, Event(0.5, "spared", "a wait for a server", {"seconds": 0.01}), ended(0.6)], False),
         ([ended(9.0)], False),
         ([SEEN], False),
+        ([SEEN, CALLED, SERVING, ended(0.4 + 2 * PATIENT)], False),
+        ([SEEN, CALLED, SERVING, replace(CALLED, t=3.0), ended(0.4 + 3 * PATIENT)], True),
+        ([SEEN, SERVING, replace(CALLED, t=0.7), ended(0.4 + 2 * PATIENT)], True),
     ],
 )
 def test_patience_is_counted_from_the_first_sign_of_life_to_the_last_word(

@@ -274,7 +274,7 @@ class TestBench:
 
     def serve(self, service: str, type_name: str, answer: Answer, *, hold: int = 0) -> RecordedServer:
         """Serve until the part ends; the answer to the request of the number ``hold`` waits for its release."""
-        self._take_in_who_is_there()
+        self._get_ready_to_serve(service)
         server = RecordedServer(self.wire, self._recorder, service, type_name, answer, hold=hold)
         self._open.callback(server.close)
         self._announce(server.services)
@@ -298,7 +298,7 @@ class TestBench:
 
     def serve_action(self, action: str, type_name: str, **how: Any) -> ScriptedActionServer:
         """Serve an action whose every step the scenario decides, until the part ends."""
-        self._take_in_who_is_there()
+        self._get_ready_to_serve(action)
         server = ScriptedActionServer(
             self.wire, self._recorder, action, type_name, client_is_gone=lambda: self._subject.ended, **how
         )
@@ -306,9 +306,10 @@ class TestBench:
         self._announce(server.services)
         return server
 
-    def _take_in_who_is_there(self) -> None:
-        """Before a server can be met: a request of a client that the judge does not know yet would be dropped."""
+    def _get_ready_to_serve(self, name: str) -> None:
+        """Learn of the clients that exist, since a request of an unknown client would be dropped; record the moment."""
         self._recorder.take_in()
+        self._recorder.record("serving", name)
 
     def _announce(self, services: Iterable[str]) -> None:
         # The judge's own participant, too, may still see what was taken away.

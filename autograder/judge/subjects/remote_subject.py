@@ -201,7 +201,7 @@ class RemoteSubject:
             case checks.Spared(seconds=seconds):
                 record("spared", "a wait for a server", seconds=_bounded(seconds))
             case checks.Called():
-                record("called", "a service")
+                record("called", "a server")
             case checks.Willing(seconds=seconds, call=call):
                 record("willing", "to wait for an answer", seconds=_bounded(seconds), call=call)
             case checks.Looked():

@@ -21,6 +21,8 @@ from autograder.kit.lateness import (
     ANSWERS_SOON,
     SOON,
     again_while,
+    called_nobody,
+    called_too_early,
     hold_back,
     meets_late_action,
     meets_present,
@@ -60,7 +62,7 @@ AFTERMATH = 1.0
 
 def scenario(bench: Bench) -> None:
     """Four runs: a goal that succeeds at a late server, then one refused, one aborted, no server, in any order."""
-    if late(bench):
+    if late(bench) and not called_nobody(bench.seen()):
         known = bool(bench.seen().of("goal"))
         for run in bench.random.sample((refused, aborted, unserved), 3):
             run(bench, known)
@@ -278,6 +280,7 @@ class ActionClient(SeenAsItIs):
         self.ladder = (
             goals.WAITS_THE_WRONG_WAY_ROUND,
             *map(_not_by_refusal, common.CRASHES),
+            called_too_early("sent its goal", "wait_for_server"),
             common.endpoint_name("action_client"),
             common.message_type("action_client"),
             *map(_not_by_refusal, OTHER_SLIPS),

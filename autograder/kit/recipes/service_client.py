@@ -22,7 +22,14 @@ from autograder.kit.crashes import OTHER_SLIPS
 from autograder.kit.draft import OWN, OWN_LATE, Judge
 from autograder.kit.giving_up import GIVE_UP_LIMIT, drawn_patience
 from autograder.kit.hangs import HANGS
-from autograder.kit.lateness import again_while, meets_late, meets_present, was_patient_with_an_answer
+from autograder.kit.lateness import (
+    again_while,
+    called_nobody,
+    called_too_early,
+    meets_late,
+    meets_present,
+    was_patient_with_an_answer,
+)
 from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
 from autograder.kit.service_calls import (
     ABSENT,
@@ -84,7 +91,7 @@ def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls:
         calls: How many calls a subject that has done its work has made.
     """
     late, *others = runs
-    if not called(bench, late, calls):
+    if not called(bench, late, calls) or called_nobody(bench.seen()):
         return
     known = bool(requests(bench.seen()))
     order: list[Run | None] = [*others, None]
@@ -308,6 +315,7 @@ class Calls:
         return (
             service_mistakes.WAITS_THE_WRONG_WAY_ROUND,
             *common.CRASHES,
+            called_too_early("called the service", "wait_for_service"),
             common.endpoint_name("client"),
             common.message_type("client"),
             *OTHER_SLIPS,

@@ -53,6 +53,7 @@ _PLACES = (
     (Client, "call_async"),
     (Client, "call"),
     (rclpy, "spin_until_future_complete"),
+    (ActionClient, "send_goal_async"),
 )
 """Functions that are replaced, and put back."""
 _CLOCKS = (
@@ -148,10 +149,17 @@ class ShorterWaits:
                 self._tell_patience(timeout_sec, self._calls)
             usual["spin_until_future_complete"](node, future, executor, timeout_sec)
 
+        def send_goal_async(client: Any, *arguments: Any, **options: Any) -> Any:
+            if self._is_subject():
+                self._tell(Called)
+            return usual["send_goal_async"](client, *arguments, **options)
+
         _seem_to_be_in(rclpy.client, wait_for_service, call_async, call)
-        _seem_to_be_in(rclpy.action.client, wait_for_server)
+        _seem_to_be_in(rclpy.action.client, wait_for_server, send_goal_async)
         _seem_to_be_in(rclpy, spin_until_future_complete)
-        new = (sleep, wait_for_service, wait_for_server, call_async, call, spin_until_future_complete)
+        new = (
+            sleep, wait_for_service, wait_for_server, call_async, call, spin_until_future_complete, send_goal_async
+        )  # fmt: skip
         for (owner, name), function in zip(_PLACES, new, strict=True):
             setattr(owner, name, function)
         self._watch_clocks()

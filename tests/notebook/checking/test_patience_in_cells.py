@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 import rclpy
+from my_robot_interfaces.action import Fibonacci
 from my_robot_interfaces.srv import AddTwoInts
+from rclpy.action import ActionClient
 from rclpy.executors import SingleThreadedExecutor
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
@@ -192,3 +194,50 @@ def test_who_waits_by_another_limit_is_wrong(function: Any, diagnosis: str) -> N
         verdict = checked("lab_1_3.client", function)
     assert verdict.diagnosis is not None
     assert verdict.diagnosis.key == diagnosis
+
+
+def asks_again(a: int, b: int, patience_sec: float = 5.0) -> int:
+    """A client that waits for no service: it sends its request again until there is an answer."""
+    node = rclpy.create_node("adder")
+    try:
+        client = node.create_client(AddTwoInts, "add_two_ints")
+        for _ in range(int(2 * patience_sec)):
+            future = client.call_async(AddTwoInts.Request(a=a, b=b))
+            rclpy.spin_until_future_complete(node, future, timeout_sec=0.5)
+            if future.done():
+                node.get_logger().info(f"the sum is {future.result().sum}")
+                return future.result().sum
+        raise TimeoutError("no answer")
+    finally:
+        node.destroy_node()
+
+
+def sends_a_goal_at_once(order: int, patience_sec: float = 5.0) -> None:
+    node = rclpy.create_node("fibonacci_client")
+    try:
+        future = ActionClient(node, Fibonacci, "fibonacci").send_goal_async(Fibonacci.Goal(order=order))
+        rclpy.spin_until_future_complete(node, future, timeout_sec=patience_sec)
+        if not future.done():
+            raise TimeoutError("no answer")
+    finally:
+        node.destroy_node()
+
+
+@pytest.mark.parametrize(
+    ("exercise", "function"),
+    [("lab_1_3.client", adder(lambda *_: True)), ("lab_1_4.client", sends_a_goal_at_once)],
+)
+def test_a_call_before_the_server_is_there_is_told_after_one_run(exercise: str, function: Any) -> None:
+    with a_judge() as checked:
+        verdict = checked(exercise, function)
+    assert verdict.diagnosis is not None
+    assert verdict.diagnosis.key == "called_too_early"
+    assert {moment.part for moment in verdict.timeline} == {""}
+
+
+def test_a_client_that_asks_again_finds_the_late_service() -> None:
+    with a_judge() as checked:
+        verdict = checked("lab_1_3.client", asks_again)
+    found = {criterion.name: criterion.passed for criterion in verdict.criteria}
+    assert found["late"]
+    assert found["sum"]
