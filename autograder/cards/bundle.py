@@ -39,16 +39,18 @@ def mimebundle(verdict: Verdict, **choices: Unpack[Choices]) -> dict[str, str]:
     return {"text/html": html, "text/plain": text}
 
 
-def waiting_bundle(title: str, doing: str) -> dict[str, str]:
-    """The placeholder for a card that is not there yet.
+def waiting_bundle(title: str, doing: str, *, over: bool = False) -> dict[str, str]:
+    """The placeholder for a card without a result.
 
     Args:
         title: The exercise.
-        doing: What goes on.
+        doing: What goes on, or why there is no result.
+        over: Whether the check has ended. JupyterLab ends the card of any other one when its kernel ends.
     """
     css, template = _templates()
     waiting = template.environment.get_template("waiting.html.j2")
-    html = waiting.render(title=one_line(title, 160), doing=one_line(doing, 160), css=css)
+    title, doing = one_line(title, 160), one_line(doing, 600)
+    html = waiting.render(title=title, doing=doing, over=over, css=css)
     return {"text/html": html, "text/plain": f"{title}: {doing}"}
 
 

@@ -224,6 +224,16 @@ class Stop(Message, frozen=True):
     run: int
 
 
+class SoFar(Message, frozen=True, tag="so_far"):
+    """The check goes on, and this is known already; a later look may show that it is not so.
+
+    Attributes:
+        words: A sentence for the student; empty where nothing is known.
+    """
+
+    words: str
+
+
 class Judged(Message, frozen=True, tag="verdict"):
     """The last message: the check is over.
 
@@ -241,4 +251,4 @@ class Refused(Message, frozen=True):
     why: str
 
 
-FromJudge = Begin | Collect | Meet | Start | Release | Interrupt | Stack | Stop | Judged | Refused
+FromJudge = Begin | Collect | Meet | Start | Release | Interrupt | Stack | Stop | SoFar | Judged | Refused

@@ -65,6 +65,7 @@ class TestBench:
         pace: Pace,
         random: Random,
         before: Evidence | None = None,
+        hurry: Callable[[], None] = lambda: None,
     ) -> None:
         self.pace = pace
         self.random = random
@@ -76,7 +77,7 @@ class TestBench:
         self.before = before
         self._subject = subject
         self._domain_id = domain_id
-        self._recorder = Recorder()
+        self._recorder = Recorder(hurry)
         self._wire: Wire | None = None
         self._decoys: DecoyNodes | None = None
         # Nobody can tell one run from the next by its process where all are in the notebook's.

@@ -38,7 +38,13 @@ class Recorder:
         take_in: Waits until all that was sent to the judge by now is written down.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, hurry: Callable[[], None] = lambda: None) -> None:
+        """Prepare.
+
+        Args:
+            hurry: Called again and again by whoever waits; it may end the wait by an exception.
+        """
+        self._hurry = hurry
         self._changed = threading.Condition()
         self._events: list[Event] = []
         self._count = 0
@@ -159,6 +165,7 @@ class Recorder:
         silence = None if quiet is None else Patience(quiet, slowness=slowness)
         heard = self._count
         while True:
+            self._hurry()
             seen = self._count
             if condition():
                 return True

@@ -80,6 +80,10 @@ class RemoteSubject:
         self._tell(checks.Begin(domain_id, self.keeper))
         self._ready.wait(STOP_LIMIT)
 
+    def tell_so_far(self, words: str) -> None:
+        """Let the notebook's card show this while the check goes on."""
+        self._tell(checks.SoFar(words))
+
     def renew(self) -> None:
         """Let the next run have a fresh context."""
         self._fresh = True
@@ -230,6 +234,8 @@ class RemotePath(InOwnProcesses, RemoteSubject):
         """Take over a conversation."""
         super().__init__(lines)
         self.keeper = InOwnProcesses.keeper
+
+    tell_so_far = RemoteSubject.tell_so_far
 
 
 def _bounded(seconds: float) -> float:

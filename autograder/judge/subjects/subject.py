@@ -24,6 +24,9 @@ class Subject(Protocol):
     def begin(self, domain_id: int) -> None:
         """Called once, before the first run, with the domain of this check."""
 
+    def tell_so_far(self, words: str) -> None:
+        """Tell whoever waits for the verdict what the judge knows so far, in a sentence; nothing where nobody waits."""
+
     def renew(self) -> None:
         """Begin the next run with a fresh participant: an old one would meet the judge's new one only slowly."""
 
@@ -82,6 +85,9 @@ class InOwnProcesses:
     def processes(self) -> frozenset[int]:
         """Nobody can tell, where they are not this process's children."""
         return frozenset()
+
+    def tell_so_far(self, words: str) -> None:
+        """A command has no card."""
 
     def renew(self) -> None:
         """The next run has a participant of its own in any case."""

@@ -6,8 +6,10 @@ and hardly what has begun with it.
 
 from __future__ import annotations
 
+import math
 import os
 import threading
+import time
 from typing import TYPE_CHECKING, Self
 
 from autograder.judge.bench.patience import SLOWEST, runnable_threads, slowness
@@ -20,12 +22,20 @@ TOO_BUSY = (
     "The machine is too busy: so many programs want its processors that the judge cannot tell whether yours is slow "
     "or wrong. Close some, or wait a little, and check again."
 )
+SEEN_SO_FAR = "So far the judge saw this, and it may be due to the busy machine: “{}”"
+"""What is known of a subject that has no verdict."""
+ANSWER_WITHIN = 30.0
+"""Seconds of wall time after which a student in a notebook gets an answer, even if that is a crowded machine."""
 _EVERY = 0.1
 """Seconds between two counts."""
 
 
 class TooBusy(JudgeFailed):
     """The subject did not pass, and that may be because the machine was crowded."""
+
+
+class OutOfTime(BaseException):
+    """The check of a crowded machine has lasted long enough. No ``except Exception`` may take it for something else."""
 
 
 class Crowding:
@@ -63,3 +73,41 @@ class Crowding:
         """True if, on average, more threads wanted a processor than the judge's limits allow for."""
         mean = sum(self._counts) / len(self._counts)
         return slowness(mean, self._processors) >= SLOWEST
+
+
+class Hurry:
+    """Ends a check that has lasted :data:`ANSWER_WITHIN` seconds on a machine that is so busy that limits are longer.
+
+    On any other machine a check takes as long as its exercise needs, and has a verdict.
+
+    Args:
+        runnable: Returns how many threads want a processor now.
+        processors: How many processors they share.
+        now: A monotonic clock, in seconds.
+    """
+
+    def __init__(
+        self,
+        runnable: Callable[[], int] = runnable_threads,
+        processors: int = os.cpu_count() or 1,
+        now: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._runnable, self._processors, self._now = runnable, processors, now
+        self._end = now() + ANSWER_WITHIN
+        self._next_count = now()
+        self._sum = self._counts = 0
+
+    def __call__(self) -> None:
+        """To be called again and again while the judge waits.
+
+        Raises:
+            OutOfTime: At most once, since what clears up afterwards waits, too.
+        """
+        now = self._now()
+        if now >= self._next_count:
+            self._next_count = now + _EVERY
+            self._sum += self._runnable()
+            self._counts += 1
+        if now > self._end and slowness(self._sum / self._counts, self._processors) > 1.0:
+            self._end = math.inf
+            raise OutOfTime

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from autograder.judge.bench.bench import TestBench
 from autograder.judge.verdicts import timeline
-from autograder.judge.verdicts.crowding import TOO_BUSY, Crowding, TooBusy
+from autograder.judge.verdicts.crowding import SEEN_SO_FAR, TOO_BUSY, Crowding, Hurry, OutOfTime, TooBusy
 from autograder.judge.verdicts.deciding import Undecided, limited, undecidable
 from autograder.judge.verdicts.delivery import NOT_DELIVERED, NotDelivered, delivers
 from autograder.kit.evidence import Evidence, Reference
@@ -19,8 +19,12 @@ from autograder.kit.model import Advice, Exercise, Mistake, Pace
 from autograder.verdict import Criterion, Diagnosis, State, Verdict
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from autograder.judge.subjects.subject import Subject
 
+UNKNOWN = "unknown"
+"""The key of the diagnosis of a mistake that has no name."""
 MAX_DETAIL = 6_000
 """Characters of a traceback that a card shows."""
 MAX_WORDS = 500
@@ -81,14 +85,19 @@ def check(
         marks_crowded: Give the verdict all the same, marked, where the machine was too crowded to tell.
 
     Raises:
-        TooBusy: It was, and nobody wants a marked verdict.
+        TooBusy: It was, and nobody wants a marked verdict; or a student has waited for long on a busy machine.
         NotDelivered: It did not pass, nothing proves a mistake, and this machine lost messages before or after.
     """
     began = time.monotonic()
     crowded, delivered = False, delivers()
+    # A student waits in front of a cell. A grader does not, and a program may be built first.
+    hurry = Hurry() if subject.shares_participant and not marks_crowded else _no_hurry
     subject.begin(domain_id)
-    look_at = partial(look, exercise, subject, reference, seed=seed, domain_id=domain_id)
-    seen = look_at(Pace.FAST)
+    look_at = partial(look, exercise, subject, reference, seed=seed, domain_id=domain_id, hurry=hurry)
+    try:
+        seen = look_at(Pace.FAST)
+    except OutOfTime:
+        raise TooBusy(TOO_BUSY) from None
     evidence = seen.evidence
     try:
         with limited():
@@ -96,8 +105,13 @@ def check(
             again = exercise.second_look and (seen.doubtful or not verdict.passed)
             again = again and not is_certain(exercise, evidence)
         if again:
-            with Crowding() as crowding:
-                seen = look_at(Pace.REAL_TIME, before=evidence)
+            if not marks_crowded:  # a submission must not hear how its check goes
+                subject.tell_so_far(_so_far(verdict))
+            try:
+                with Crowding() as crowding:
+                    seen = look_at(Pace.REAL_TIME, before=evidence)
+            except OutOfTime:
+                raise TooBusy(f"{TOO_BUSY} {_so_far(verdict)}".strip()) from None
             evidence = replace(seen.evidence, before=evidence)
             with limited():
                 verdict = judge(exercise, evidence, seed)
@@ -112,8 +126,18 @@ def check(
     except Undecided:
         verdict = undecidable(exercise, seed)
     if crowded and not marks_crowded:
-        raise TooBusy(TOO_BUSY)
+        raise TooBusy(f"{TOO_BUSY} {_so_far(verdict)}".strip())
     return Checked(replace(verdict, seconds=round(time.monotonic() - began, 3)), evidence, crowded)
+
+
+def _no_hurry() -> None:
+    """Let a check take its time."""
+
+
+def _so_far(verdict: Verdict) -> str:
+    """What is known of a subject that has no verdict yet, in a sentence; empty if that is no mistake with a name."""
+    known = verdict.diagnosis
+    return SEEN_SO_FAR.format(known.text) if known and known.key != UNKNOWN else ""
 
 
 def decide(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
@@ -134,9 +158,21 @@ def look(
     seed: str,
     domain_id: int,
     before: Evidence | None = None,
+    hurry: Callable[[], None] = _no_hurry,
 ) -> Seen:
-    """Run the scenario once and hand over what was seen; ``before`` is what the first look brought."""
-    bench = TestBench(subject, domain_id, reference, pace, Random(seed), before)
+    """Run the scenario once and return what was seen.
+
+    Args:
+        exercise: What is asked for.
+        subject: What is judged.
+        reference: What the reference solution did.
+        pace: Of this look.
+        seed: What random inputs are drawn from.
+        domain_id: The ROS domain.
+        before: What the first look saw.
+        hurry: Called while the judge waits; it may end the look by an exception.
+    """
+    bench = TestBench(subject, domain_id, reference, pace, Random(seed), before, hurry)
     try:
         exercise.scenario(bench)
     finally:
@@ -188,7 +224,7 @@ def diagnose(exercise: Exercise, evidence: Evidence) -> tuple[Diagnosis, str]:
         )
         return Diagnosis(mistake.key, text, next_step), advice.traceback
     unknown = Diagnosis(
-        "unknown",
+        UNKNOWN,
         "This is none of the mistakes that the judge knows by name.",
         "Compare what was expected with what was seen, criterion by criterion.",
     )

@@ -1,7 +1,8 @@
 """The place of a check's card: one place under the cell, from its first moment to its last.
 
-While a check goes on, the card of the check before stays in that place and says so, and where there is none a line
-tells what goes on: the page does not jump. A card whose class or function was defined anew is dimmed and says why.
+A quick check replaces the card of the check before, so that the page does not jump. A longer one shows a line that
+tells what goes on instead: a student must not read an earlier diagnosis as that of the new code. A card whose class or
+function was defined anew is dimmed and says why.
 """
 
 from __future__ import annotations
@@ -34,6 +35,37 @@ VALIDATING = "NBGRADER_VALIDATING"
 """Set by nbgrader while its Validate button runs the notebook."""
 SOON = 0.7
 """Seconds of wall time after which a check that still goes on says so, and between two words of it."""
+LONG = 30.0
+"""Seconds of wall time after which a check that goes on says what is known so far, or that the machine is busy."""
+CROWDED = 4.0
+"""Processes for each processor that want to run on a busy machine, on average of the last minute."""
+
+
+@dataclass
+class Progress:
+    """The words of a check about itself while it goes on.
+
+    Attributes:
+        doing: What goes on, such as ``"run 2"``.
+        known: What the judge knows so far, in a sentence.
+        began: When the check began, in seconds of a monotonic clock.
+    """
+
+    doing: str = "the judge gets ready"
+    known: str = ""
+    began: float = field(default_factory=time.monotonic)
+
+    def words(self) -> str:
+        """One or two sentences."""
+        seconds = time.monotonic() - self.began
+        words = f"Checking: {self.doing}, {duration(seconds)} …"
+        if seconds < LONG:
+            return words
+        busy = os.getloadavg()[0] > CROWDED * (os.cpu_count() or 1)
+        slow = (
+            "The machine is busy: other programs want its processors, so this takes longer." if busy else ""
+        )
+        return " ".join(filter(None, (words, slow, self.known)))
 
 
 @dataclass
@@ -65,7 +97,7 @@ class CardDisplay:
     exercise: str
     subject: Any
     _handle: Any = None
-    _doing: str = "the judge gets ready"
+    _progress: Progress = field(default_factory=Progress)
     _over: threading.Event = field(default_factory=threading.Event)
     _teller: threading.Thread | None = None
 
@@ -73,7 +105,9 @@ class CardDisplay:
         if is_live():
             earlier = _shown.get(self.exercise)
             if earlier is not None:
-                self._handle = display_card(bundle.mimebundle(earlier.verdict, before=earlier.before))
+                self._handle = display_card(
+                    _dated(earlier, "Checking again: this is the result of the check before.")
+                )
             here = contextvars.copy_context()  # what belongs to which cell is in there
             self._teller = threading.Thread(target=here.run, args=(self._tell,), name="check", daemon=True)
             self._teller.start()
@@ -83,16 +117,23 @@ class CardDisplay:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._stop_telling()
-        if error is not None and self._handle is not None and (earlier := _shown.get(self.exercise)):
-            # Interrupted: what is there is an earlier result, and no check goes on.
-            notice = "This is the result of an earlier check: the last one was interrupted."
-            update_card(
-                self._handle, bundle.mimebundle(earlier.verdict, before=earlier.before, notice=notice)
-            )
+        if error is not None and self._handle is not None:
+            earlier = _shown.get(self.exercise)
+            if earlier is not None:
+                notice = "This is the result of an earlier check: the last one was interrupted."
+                card = _dated(earlier, notice)
+            else:
+                words = "The check was interrupted, so there is no result: run it again."
+                card = bundle.waiting_bundle(self.exercise, words, over=True)
+            update_card(self._handle, card)
 
     def doing(self, what: str) -> None:
         """Say what goes on, in a few words such as ``"run 2"``."""
-        self._doing = what
+        self._progress.doing = what
+
+    def know(self, so_far: str) -> None:
+        """Say what the judge knows already, once the check has lasted long."""
+        self._progress.known = so_far
 
     def show(self, verdict: Verdict) -> None:
         """Show the result in the card's place; print it where there is no notebook."""
@@ -117,18 +158,19 @@ class CardDisplay:
             self._teller = None
 
     def _tell(self) -> None:
-        began = time.monotonic()
         earlier = _shown.get(self.exercise)
+        title = earlier.verdict.title if earlier is not None else self.exercise
         while not self._over.wait(SOON):
-            words = f"Checking{' again' if earlier else ''}: {self._doing}, {duration(time.monotonic() - began)} …"
-            if earlier is not None:
-                card = bundle.mimebundle(earlier.verdict, before=earlier.before, notice=words)
-            else:
-                card = bundle.waiting_bundle(self.exercise, words)
+            card = bundle.waiting_bundle(title, self._progress.words())
             if self._handle is None:
                 self._handle = display_card(card)
             else:
                 update_card(self._handle, card)
+
+
+def _dated(shown: _Shown, notice: str) -> dict[str, str]:
+    """A result that is on the page, as one that is out of date."""
+    return bundle.mimebundle(shown.verdict, before=shown.before, notice=notice)
 
 
 def renew_card(verdict: Verdict, subject: Any) -> None:
@@ -174,7 +216,7 @@ def _dim_what_is_out_of_date(_: Any = None) -> None:
         if names[shown.name] is not shown.subject():
             shown.dated = True
             notice = f"{shown.name} has changed since this check: run the check again."
-            update_card(shown.handle, bundle.mimebundle(shown.verdict, before=shown.before, notice=notice))
+            update_card(shown.handle, _dated(shown, notice))
 
 
 def display_card(card: dict[str, str]) -> Any:

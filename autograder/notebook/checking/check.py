@@ -45,6 +45,9 @@ class Place(Protocol):
     def doing(self, what: str) -> None:
         """Say what goes on, in a few words."""
 
+    def know(self, so_far: str) -> None:
+        """Say what the judge knows already, in a sentence."""
+
 
 LINE = 70
 """Characters of a line of output that are shown while a check goes on."""
@@ -170,6 +173,8 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: Place) -> Verdi
                         link.say(messages.Stopped(number))
                         card.doing(f"the judge looks at run {number}")
                         run = None
+                    case messages.SoFar():
+                        card.know(order.words)
                     case messages.Judged() | messages.Refused():
                         return _last_words(exercise, order)
         finally:

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.cards import bundle
 from autograder.notebook.cells.cell_output import notebook_shell
-from autograder.notebook.checking.card_display import display_card, is_live, renew_card, update_card
+from autograder.notebook.checking.card_display import Progress, display_card, is_live, renew_card, update_card
 from autograder.notebook.checking.check import after_each_check, converse, keep, what_to_pass
 from autograder.notebook.checking.judge_link import JudgeLink, JudgeUnreachable
 from autograder.verdict import State, not_checked
@@ -47,6 +47,7 @@ class Watch:
     due: bool = False
     _verdict: Verdict | None = None
     _handle: Any = None
+    _progress: Progress = field(default_factory=Progress)
     _here: contextvars.Context = field(default_factory=contextvars.copy_context)
 
     def is_defined_anew(self, subject: Any) -> bool:
@@ -57,14 +58,24 @@ class Watch:
         """Show a card below the cell that runs, which has just defined this subject; it is due from now on."""
         if self._handle is not None:
             # Where the same cell was run again, its earlier card is gone already.
-            self._say(f"{self.name} is defined anew by another cell.")
+            self._say(f"Another cell has defined {self.name} since.", over=True)
         self.subject, self.due = subject, True
         self._here = contextvars.copy_context()  # what belongs to which cell is in there
         self._handle = display_card(self._card("Is checked as soon as this cell has ended."))
 
+    def get_ready(self) -> None:
+        """Say that the check begins."""
+        self._progress = Progress()
+        self._say(self._progress.words())
+
     def doing(self, what: str) -> None:
         """Say what goes on, in a few words."""
-        self._say(f"Checking: {what} …")
+        self._progress.doing = what
+        self._say(self._progress.words())
+
+    def know(self, so_far: str) -> None:
+        """Say what the judge knows already, once the check has lasted long."""
+        self._progress.known = so_far
 
     def give_way(self) -> None:
         """Say that another cell runs first."""
@@ -82,13 +93,11 @@ class Watch:
         self._verdict, self.due = verdict, False
         self._here.run(update_card, self._handle, bundle.mimebundle(verdict, before=before, short=True))
 
-    def _say(self, words: str) -> None:
-        self._here.run(update_card, self._handle, self._card(words))
+    def _say(self, words: str, *, over: bool = False) -> None:
+        self._here.run(update_card, self._handle, self._card(words, over=over))
 
-    def _card(self, words: str) -> dict[str, str]:
-        if self._verdict is None:
-            return bundle.waiting_bundle(f"{self.exercise}, {self.name}", words)
-        return bundle.mimebundle(self._verdict, notice=words, short=True)
+    def _card(self, words: str, *, over: bool = False) -> dict[str, str]:
+        return bundle.waiting_bundle(f"{self.exercise}, {self.name}", words, over=over)
 
     def __repr__(self) -> str:
         """One line for the end of a cell."""
@@ -141,7 +150,7 @@ class Watches:
     def _check_what_is_due(self) -> None:
         for watch in list(self.all.values()):
             if watch.due:
-                watch.doing("the judge gets ready")
+                watch.get_ready()
                 self._check(watch)
 
     def _check(self, watch: Watch) -> None:

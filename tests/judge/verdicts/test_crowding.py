@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.judge.verdicts import crowding
-from autograder.judge.verdicts.crowding import Crowding
+from autograder.judge.verdicts.crowding import ANSWER_WITHIN, Crowding, Hurry, OutOfTime
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -44,3 +44,21 @@ def test_a_look_that_ends_at_once_is_counted_once() -> None:
     with Crowding(lambda: 24, processors=2) as counted:
         pass
     assert counted.too_busy
+
+
+@pytest.mark.parametrize(
+    ("seconds", "runnable", "ends"),
+    [
+        pytest.param(ANSWER_WITHIN + 1, 16, True, id="long, and eight for each processor"),
+        pytest.param(ANSWER_WITHIN + 1, 8, False, id="long, and four"),
+        pytest.param(ANSWER_WITHIN - 1, 40, False, id="not long yet"),
+    ],
+)
+def test_a_long_check_ends_on_a_busy_machine_only(seconds: float, runnable: int, ends: bool) -> None:
+    times = iter([0.0, 0.0, 0.2, seconds, seconds, seconds])
+    hurry = Hurry(lambda: runnable, 2, lambda: next(times))
+    hurry()
+    if ends:
+        with pytest.raises(OutOfTime):
+            hurry()
+    hurry()  # what clears up afterwards is left alone

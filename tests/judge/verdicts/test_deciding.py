@@ -31,6 +31,8 @@ def raises(_: Evidence) -> Finding:
 
 
 class Anybody:
+    shares_participant = False
+
     """A subject that nothing is asked of."""
 
     def begin(self, domain_id: int) -> None:

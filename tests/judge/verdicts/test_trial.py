@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import pytest
 
 from autograder import exercises
-from autograder.judge.verdicts import reference, trial
-from autograder.judge.verdicts.crowding import Crowding, TooBusy
+from autograder.judge.verdicts import crowding, reference, trial
+from autograder.judge.verdicts.crowding import ANSWER_WITHIN, Crowding, TooBusy
 from autograder.judge.verdicts.delivery import NotDelivered
 from autograder.kit.evidence import Evidence, Part
 from autograder.kit.model import Advice, Criterion, Finding, Mistake, Pace
@@ -22,8 +22,16 @@ USUAL = exercises.get("lab_1_2.listener")
 
 
 class Anybody:
+    shares_participant = True
+
+    def __init__(self) -> None:
+        self.told: list[str] = []
+
     def begin(self, domain_id: int) -> None:
         del domain_id
+
+    def tell_so_far(self, words: str) -> None:
+        self.told.append(words)
 
 
 def exercise(*, certain: bool = False, second_look: bool = True) -> Exercise:
@@ -32,7 +40,7 @@ def exercise(*, certain: bool = False, second_look: bool = True) -> Exercise:
     def judge(evidence: Evidence) -> Finding:
         return Finding(evidence.main.name == "good", "", "")
 
-    mistake = Mistake("mistake", lambda _: Advice("", ""), certain=certain)
+    mistake = Mistake("mistake", lambda _: Advice("It says b.", ""), certain=certain)
     criterion = Criterion("good", "Good", 10, judge)
     return replace(USUAL, criteria=(criterion,), mistakes=(mistake,), second_look=second_look)
 
@@ -109,6 +117,52 @@ def test_who_checks_by_hand_is_told_that_the_machine_is_too_busy_to_tell(
     subject: Any = Anybody()
     with pytest.raises(TooBusy, match="The machine is too busy"):
         trial.check(exercise(), subject, stored, seed="s", domain_id=0)
+
+
+class BusyFor:
+    """Stands in for the machine and the bench: each look lasts so many seconds, on a machine that is busy."""
+
+    def __init__(self, *seconds: float) -> None:
+        self._seconds, self._now = iter(seconds), 0.0
+        self.stored = reference.load(USUAL.id)
+
+    def hurry(self) -> crowding.Hurry:
+        return crowding.Hurry(lambda: 16, 2, lambda: self._now)
+
+    def look(self, *_: Any, hurry: Any, **__: Any) -> trial.Seen:
+        self._now += next(self._seconds)
+        hurry()
+        return trial.Seen(Evidence([Part("bad")], self.stored), doubtful=False)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "known"),
+    [((ANSWER_WITHIN + 1,), False), ((5.0, ANSWER_WITHIN), True)],
+    ids=["in the first look", "in the second one, which leaves what the first one saw"],
+)
+def test_who_waits_on_a_busy_machine_is_told_what_is_known(
+    monkeypatch: pytest.MonkeyPatch, seconds: tuple[float, ...], known: bool
+) -> None:
+    busy, subject = BusyFor(*seconds), Anybody()
+    monkeypatch.setattr(trial, "Hurry", busy.hurry)
+    monkeypatch.setattr(trial, "look", busy.look)
+    with pytest.raises(TooBusy, match="The machine is too busy") as raised:
+        trial.check(exercise(), cast("Any", subject), busy.stored, seed="s", domain_id=0)
+    assert ("It says b." in str(raised.value)) is known
+    assert ["It says b." in words for words in subject.told] == [True] * known
+
+
+def test_a_grader_lets_a_check_take_its_time_and_a_submission_hears_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    busy, subject = BusyFor(100.0, 100.0), Anybody()
+    monkeypatch.setattr(trial, "Hurry", busy.hurry)
+    monkeypatch.setattr(trial, "look", busy.look)
+    checked = trial.check(
+        exercise(), cast("Any", subject), busy.stored, seed="s", domain_id=0, marks_crowded=True
+    )
+    assert not checked.verdict.passed
+    assert subject.told == []
 
 
 @pytest.mark.parametrize("when", [[False, True], [True, False]], ids=["before", "after"])

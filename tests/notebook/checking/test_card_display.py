@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING, Any
 
 import nbformat
 import pytest
 from nbformat.v4 import new_code_cell, new_notebook
 from nbgrader.validator import Validator
+
+from autograder.notebook.checking import card_display
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -58,7 +61,7 @@ def test_another_try_tells_the_points_of_the_one_before(run: Callable[..., list[
     assert "5 → <strong>8</strong>" in card.data["text/html"]
 
 
-def test_while_a_check_goes_on_the_card_of_the_one_before_keeps_its_place_and_says_so(
+def test_while_a_check_goes_on_its_card_says_so_and_shows_no_earlier_diagnosis(
     run: Callable[..., list[Any]],
 ) -> None:
     """What stood there meanwhile is taken from the display itself, at the moment at which the check was going on."""
@@ -87,8 +90,47 @@ check("lab", Talker)
     assert "Checking" not in second[0].data["text/plain"]
     assert "8 of 10" in second[0].data["text/plain"]
     meanwhile = " ".join(said[0].text.split())
-    assert "Checking again: building my_package" in meanwhile
-    assert "5 of 10 points" in meanwhile, "the earlier card is still there"
+    assert "The talker: Checking: building my_package" in meanwhile
+    assert "It says b." not in meanwhile, "that was the answer before"
+
+
+def test_a_quick_check_finds_the_card_of_the_one_before_marked_as_such(run: Callable[..., list[Any]]) -> None:
+    watched = """
+displayed = []
+usual = card_display.display_card
+def display_card(card):
+    displayed.append(card["text/plain"])
+    return usual(card)
+card_display.display_card = display_card
+scores[:] = [5.0, 8.0]
+check("lab", Talker)
+"""
+    *_, said = run(watched, "check('lab', Talker)", "print(displayed[-1])")
+    assert "this is the result of the check before" in " ".join(said[0].text.split())
+
+
+def test_an_interrupted_check_ends_on_its_card(run: Callable[..., list[Any]]) -> None:
+    interrupted = """
+def meanwhile(place):
+    import time
+    while place._handle is None:
+        time.sleep(0.01)
+    raise KeyboardInterrupt
+"""
+    _, (card, *_) = run(interrupted, "try:\n    check('lab', Talker)\nexcept KeyboardInterrupt:\n    pass")
+    assert "Checking" not in card.data["text/plain"]
+    assert "The check was interrupted, so there is no result" in card.data["text/plain"]
+    assert "agc-waiting" not in card.data["text/html"].partition("<style>")[0]
+
+
+def test_after_half_a_minute_a_check_says_what_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "getloadavg", lambda: (4000.0, 1.0, 1.0))
+    progress = card_display.Progress("run 2", "So far: “It says b.”")
+    assert progress.words().startswith("Checking: run 2")
+    assert "It says b." not in progress.words()
+    progress.began -= card_display.LONG
+    assert "The machine is busy" in progress.words()
+    assert "It says b." in progress.words()
 
 
 def test_a_card_is_dimmed_when_its_class_is_defined_anew(run: Callable[..., list[Any]]) -> None:
