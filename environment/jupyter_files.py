@@ -1,6 +1,6 @@
 """JupyterLab's settings from the environment: the kernel's variables, its terminals, no questions about news.
 
-All of it is inside the environment (``.venv/share/jupyter``, ``.venv/etc/jupyter``), so that it holds
+All of it is inside the environment (``.venv/share/jupyter``, ``.venv/etc``), so that it holds
 however JupyterLab is started and touches no setting of the user's own.
 """
 
@@ -57,11 +57,17 @@ def server_config(root: Path, bash: str | None) -> dict[str, object]:
     return {"ServerApp": {"terminado_settings": {"shell_command": [bash, "--rcfile", str(startup)]}}}
 
 
+def kernel_config() -> dict[str, object]:
+    """Return IPython's configuration of the kernels: one extension, which explains a NameError in a new kernel."""
+    return {"IPKernelApp": {"extra_extensions": ["autograder.student.fresh_kernel"]}}
+
+
 def write_jupyter_files(prefix: Path, root: Path) -> None:
     """Write the settings for the environment at `prefix` of the course at `root`."""
     files = {
         prefix / "share/jupyter/lab/settings/overrides.json": lab_settings(),
         prefix / "etc/jupyter/jupyter_server_config.json": server_config(root, shutil.which("bash")),
+        prefix / "etc/ipython/ipython_kernel_config.json": kernel_config(),
     }
     for path, content in files.items():
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -84,5 +84,5 @@ def test_writing_again_gives_the_same_files(tmp_path: Path) -> None:
     write_jupyter_files(tmp_path, tmp_path)
     first = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
     write_jupyter_files(tmp_path, tmp_path)
-    assert len(first) == 2
+    assert len(first) == 3
     assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == first

@@ -10,6 +10,7 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
 
   const CHECK = /^check\((["'])([^"']+)\1,\s*(.+?)\s*\)\s*$/m;
   const NEXT = /Next: \[[^\]]*\]\(([^)#]+\.ipynb)\)/;
+  const ENDED = ["restarting", "autorestarting", "terminating", "dead"]; // states of a kernel
   const NAME = /^[A-Za-z_]\w*$/;
 
   // For each key, metres a second ahead and radians a second to the left.
@@ -61,19 +62,67 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
       shared = scope;
     },
     async get() {
-      const { Notification } = await module_("@jupyterlab/apputils");
+      const [{ Notification }, { INotebookTracker }] = await Promise.all(
+        ["@jupyterlab/apputils", "@jupyterlab/notebook"].map(module_),
+      );
       const say = message => Notification.info(message, { autoClose: 5000 });
 
-      // Run the student's cells and then the check; stop at a cell that ends with an error, which shows it.
+      // Run the student's cells and then the check; in a kernel that has started again, first the cells above that
+      // these need. Stop at a cell that ends with an error, which shows it.
       async function checkNow(app) {
         const panel = notebook(app);
         const found = panel && check(panel);
         if (!found) return say("There is no check below this cell.");
-        for (const place of [...cellsOf(panel, found.at), found.at]) {
+        const own = [...cellsOf(panel, found.at), found.at];
+        const first = await neededFirst(panel, own);
+        if (first.length) say("This kernel is new: the cells above that the check needs run first.");
+        for (const place of [...first, ...own].sort((a, b) => a - b)) {
           await goTo(panel, place);
           await app.commands.execute("notebook:run-cell");
           if (failed(panel.content.widgets[place])) return;
         }
+      }
+
+      // The places of the cells above that have to run before a student's cells and their check.
+      async function neededFirst(panel, own) {
+        const kernel = panel.sessionContext.session?.kernel;
+        if (!kernel) return [];
+        const last = own[own.length - 1];
+        const code = panel.content.widgets.map((cell, place) => place)
+          .filter(place => place <= last && panel.content.widgets[place].model.type === "code");
+        const sources = code.map(place => text(panel.content.widgets[place]));
+        const asked = `cells_to_run(${JSON.stringify(sources)}, ${JSON.stringify(own.map(place => code.indexOf(place)))})`;
+        const said = await ask(kernel, "autograder.student.fresh_kernel", asked);
+        return JSON.parse(said ?? "[]").map(place => code[place]);
+      }
+
+      // A check ends with its kernel, or when its page is closed: its card must not say for ever that it goes on.
+      function endCards(panel, why) {
+        for (const cell of panel.content.widgets) {
+          const outputs = cell.model.type === "code" ? cell.model.outputs : [];
+          for (let at = 0; at < outputs.length; at++) {
+            const output = outputs.get(at).toJSON();
+            const html = [output.data?.["text/html"] ?? ""].flat().join("");
+            if (!html.includes("agc-waiting")) continue;
+            const page = new DOMParser().parseFromString(html, "text/html");
+            const card = page.querySelector(".agc-waiting");
+            if (!card) continue;
+            card.classList.replace("agc-waiting", "agc-over");
+            card.querySelector(".agc-state").textContent = why;
+            card.setAttribute("aria-label", why);
+            outputs.set(at, { ...output, data: { "text/html": card.outerHTML, "text/plain": why } });
+          }
+        }
+      }
+
+      function endCardsWithKernel(panel) {
+        const { context, sessionContext } = panel;
+        sessionContext.statusChanged.connect((_, status) => {
+          if (ENDED.includes(status)) endCards(panel, "The kernel ended during this check, so there is no result: check again.");
+        });
+        Promise.all([context.ready, sessionContext.ready]).then(
+          () => endCards(panel, "The notebook was closed during this check, so there is no result: check again."),
+        );
       }
 
       // What an expression has as its value in a notebook's kernel, where that is a string; nothing where it failed. No
@@ -157,7 +206,9 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
       const plugin = {
         id: "ros2-course-buttons:buttons",
         autoStart: true,
-        activate(app) {
+        optional: [INotebookTracker],
+        activate(app, tracker) {
+          tracker?.widgetAdded.connect((_, panel) => endCardsWithKernel(panel));
           const style = document.createElement("style");
           style.textContent = SHOWN;
           document.head.append(style);

@@ -1,0 +1,75 @@
+"""A kernel that starts again: what Check does then, and the card of a check that ended with its kernel."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import nbformat
+import pytest
+
+from autograder.cards.bundle import waiting_bundle
+
+sys.path.insert(0, str(Path(__file__).parent))
+from open_notebook import OpenNotebook, look
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+pytestmark = [pytest.mark.browser, pytest.mark.ros, pytest.mark.slow]
+IDLE = "Python 3 (ipykernel) | Idle"
+CHECK = r'^check\("lab_1_2\.talker"'
+SLOW = """
+class TalkerNode(Node):
+    def __init__(self):
+        super().__init__("talker_node")
+        while True:
+            time.sleep(0.1)
+"""
+
+
+def restart(page: Page) -> None:
+    page.locator(".lm-MenuBar-item", has_text="Kernel").click()
+    page.locator(".lm-Menu-itemLabel").get_by_text("Restart Kernel…", exact=True).click()
+    page.locator(".jp-Dialog .jp-mod-accept").click()
+
+
+def test_check_runs_what_a_new_kernel_lacks_and_a_card_ends_with_its_kernel(page: Page, lab: str) -> None:
+    from playwright.sync_api import expect
+
+    page.goto(lab.format("lab/tree/01_ros2_fundamentals/lab_1_2.ipynb"))
+    notebook = OpenNotebook(page)
+    expect(page.locator("#jp-main-statusbar")).to_contain_text(IDLE)
+    notebook.write(r"^class TalkerNode", SLOW.strip())
+
+    checked = notebook.run(CHECK)
+    expect(checked).to_contain_text("there is no check yet. This kernel is new")
+    checked.locator(".jp-cell-toolbar").get_by_text("Check", exact=True).click()
+    expect(page.locator(".Toastify")).to_contain_text("the cells above that the check needs run first")
+    expect(checked.locator(".agc-waiting")).to_contain_text("Checking")
+
+    restart(page)
+    expect(checked.locator(".agc")).to_contain_text("The kernel ended during this check")
+    expect(checked.locator(".agc-waiting")).to_have_count(0)
+    look(page, "ended-with-its-kernel")
+
+    expect(page.locator("#jp-main-statusbar")).to_contain_text(IDLE)
+    checked.locator(".jp-cell-toolbar").get_by_text("Check", exact=True).click()
+    expect(checked.locator(".agc-failed")).to_contain_text("What to do next")
+    expect(notebook.cell(r"^import time")).to_contain_text(re.compile(r"ROS 2 is up"))
+
+
+def test_a_card_that_was_saved_while_its_check_went_on_says_so(page: Page, lab: str, chapters: Path) -> None:
+    from playwright.sync_api import expect
+
+    file = chapters / "01_ros2_fundamentals" / "lab_1_2.ipynb"
+    notebook = nbformat.read(file, as_version=4)
+    cell = next(one for one in notebook.cells if one.source.startswith('check("lab_1_2.listener"'))
+    data = waiting_bundle("lab_1_2.listener", "Checking: run 2 of your code, 3.0 s …")
+    cell.outputs = [nbformat.v4.new_output("display_data", data)]
+    file.write_text(nbformat.writes(notebook), encoding="utf-8")
+    page.goto(lab.format("lab/tree/01_ros2_fundamentals/lab_1_2.ipynb"))
+    card = OpenNotebook(page).cell(r'^check\("lab_1_2\.listener"').locator(".agc")
+    expect(card).to_contain_text("The notebook was closed during this check")

@@ -1,0 +1,115 @@
+"""A kernel in which the given cells have not run: which of them a check needs, and what a NameError says."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from IPython.core.inputtransformer2 import TransformerManager
+from jupyter_client.manager import start_new_kernel
+
+from autograder import course
+from autograder.student import fresh_kernel
+from autograder.student.lab import NOTEBOOKS_VARIABLE
+from autograder.student.standing import notebook_path
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+SETUP = "from autograder.notebook import check, start_ros\nfrom rclpy.node import Node\nstart_ros()"
+DEMO = "with spinning(Talker()):\n    print('a demonstration')"
+CHECK = "check('lab', Talker)"
+
+
+class FakeShell:
+    """The shell of a kernel that has some names."""
+
+    def __init__(self, *names: str) -> None:
+        self.user_ns = dict.fromkeys(names)
+        self.transform_cell = TransformerManager().transform_cell
+
+
+def to_run(monkeypatch: pytest.MonkeyPatch, cells: list[str], own: list[int], *known: str) -> list[int]:
+    shell = FakeShell(*known)
+    monkeypatch.setattr(fresh_kernel, "get_ipython", lambda: shell)
+    found: list[int] = json.loads(fresh_kernel.cells_to_run(cells, own))
+    return found
+
+
+TALKER = "class Talker(Node):\n    period = PERIOD"
+
+
+@pytest.mark.parametrize(
+    ("cells", "own", "known", "expected"),
+    [
+        pytest.param([SETUP, TALKER, CHECK], [1, 2], (), [0], id="the set-up"),
+        pytest.param([SETUP, TALKER, CHECK], [1, 2], ("check", "Node", "PERIOD"), [], id="not again"),
+        pytest.param([SETUP, "PERIOD = 1", TALKER, DEMO, CHECK], [2, 4], (), [0, 1], id="no demonstration"),
+        pytest.param(
+            [SETUP, "def helper():\n    return Node", "def f():\n    return helper()", "check('l', f)"],
+            [2, 3],
+            ("check",),
+            [0, 1],
+            id="what is read in a function, and what that reads",
+        ),
+        pytest.param(
+            [SETUP, "x = 1", "def f():\n    x = 2\n    return x", "check('l', f)"],
+            [2, 3],
+            (),
+            [0],
+            id="no cell with the name of a local variable",
+        ),
+        pytest.param([SETUP, "PERIOD = ", TALKER, CHECK], [2, 3], (), [0], id="a cell that is not Python"),
+        pytest.param([SETUP, "%%writefile a.py\nx = (", "check('l', 'ws')"], [1, 2], (), [0], id="a magic"),
+    ],
+)
+def test_a_check_needs_the_cells_that_define_what_it_reads(
+    monkeypatch: pytest.MonkeyPatch,
+    cells: list[str],
+    own: list[int],
+    known: tuple[str, ...],
+    expected: list[int],
+) -> None:
+    assert to_run(monkeypatch, cells, own, *known) == expected
+
+
+def checks() -> Iterator[Any]:
+    chapters = course.root() / course.CHAPTERS
+    for chapter in course.chapters(course.root()):
+        for lab in chapter.labs:
+            cells = json.loads(notebook_path(chapter, lab, chapters).read_text(encoding="utf-8"))["cells"]
+            sources = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+            for place, source in enumerate(sources):
+                if source.startswith("check("):
+                    yield pytest.param(sources[: place + 1], id=source.partition(",")[0])
+
+
+@pytest.mark.parametrize("cells", list(checks()))
+def test_each_check_of_the_course_needs_the_first_cell(
+    monkeypatch: pytest.MonkeyPatch, cells: list[str]
+) -> None:
+    assert to_run(monkeypatch, cells, [len(cells) - 1])[0] == 0
+
+
+@pytest.fixture(scope="module")
+def new_kernel() -> Iterator[Any]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(NOTEBOOKS_VARIABLE, "/somewhere")
+        manager, client = start_new_kernel(kernel_name="python3")
+        yield client
+        client.stop_channels()
+        manager.shutdown_kernel(now=True)
+
+
+def error_of(kernel: Any, source: str) -> str:
+    said: list[Any] = []
+    kernel.execute_interactive(source, output_hook=said.append, timeout=180)
+    return "\n".join(line for one in said for line in one["content"].get("traceback", []))
+
+
+def test_a_check_in_a_new_kernel_says_what_to_run_first(new_kernel: Any) -> None:
+    said = error_of(new_kernel, CHECK)
+    assert said.startswith("NameError: there is no check yet. This kernel is new")
+    assert "Run All Above Selected Cell" in said
+    assert "Traceback" in error_of(new_kernel, "1 / 0")
