@@ -59,6 +59,14 @@ class Diagnosis:
     next_step: str = ""
 
 
+ASKS_FOR_INPUT = Diagnosis(
+    "asks_for_input",
+    "The code calls `input()`, and nobody can answer `input()` while it is checked.",
+    "Remove the line with `input()`, and write the value into the code instead.",
+)
+"""The same words for a cell, a class and a program that wait for someone to type."""
+
+
 @dataclass(frozen=True)
 class Moment:
     """One dot on the card's timeline.

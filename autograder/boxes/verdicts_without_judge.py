@@ -12,13 +12,15 @@ from typing import TYPE_CHECKING, Any
 import re2
 
 from autograder.boxes.execution import CellRun, Check, Ended
-from autograder.verdict import Diagnosis, State, Verdict, failed, not_checked
+from autograder.verdict import ASKS_FOR_INPUT, Diagnosis, State, Verdict, failed, not_checked
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 _SYNTAX_ERRORS = ("SyntaxError", "IndentationError", "TabError")
 _ASSERTION = "AssertionError"
+_NO_INPUT = "StdinNotImplementedError"
+"""Raised by ``input()`` in a kernel that no person sits at."""
 _STUB = "NotImplementedError"
 """Raised by what nbgrader puts in the place of a solution."""
 
@@ -204,6 +206,14 @@ def _stopped_by_error(check: Check, run: CellRun, before: list[tuple[str, CellRu
         place = f"the cell that begins with “{title}”" if cause else "this check cell"
         return zero_points(
             check, key, f"In {place}, the notebook {what}.", next_step, _end_of_traceback(first)
+        )
+    if first.error.startswith(_NO_INPUT):
+        begins = f"The cell that begins with “{title}” stopped" if cause else "This check cell stopped"
+        return zero_points(
+            check,
+            ASKS_FOR_INPUT.key,
+            f"{begins}, so the check could not begin. {ASKS_FOR_INPUT.text}",
+            ASKS_FOR_INPUT.next_step,
         )
     reason = f"The check could not begin: {_told(run.error)}."
     if cause:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from autograder.kit.field_crashes import FIELDS, Crash
 from autograder.kit.python_names import MARKS
+from autograder.verdict import ASKS_FOR_INPUT
 
 __all__ = ["KNOWN", "NOT_SPUN_WHILE_CALLING", "Crash"]
 
@@ -29,6 +30,13 @@ KNOWN = (
         r"^\s*(?:SyntaxError|IndentationError|TabError): (?P<what>.*?)[.?]*$",
         "Python could not read the program: {what}. {why}",
         "{next_step}",
+    ),
+    Crash(
+        ASKS_FOR_INPUT.key,
+        # In a class's kernel; in a program, whose standard input is empty.
+        r"^(?:IPython\.core\.error\.)?StdinNotImplementedError\b|^EOFError: EOF when reading a line",
+        ASKS_FOR_INPUT.text,
+        ASKS_FOR_INPUT.next_step,
     ),
     Crash(
         "init_twice",

@@ -6,6 +6,7 @@ import pytest
 
 from autograder.kit.crashes import CRASHES, OTHER_CRASHES, meant, traceback_of
 from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.verdict import ASKS_FOR_INPUT
 
 NO_CONTEXT = "object does not support the context manager protocol"
 NO_ASYNC = "object does not support the asynchronous context manager protocol"
@@ -39,6 +40,22 @@ def _shown(lines: list[str]) -> Evidence:
 def test_what_is_newer_than_jazzy_is_said_to_be(lines: list[str], newer: bool) -> None:
     found = next(m for m in (*CRASHES, *OTHER_CRASHES) if m.recognise(_shown(lines)))
     assert (found.key == "newer_api") is newer
+
+
+@pytest.mark.parametrize(
+    "raised",
+    [
+        "IPython.core.error.StdinNotImplementedError: raw_input was called, but this frontend does not support input "
+        "requests.",
+        "StdinNotImplementedError: raw_input was called, but this frontend does not support input requests.",
+        "EOFError: EOF when reading a line",
+    ],
+)
+def test_input_is_named_and_not_taken_for_an_open_part(raised: str) -> None:
+    """The name of IPython's error ends like that of a stub's."""
+    shown = _shown(['    name = input("Your name? ")', raised])
+    found = next(mistake for mistake in (*CRASHES, *OTHER_CRASHES) if mistake.recognise(shown))
+    assert found.key == ASKS_FOR_INPUT.key
 
 
 def test_a_method_without_self_is_named() -> None:
