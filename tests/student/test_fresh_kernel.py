@@ -27,7 +27,7 @@ class FakeShell:
 
     def __init__(self, *names: str) -> None:
         self.user_ns = dict.fromkeys(names)
-        self.transform_cell = TransformerManager().transform_cell
+        self.transform_cell = TransformerManager().transform_cell  # type: ignore[no-untyped-call]
 
 
 def to_run(monkeypatch: pytest.MonkeyPatch, cells: list[str], own: list[int], *known: str) -> list[int]:

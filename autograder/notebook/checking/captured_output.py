@@ -3,6 +3,9 @@
 Only threads that began with the check are captured, so that a demonstration node that still runs in the background is
 not taken for the subject. What the kernel's streams are told is captured, whoever holds them: a handler of Python's
 ``logging`` keeps the stream that it found when its cell was run, as ``from sys import stdout`` does.
+
+A subject that asks for input finds the end of its standard input, as a program does that nobody sits at. The front end
+would show a box below the cell, and no other cell could run before somebody had answered.
 """
 
 from __future__ import annotations
@@ -16,6 +19,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from rclpy.impl.rcutils_logger import RcutilsLogger
 
+from autograder.notebook.cells.cell_output import notebook_shell
 from autograder.notebook.checking.judge_link import MAX_TEXT
 from autograder.standard_output import split_lines
 
@@ -51,9 +55,14 @@ class CapturedOutput:
         self._streams = [_CapturedStream(stream, self._tell, captured) for stream in self._usual_streams]
         sys.stdout, sys.stderr = self._streams
         self._silence_compiled_code()
+        self._kernel = getattr(notebook_shell(), "kernel", None)
+        if self._kernel is not None:
+            self._kernel._input_request = _no_input_for(captured, self._kernel._input_request)
         return self
 
     def __exit__(self, *_: object) -> None:
+        if self._kernel is not None:
+            del self._kernel._input_request
         setattr(RcutilsLogger, "log", self._usual_log)  # noqa: B010
         for stream in reversed(self._streams):  # the two may be one: what was put over the other goes first
             stream.finish()
@@ -88,6 +97,17 @@ class CapturedOutput:
             self._descriptors.append((descriptor, os.dup(descriptor)))
             os.dup2(nowhere, descriptor)
         os.close(nowhere)
+
+
+def _no_input_for(captured: Callable[[], bool], usual: Callable[..., str]) -> Callable[..., str]:
+    """The question of ``input()`` and ``getpass()`` to the front end, for all threads but the captured ones."""
+
+    def ask(*arguments: Any, **options: Any) -> str:
+        if captured():
+            raise EOFError("EOF when reading a line")  # Python's own words
+        return usual(*arguments, **options)
+
+    return ask
 
 
 class _CapturedStream:

@@ -8,12 +8,14 @@ import sys
 import threading
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import pytest
 from rclpy.node import Node
 from std_msgs.msg import String
 
+from autograder.notebook.checking import captured_output
 from autograder.notebook.checking.captured_output import CapturedOutput
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
@@ -154,3 +156,28 @@ def test_a_listener_with_a_logger_of_pythons_own_passes() -> None:
     with a_judge() as checked:
         verdict = checked("lab_1_2.listener", ListenerNode)
     assert verdict.score == verdict.max_score
+
+
+def test_a_subject_that_asks_for_input_finds_none_and_the_front_end_shows_no_box(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    class Kernel:
+        """As in ipykernel: ``input()`` and ``getpass()`` ask the front end, which waits for an answer."""
+
+        def _input_request(self, prompt: str) -> str:
+            return f"an answer to {prompt}"
+
+    kernel, ended = Kernel(), list[str]()
+    monkeypatch.setattr(captured_output, "notebook_shell", lambda: SimpleNamespace(kernel=kernel))
+
+    def subject() -> None:
+        try:
+            kernel._input_request("Your name?")
+        except EOFError as error:
+            ended.append(str(error))
+
+    with CapturedOutput(lambda *_: None):
+        in_a_thread(subject)
+        assert kernel._input_request("another cell") == "an answer to another cell"
+    assert ended == ["EOF when reading a line"]
+    assert "_input_request" not in vars(kernel)
