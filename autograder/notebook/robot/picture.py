@@ -48,12 +48,14 @@ class RobotPicture:
         trail: Where it has been, oldest first.
         before: Where it was in the picture before: it glides from there. None where it stands.
         glide: Seconds for that.
+        robots: How many robots of this name there are on the ROS domain.
     """
 
     state: RobotState
     trail: tuple[Point, ...] = ()
     before: Pose | None = None
     glide: float = 0.2
+    robots: int = 1
 
     def __repr__(self) -> str:
         """The picture in words."""
@@ -67,7 +69,16 @@ class RobotPicture:
         says = f' It says "{self.state.says}".' if self.state.says else ""
         return (
             f"The robot is in {room}, at x = {pose.x:.2f} m, y = {pose.y:.2f} m, "
-            f"heading {math.degrees(pose.heading):.0f}°. {doing}{wall}{lamp}{says}"
+            f"heading {math.degrees(pose.heading):.0f}°. {doing}{wall}{lamp}{says}{self._others()}"
+        )
+
+    def _others(self) -> str:
+        """A warning if other robots have the same name; empty otherwise."""
+        if self.robots < 2:
+            return ""
+        return (
+            f" {self.robots} robots are called /robot, and each of them obeys /cmd_vel. If another notebook has started"
+            " one, end it there with robot.stop(). That of a kernel which was restarted goes away within half a minute."
         )
 
     def _repr_html_(self) -> str:
@@ -76,7 +87,8 @@ class RobotPicture:
         attributes = (
             f'width="{width}" height="{height}" decoding="sync" style="max-width: 100%; height: auto"'
         )
-        return as_image(self.svg(), repr(self), attributes)
+        warning = f"<p><strong>{escape(self._others().strip())}</strong></p>" if self._others() else ""
+        return as_image(self.svg(), repr(self), attributes) + warning
 
     def svg(self) -> str:
         """The picture alone."""

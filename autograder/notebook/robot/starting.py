@@ -109,17 +109,21 @@ class _RobotPictures:
         self._robot = robot
         self._trail: deque[tuple[float, float]] = deque(maxlen=_TRAIL)
         self._shown = robot.state
+        self._robots = 1
 
     def first(self) -> RobotPicture:
         return RobotPicture(self._shown)
 
-    def next(self, _: Node) -> RobotPicture | None:
-        before = self._shown
-        if self._robot.state == before:
+    def next(self, node: Node) -> RobotPicture | None:
+        before, known = self._shown, self._robots
+        names = [space.rstrip("/") + "/" + name for name, space in node.get_node_names_and_namespaces()]
+        self._robots = max(1, names.count(self._robot.get_fully_qualified_name()))
+        if self._robot.state == before and self._robots == known:
             return None
         far = self._follow()
         glides = not far and self._shown.pose != before.pose
-        return RobotPicture(self._shown, tuple(self._trail), before.pose if glides else None, PERIOD)
+        start = before.pose if glides else None
+        return RobotPicture(self._shown, tuple(self._trail), start, PERIOD, self._robots)
 
     def last(self) -> RobotPicture:
         """It glides nowhere when nobody looks any more."""

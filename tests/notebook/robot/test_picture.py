@@ -7,10 +7,13 @@ import math
 import re
 import xml.etree.ElementTree as ET
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any, cast
 
 from autograder.notebook.robot.motion import START, Pose, Velocity
 from autograder.notebook.robot.node import RobotState
 from autograder.notebook.robot.picture import RobotPicture
+from autograder.notebook.robot.starting import _RobotPictures
 
 
 def place(picture: RobotPicture) -> tuple[float, float, float]:
@@ -68,3 +71,21 @@ def test_its_bubble_is_inside_of_the_picture_wherever_it_is() -> None:
         assert left + width <= float(page.attrib["width"])
         assert 'It says "I am at' in repr(picture)
     assert "bubble" not in RobotPicture(RobotState()).svg().split("</style>")[1]
+
+
+def test_a_second_robot_of_the_same_name_is_told_below_the_picture_while_it_is_there() -> None:
+    robot = SimpleNamespace(state=RobotState(), get_fully_qualified_name=lambda: "/robot")
+    nodes = [("robot", "/"), ("talker", "/"), ("robot", "/other")]
+    graph = SimpleNamespace(get_node_names_and_namespaces=lambda: nodes)
+    pictures = _RobotPictures(cast("Any", robot))
+    assert pictures.next(cast("Any", graph)) is None
+    nodes.append(("robot", "/"))
+    picture = pictures.next(cast("Any", graph))
+    assert picture is not None
+    assert "2 robots are called /robot" in repr(picture)
+    assert "<p><strong>2 robots are called /robot" in picture._repr_html_()
+    assert pictures.next(cast("Any", graph)) is None
+    nodes.pop()
+    picture = pictures.next(cast("Any", graph))
+    assert picture is not None
+    assert "robots are called" not in picture._repr_html_()
