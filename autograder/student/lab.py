@@ -26,6 +26,8 @@ COURSE_PAGE = "course"
 """The path of the course page on the server, below its base address."""
 NOTHING_TO_SAVE = "--ServerApp.contents_manager_class=autograder.student.lab_server.OpenedNotebooks"
 """A notebook that was only opened is not marked as unsaved."""
+QUIET = ("--ServerApp.log_level=WARN", "--LabApp.log_level=WARN")
+"""Of what the server does at its start, a student needs the address alone: ``lab_server`` prints that."""
 NOTEBOOKS_VARIABLE = "AUTOGRADER_NOTEBOOKS"
 """Names the folder of the session's notebooks to its terminals."""
 _CONFIG_PATH = "JUPYTER_CONFIG_PATH"
@@ -61,7 +63,9 @@ def open_lab(folder: Path, arguments: Sequence[str] = ()) -> None:
 
     try:
         # In this process, because the domain is held for as long as it lives.
-        LabApp.launch_instance([*_start_page(), NOTHING_TO_SAVE, *_start_folder(Path.cwd()), *arguments])
+        LabApp.launch_instance(
+            [*_start_page(), NOTHING_TO_SAVE, *QUIET, *_start_folder(Path.cwd()), *arguments]
+        )
     finally:
         end_idle_workers()
         if claim:
@@ -110,4 +114,8 @@ def _start_page() -> list[str]:
 def _start_folder(root: Path) -> list[str]:
     """Begin inside a chapter where there is only one: a single folder to click on helps nobody."""
     inside = [path for path in root.iterdir() if not path.name.startswith((".", "_"))]
-    return [f"--ServerApp.preferred_dir={inside[0]}"] if len(inside) == 1 and inside[0].is_dir() else []
+    return (
+        [f"--FileContentsManager.preferred_dir={inside[0].name}"]
+        if len(inside) == 1 and inside[0].is_dir()
+        else []
+    )

@@ -38,6 +38,12 @@ VERSION = sys.version.split()[0]
 """The version of the kernel's language (``IPythonKernel.language_info``): it runs on the server's own Python."""
 
 
+_THIS_MACHINE = ("", "localhost", "127.0.0.1", "::1")
+_RUNS = """
+JupyterLab runs. Keep this terminal open; press Ctrl-C twice in it to end JupyterLab.
+If no page has opened in your browser, open this address:"""
+
+
 class _CourseHandler(JupyterHandler):
     auth_resource = "contents"
     _track_activity = False
@@ -166,6 +172,7 @@ def _jupyter_server_extension_points() -> list[dict[str, str]]:
 
 
 def _load_jupyter_server_extension(server: ServerApp) -> None:
+    _tell_the_address_last(server)
     base = url_path_join(server.web_app.settings["base_url"], COURSE_PAGE)
     server.web_app.add_handlers(  # type: ignore[no-untyped-call]
         ".*$",
@@ -176,3 +183,18 @@ def _load_jupyter_server_extension(server: ServerApp) -> None:
             (f"{base}/certificate/([A-Za-z0-9_.-]+)\\.svg", Certificate),
         ],
     )
+
+
+def _tell_the_address_last(server: ServerApp) -> None:
+    """Print the address when everything has started, and leave out the lines in which the server tells it earlier.
+
+    For a server that other machines reach, Jupyter's own words stay: they name its address on the network.
+    """
+
+    def tell() -> None:
+        print(f"{_RUNS}\n\n{server.local_url}", file=sys.stderr, flush=True)
+
+    if server.ip not in _THIS_MACHINE:
+        return
+    server.log.addFilter(lambda record: server.local_url not in record.getMessage())
+    server.io_loop.add_callback(tell)

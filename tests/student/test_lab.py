@@ -25,6 +25,7 @@ from autograder.student.lab import (
     NOTEBOOKS_VARIABLE,
     NOTHING_TO_SAVE,
     PANEL,
+    QUIET,
     NoSuchFolderError,
     end_idle_workers,
     open_lab,
@@ -32,7 +33,12 @@ from autograder.student.lab import (
 
 ROS_VARIABLES = ("ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
 VARIABLES = (*ROS_VARIABLES, "JUPYTER_CONFIG_PATH", journal.VARIABLE, NOTEBOOKS_VARIABLE)
-START = ["--LabApp.default_url=/course", f"--LabApp.extra_labextensions_path={PANEL}", NOTHING_TO_SAVE]
+START = [
+    "--LabApp.default_url=/course",
+    f"--LabApp.extra_labextensions_path={PANEL}",
+    NOTHING_TO_SAVE,
+    *QUIET,
+]
 
 
 class Started:
@@ -133,7 +139,7 @@ def test_it_opens_the_folder_inside_the_only_chapter(
         (tmp_path / name).mkdir()
     open_lab(tmp_path, ["--no-browser"])
     assert started[0].folder == tmp_path
-    inside: list[Any] = [f"--ServerApp.preferred_dir={tmp_path / chapters[0]}"] if len(chapters) == 1 else []
+    inside: list[Any] = [f"--FileContentsManager.preferred_dir={chapters[0]}"] if len(chapters) == 1 else []
     assert started[0].argv == [*START, *inside, "--no-browser"]
 
 

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
 import shutil
+import signal
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -57,3 +61,24 @@ def test_what_is_no_notebook_of_python_stays_as_it_is(tmp_path: Path) -> None:
     assert opened(tmp_path, "notes.txt")["content"] == "mine"
     assert opened(tmp_path, "bare.ipynb", content=False)["content"] is None
     assert opened(tmp_path, "")["type"] == "directory"
+
+
+def test_the_address_stands_last_and_alone(tmp_path: Path) -> None:
+    (tmp_path / "chapters").mkdir()
+    command = [sys.executable, "-m", "autograder", "lab", "--folder", "chapters", "--no-browser"]
+    command += ["--allow-root", "--ServerApp.port=0", "--ServerApp.port_retries=0"]
+    environment = {**os.environ, **dict.fromkeys(("HOME", "JUPYTER_RUNTIME_DIR"), str(tmp_path))}
+    with subprocess.Popen(
+        command, cwd=tmp_path, env=environment, stderr=subprocess.PIPE, text=True
+    ) as server:
+        assert server.stderr is not None
+        said = []
+        for line in server.stderr:
+            said.append(line)
+            if line.startswith("http://"):
+                break
+        server.send_signal(signal.SIGTERM)
+    assert said[-1].startswith("http://127.0.0.1:")
+    assert said[-2] == "\n"
+    assert "open this address" in said[-3]
+    assert [line for line in said if "http" in line] == [said[-1]]
