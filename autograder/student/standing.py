@@ -48,6 +48,7 @@ class NotebookStanding:
         exercises: In the order in which they are done.
         read: Whether its reader has marked it as read.
         touched: Whether there is anything to begin anew: it was checked or marked, or is not as it was released.
+        worked: When the student last checked, marked, reset or saved it, in seconds since the epoch; 0 for never.
     """
 
     name: str
@@ -57,6 +58,7 @@ class NotebookStanding:
     exercises: tuple[ExerciseStanding, ...]
     read: bool
     touched: bool
+    worked: float
 
     @property
     def points(self) -> float:
@@ -119,7 +121,7 @@ class Standing:
 
     Attributes:
         chapters: In their order.
-        following: The first notebook that is not done; None where all are.
+        following: The notebook to go on with; None where all are done.
         begun: Whether anything was done yet.
     """
 
@@ -142,11 +144,19 @@ def standing(root: Path, folder: Path, entries: Sequence[Entry]) -> Standing:
     """
     reached = journal.best(entries)
     read = {entry.name: entry.kind == "read" for entry in entries if entry.kind != "check"}
-    touched = {entry.notebook: entry.kind != "reset" for entry in entries}
-    chapters = tuple(_chapter(one, folder, reached, read, touched) for one in course.chapters(root))
-    notebooks = (notebook for chapter in chapters for notebook in chapter.notebooks)
-    following = next((notebook for notebook in notebooks if notebook.state != "done"), None)
-    return Standing(chapters, following, bool(entries))
+    last = {entry.notebook: entry for entry in entries}
+    chapters = tuple(_chapter(one, folder, reached, read, last) for one in course.chapters(root))
+    notebooks = [notebook for chapter in chapters for notebook in chapter.notebooks]
+    begun = any(notebook.worked for notebook in notebooks)
+    return Standing(chapters, _following(notebooks), begun)
+
+
+def _following(notebooks: Sequence[NotebookStanding]) -> NotebookStanding | None:
+    """The notebook that was worked on last; if that is done, the next one that is not, and after the end the first."""
+    times = [notebook.worked for notebook in notebooks]
+    here = times.index(max(times)) if times else 0
+    in_order = [*notebooks[here:], *notebooks[:here]]
+    return next((notebook for notebook in in_order if notebook.state != "done"), None)
 
 
 def _chapter(
@@ -154,7 +164,7 @@ def _chapter(
     folder: Path,
     reached: dict[str, Entry],
     read: dict[str, bool],
-    touched: dict[str, bool],
+    last: dict[str, Entry],
 ) -> ChapterStanding:
     notebooks = []
     for lab in chapter.labs:
@@ -162,8 +172,11 @@ def _chapter(
         known = tuple(_exercise(exercise_id, reached) for exercise_id in chapter.exercises_of(lab))
         path = notebook_path(chapter, lab, folder)
         shown = path.relative_to(folder).as_posix() if path.is_file() else ""
-        marked, begun = read.get(lab.name, False), touched.get(lab.name, False) or _is_changed(path, lab)
-        notebooks.append(NotebookStanding(lab.name, title, minutes, shown, known, marked, begun))
+        entry, saved = last.get(lab.name), path.stat().st_mtime if _is_changed(path, lab) else 0.0
+        touched = bool(saved) or (entry is not None and entry.kind != "reset")
+        worked = max(saved, entry.time if entry is not None else 0.0)
+        marked = read.get(lab.name, False)
+        notebooks.append(NotebookStanding(lab.name, title, minutes, shown, known, marked, touched, worked))
     finished = journal.finished(chapter, reached)
     return ChapterStanding(chapter.folder.name, chapter.title, tuple(notebooks), finished)
 

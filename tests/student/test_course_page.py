@@ -62,10 +62,10 @@ def test_the_terminal_says_the_same(tmp_path: Path) -> None:
     said = CliRunner().invoke(cli, ["progress", "--folder", str(tmp_path)])
     assert said.exit_code == 0
     assert re.search(r"\[~\] Lab 1\.2: A talker and a listener +60 min +10 of 30 points", said.output)
-    assert "Go on with The robotic nervous system" in said.output
+    assert "Go on with Lab 1.2: A talker and a listener" in said.output
     data = json.loads(CliRunner().invoke(cli, ["progress", "--json", "--folder", str(tmp_path)]).output)
     lab = next(one for one in data["chapters"][0]["notebooks"] if one["name"] == "lab_1_2")
-    assert (data["next"], lab["state"], lab["points"]) == ("00_nervous_system", "begun", 10)
+    assert (data["next"], lab["state"], lab["points"]) == ("lab_1_2", "begun", 10)
 
 
 def test_nobody_is_told_minutes_that_nobody_has_measured() -> None:

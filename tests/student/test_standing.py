@@ -52,14 +52,19 @@ def test_points_make_a_notebook_done_and_a_mark_one_that_is_only_read() -> None:
     assert (states["lab_1_2"].state, states["summary"].state) == ("begun", "new")
 
 
-def test_one_goes_on_with_the_first_notebook_that_is_not_done() -> None:
+def test_one_goes_on_where_one_has_worked_last() -> None:
     def following(*entries: Entry) -> str | None:
         found = after(*entries).following
         return found.name if found else None
 
     names = [one.name for chapter in after().chapters for one in chapter.notebooks]
     assert following() == names[0]
-    assert following(full("lab_1_2.talker")) == names[0]
+    assert following(full("lab_1_2.talker")) == "lab_1_2"
+    done = [full(exercise, 2) for exercise in exercises_of("lab_1_2")]
+    assert following(*done) == names[names.index("lab_1_2") + 1]
+    assert following(*done, full("lab_1_4.client", 1)) == names[names.index("lab_1_2") + 1]
+    assert following(*done, Entry("reset", "lab_1_1", 3)) == "lab_1_1"
+    assert following(*done, Entry("read", names[-1], 3)) == names[0]
     everything = [full(exercise) for exercise in exercises.all_ids()]
     read = [Entry("read", name, 2) for name in names]
     assert following(*everything, *read[1:]) == (None if exercises_of(names[0]) else names[0])
@@ -81,6 +86,17 @@ def test_only_what_was_begun_can_be_begun_anew(tmp_path: Path) -> None:
     saved = next(chapters.rglob("lab_1_3.ipynb"))
     saved.write_bytes(saved.read_bytes() + b"\n")
     assert touched() == ["lab_1_3"]
+
+
+def test_one_goes_on_in_a_notebook_that_one_has_saved(tmp_path: Path) -> None:
+    hand_out(tmp_path / "class", ROOT)
+    chapters = tmp_path / "class" / course.CHAPTERS
+    saved = next(chapters.rglob("lab_1_3.ipynb"))
+    saved.write_bytes(saved.read_bytes() + b"\n")
+    found = standing(tmp_path / "class", chapters, [full("lab_1_2.talker")])
+    assert found.following is not None
+    assert found.following.name == "lab_1_3"
+    assert found.begun
 
 
 def test_a_chapter_is_finished_with_its_last_point_and_not_before() -> None:
