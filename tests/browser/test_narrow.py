@@ -49,6 +49,27 @@ def test_the_course_page_fits(page: Page, lab: str, scheme: str, width: int) -> 
     assert page.evaluate(TOO_WIDE) <= 0
 
 
+def test_the_course_panel_gives_its_room_to_the_notebook(page: Page, lab: str) -> None:
+    from playwright.sync_api import expect
+
+    page.goto(lab.format("lab/tree/01_ros2_fundamentals/lab_1_2.ipynb"))
+    panel = page.locator("#ros2-course-panel")
+    expect(panel).to_be_visible()
+    page.set_viewport_size({"width": WIDTH, "height": 900})
+    expect(panel).to_be_hidden()
+    page.set_viewport_size({"width": 1300, "height": 900})
+    expect(panel).to_be_visible()
+
+    page.set_viewport_size({"width": WIDTH, "height": 900})
+    expect(panel).to_be_hidden()
+    page.locator(".jp-SideBar li[data-id='ros2-course-panel']").click()
+    expect(panel).to_be_visible()
+    page.frame_locator("iframe[title=Course]").locator("#open-lab_1_3").click()
+    expect(panel).to_be_hidden()
+    expect(page.locator(".jp-NotebookPanel:visible")).to_contain_text("Lab 1.3: A service that adds")
+    look(page, "narrow-opened")
+
+
 @pytest.mark.parametrize("width", [WIDTH, 1100])
 def test_the_figures_of_a_feedback_page_fit(page: Page, chapters: Path, tmp_path: Path, width: int) -> None:
     notebook = nbformat.read(chapters / "01_ros2_fundamentals" / "lab_1_2.ipynb", as_version=4)

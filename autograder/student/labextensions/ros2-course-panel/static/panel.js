@@ -6,7 +6,8 @@ window._JUPYTERLAB["ros2-course-panel"] = (() => {
   let shared; // the modules that JupyterLab shares, by name and version
   const module_ = async name => (await Object.values(shared[name])[0].get())();
 
-  const WIDE = 1000; // pixels of a window that has room for a notebook beside the panel
+  // A window without room for a notebook beside the panel.
+  const narrow = window.matchMedia("(max-width: 999px)");
 
   // A dialog is never wider than the window: what Validate says of a cell is one long line for each of its own.
   const DIALOGS = `body .jp-Dialog-content { box-sizing: border-box; max-width: min(1000px, 100vw - 16px); }
@@ -52,7 +53,10 @@ window._JUPYTERLAB["ros2-course-panel"] = (() => {
       [...app.shell.widgets("main")].map(one => one.context).filter(context => context?.path === path);
     return {
       isSeen: () => widget.isVisible,
-      open: path => app.commands.execute("docmanager:open", { path }),
+      open: path => {
+        if (narrow.matches) app.shell.collapseLeft();
+        return app.commands.execute("docmanager:open", { path });
+      },
       save: path => Promise.all(opened(path).filter(one => one.model.dirty).map(one => one.save())),
       reload: path => Promise.all(opened(path).map(one => one.revert())),
     };
@@ -77,9 +81,19 @@ window._JUPYTERLAB["ros2-course-panel"] = (() => {
           restorer?.add(widget, widget.id);
           app.shell.add(widget, "left", { rank: 10 });
           // The first time it stands where JupyterLab has the list of files; later, whatever the reader has left there.
+          // A narrow window has room for the notebook alone: one click on its icon brings the panel back.
           app.restored.then(() => {
-            if (!localStorage.getItem(widget.id) && window.innerWidth >= WIDE) app.shell.activateById(widget.id);
+            if (!localStorage.getItem(widget.id) && !narrow.matches) app.shell.activateById(widget.id);
             localStorage.setItem(widget.id, "seen");
+            let folded = false;
+            const fit = () => {
+              if (narrow.matches === folded) return;
+              if (narrow.matches && app.shell.leftCollapsed) return;
+              folded = narrow.matches;
+              folded ? app.shell.collapseLeft() : app.shell.expandLeft();
+            };
+            fit();
+            narrow.addEventListener("change", fit);
           });
         },
       };
