@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import inspect
 import os
 from typing import TYPE_CHECKING, Any, Protocol
@@ -24,7 +25,7 @@ from autograder.student import journal
 from autograder.verdict import Verdict, not_checked
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from autograder.messages.lines import Message
 
@@ -81,7 +82,7 @@ def check(exercise: str, subject: Any) -> float:
     if is_live():
         raise_if_stale(subject)
     prepare_environment()
-    with CardDisplay(exercise, subject) as place:
+    with CardDisplay(exercise, subject) as place, _plainly_interrupted():
         verdict = _ask(exercise, subject, place)
         if verdict is None:
             return Score(0.0)
@@ -92,6 +93,16 @@ def check(exercise: str, subject: Any) -> float:
     for then in _after_a_check:
         then(verdict, subject)
     return Score(verdict.score)
+
+
+@contextlib.contextmanager
+def _plainly_interrupted() -> Iterator[None]:
+    """Let IPython show an interrupt in one line: the check's own frames tell a student nothing."""
+    try:
+        yield
+    except KeyboardInterrupt as interrupt:
+        interrupt._render_traceback_ = lambda: ["KeyboardInterrupt"]  # type: ignore[attr-defined]
+        raise
 
 
 def _ask(exercise: str, subject: Any, place: CardDisplay) -> Verdict | None:

@@ -123,6 +123,12 @@ def meanwhile(place):
     assert "agc-waiting" not in card.data["text/html"].partition("<style>")[0]
 
 
+def test_an_interrupted_check_shows_none_of_its_own_lines(run_cells: Callable[..., list[Any]]) -> None:
+    interrupted = "def meanwhile(place):\n    raise KeyboardInterrupt"
+    *_, (error,) = run_cells(JUDGE, interrupted, "check('lab', Talker)", allow_errors=True)
+    assert error.traceback == ["KeyboardInterrupt"]
+
+
 def test_after_half_a_minute_a_check_says_what_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "getloadavg", lambda: (4000.0, 1.0, 1.0))
     progress = card_display.Progress("run 2", "So far: “It says b.”")
