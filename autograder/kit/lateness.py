@@ -39,7 +39,7 @@ def answers_late(bench: Bench) -> float:
     return ANSWERS_SOON if bench.in_a_cell else ANSWERS_LATE
 
 
-def called_nobody(part: Part) -> bool:
+def called_before_server(part: Part) -> bool:
     """True if the last call was made before the server existed: ROS delivers such a request to no server.
 
     Only a notebook tells of its calls. The judge compares them with the start of its own server, so the answer is the
@@ -58,7 +58,7 @@ def called_too_early(called: str, wait: str) -> Mistake:
     """
 
     def found(evidence: Evidence) -> bool:
-        return any(map(called_nobody, evidence.parts))
+        return any(map(called_before_server, evidence.parts))
 
     return mistake(
         "called_too_early",
@@ -73,7 +73,7 @@ def called_too_early(called: str, wait: str) -> Mistake:
 
 def was_patient(part: Part) -> bool:
     """True if a client that ended had waited for its server for :data:`PATIENT` seconds or longer."""
-    return not called_nobody(part) and _waited_since(part, part.first("interface"), PATIENT)
+    return not called_before_server(part) and _waited_since(part, part.first("interface"), PATIENT)
 
 
 def was_patient_with_an_answer(part: Part, requests: Sequence[str]) -> bool:

@@ -1,7 +1,8 @@
-"""A kernel that has just started, so that the given cells have not run in it: what to run first, and who says so.
+"""Help in a kernel that has just started, in which the given cells of the notebook have not run.
 
-JupyterLab's button *Check* asks :func:`cells_to_run`. A cell that is run by hand ends with a ``NameError``, which is
-Python's; IPython loads this module as an extension, so that the error names what to run. Nothing here imports ROS.
+JupyterLab's button *Check* asks :func:`cells_to_run` which of them to run first. A check that the student runs by hand
+ends with Python's ``NameError``; IPython loads this module as an extension, so that the error tells what to run. This
+module imports no ROS, so that a kernel starts as fast as before.
 """
 
 from __future__ import annotations
@@ -32,15 +33,15 @@ _ADVICE = (
 def cells_to_run(sources: Sequence[str], own: Sequence[int]) -> str:
     """The cells above a check that have to run before it in this kernel.
 
-    A cell has to run if it defines a name that is read later and that the kernel does not have. So nothing runs in a
-    kernel in which the notebook's cells have run, and no demonstration runs that the check does not need.
+    A cell has to run if it defines a name that a later one of them reads and that the kernel does not have. So no cell
+    runs twice, and no demonstration runs that the check does not need.
 
     Args:
         sources: The code cells of the notebook from the first one to that of the check.
-        own: The places of those that run in any case: the student's answer and the check.
+        own: The indices of the cells that run in any case: the student's answer and the check.
 
     Returns:
-        Their places, as JSON.
+        The indices of the other cells, as JSON.
     """
     shell: Any = get_ipython()
     known = {*vars(builtins), *shell.user_ns}

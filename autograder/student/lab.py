@@ -27,7 +27,7 @@ COURSE_PAGE = "course"
 NOTHING_TO_SAVE = "--ServerApp.contents_manager_class=autograder.student.lab_server.OpenedNotebooks"
 """A notebook that was only opened is not marked as unsaved."""
 QUIET = ("--ServerApp.log_level=WARN", "--LabApp.log_level=WARN")
-"""Of what the server does at its start, a student needs the address alone: ``lab_server`` prints that."""
+"""Hides Jupyter's twenty lines about its start. ``lab_server`` prints the one that a student needs, the address."""
 NOTEBOOKS_VARIABLE = "AUTOGRADER_NOTEBOOKS"
 """Names the folder of the session's notebooks to its terminals."""
 _CONFIG_PATH = "JUPYTER_CONFIG_PATH"

@@ -42,7 +42,7 @@ class Recorder:
         """Prepare.
 
         Args:
-            hurry: Called again and again by whoever waits; it may end the wait by an exception.
+            hurry: Called repeatedly during each wait; it may end the wait by raising an exception.
         """
         self._hurry = hurry
         self._changed = threading.Condition()

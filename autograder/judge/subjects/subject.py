@@ -25,7 +25,7 @@ class Subject(Protocol):
         """Called once, before the first run, with the domain of this check."""
 
     def tell_so_far(self, words: str) -> None:
-        """Tell whoever waits for the verdict what the judge knows so far, in a sentence; nothing where nobody waits."""
+        """Tell the waiting student, in a sentence, what the judge knows so far. Only a notebook can show it."""
 
     def renew(self) -> None:
         """Begin the next run with a fresh participant: an old one would meet the judge's new one only slowly."""

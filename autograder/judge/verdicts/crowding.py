@@ -23,9 +23,9 @@ TOO_BUSY = (
     "or wrong. Close some, or wait a little, and check again."
 )
 SEEN_SO_FAR = "So far the judge saw this, and it may be due to the busy machine: “{}”"
-"""What is known of a subject that has no verdict."""
+"""Quotes the diagnosis of a look that may be wrong."""
 ANSWER_WITHIN = 30.0
-"""Seconds of wall time after which a student in a notebook gets an answer, even if that is a crowded machine."""
+"""Wall time in seconds after which a check in a notebook ends without a verdict if the machine is crowded."""
 _EVERY = 0.1
 """Seconds between two counts."""
 
@@ -35,7 +35,7 @@ class TooBusy(JudgeFailed):
 
 
 class OutOfTime(BaseException):
-    """The check of a crowded machine has lasted long enough. No ``except Exception`` may take it for something else."""
+    """A check on a crowded machine has used up its time. No ``except Exception`` on the way may catch this."""
 
 
 class Crowding:
@@ -76,9 +76,9 @@ class Crowding:
 
 
 class Hurry:
-    """Ends a check that has lasted :data:`ANSWER_WITHIN` seconds on a machine that is so busy that limits are longer.
+    """Ends a check after :data:`ANSWER_WITHIN` seconds if the machine is so busy that it stretches the judge's limits.
 
-    On any other machine a check takes as long as its exercise needs, and has a verdict.
+    On any other machine a check takes as long as its exercise needs.
 
     Args:
         runnable: Returns how many threads want a processor now.
@@ -98,10 +98,10 @@ class Hurry:
         self._sum = self._counts = 0
 
     def __call__(self) -> None:
-        """To be called again and again while the judge waits.
+        """Count, and end the check if its time is over. To be called repeatedly while the judge waits.
 
         Raises:
-            OutOfTime: At most once, since what clears up afterwards waits, too.
+            OutOfTime: At most once, since the cleaning up after it waits, too.
         """
         now = self._now()
         if now >= self._next_count:

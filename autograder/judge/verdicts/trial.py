@@ -135,7 +135,7 @@ def _no_hurry() -> None:
 
 
 def _so_far(verdict: Verdict) -> str:
-    """What is known of a subject that has no verdict yet, in a sentence; empty if that is no mistake with a name."""
+    """The diagnosis of a failed look as a sentence that claims nothing for sure; empty if the mistake is unknown."""
     known = verdict.diagnosis
     return SEEN_SO_FAR.format(known.text) if known and known.key != UNKNOWN else ""
 
@@ -170,7 +170,7 @@ def look(
         seed: What random inputs are drawn from.
         domain_id: The ROS domain.
         before: What the first look saw.
-        hurry: Called while the judge waits; it may end the look by an exception.
+        hurry: Called repeatedly while the judge waits; it may end the look by raising an exception.
     """
     bench = TestBench(subject, domain_id, reference, pace, Random(seed), before, hurry)
     try:

@@ -21,7 +21,7 @@ from autograder.kit.lateness import (
     ANSWERS_SOON,
     SOON,
     again_while,
-    called_nobody,
+    called_before_server,
     called_too_early,
     hold_back,
     meets_late_action,
@@ -62,7 +62,7 @@ AFTERMATH = 1.0
 
 def scenario(bench: Bench) -> None:
     """Four runs: a goal that succeeds at a late server, then one refused, one aborted, no server, in any order."""
-    if late(bench) and not called_nobody(bench.seen()):
+    if late(bench) and not called_before_server(bench.seen()):
         known = bool(bench.seen().of("goal"))
         for run in bench.random.sample((refused, aborted, unserved), 3):
             run(bench, known)

@@ -24,7 +24,7 @@ from autograder.kit.giving_up import GIVE_UP_LIMIT, drawn_patience
 from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import (
     again_while,
-    called_nobody,
+    called_before_server,
     called_too_early,
     meets_late,
     meets_present,
@@ -91,7 +91,7 @@ def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls:
         calls: How many calls a subject that has done its work has made.
     """
     late, *others = runs
-    if not called(bench, late, calls) or called_nobody(bench.seen()):
+    if not called(bench, late, calls) or called_before_server(bench.seen()):
         return
     known = bool(requests(bench.seen()))
     order: list[Run | None] = [*others, None]

@@ -4,8 +4,8 @@ Only threads that began with the check are captured, so that a demonstration nod
 not taken for the subject. What the kernel's streams are told is captured, whoever holds them: a handler of Python's
 ``logging`` keeps the stream that it found when its cell was run, as ``from sys import stdout`` does.
 
-A subject that asks for input finds the end of its standard input, as a program does that nobody sits at. The front end
-would show a box below the cell, and no other cell could run before somebody had answered.
+A subject that calls ``input()`` gets an EOFError, like a program without a terminal. Otherwise JupyterLab would show an
+input box below the cell, and no other cell could run until the student had answered.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ class CapturedOutput:
 
 
 def _no_input_for(captured: Callable[[], bool], usual: Callable[..., str]) -> Callable[..., str]:
-    """The question of ``input()`` and ``getpass()`` to the front end, for all threads but the captured ones."""
+    """Return ipykernel's function behind ``input()`` and ``getpass()``, with an EOFError for captured threads."""
 
     def ask(*arguments: Any, **options: Any) -> str:
         if captured():
