@@ -36,7 +36,9 @@ SOLUTION = "The reference solution, and why it is written so"
 OTHER_WAY = "Another way"
 """The heading of an alternative to it."""
 
-_BLAMELESS = "The checker itself had trouble: this is no mistake of yours, and no points were counted."
+_BLAMELESS = (
+    "The checker itself had trouble: the missing result is not your mistake, and no points were counted."
+)
 _TRY_AGAIN = "Run the check again. If this card comes back, show it to your instructor."
 
 

@@ -63,6 +63,7 @@ def test_what_is_no_notebook_of_python_stays_as_it_is(tmp_path: Path) -> None:
     assert opened(tmp_path, "")["type"] == "directory"
 
 
+@pytest.mark.slow
 def test_the_address_stands_last_and_alone(tmp_path: Path) -> None:
     (tmp_path / "chapters").mkdir()
     command = [sys.executable, "-m", "autograder", "lab", "--folder", "chapters", "--no-browser"]
