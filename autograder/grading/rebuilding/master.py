@@ -56,7 +56,7 @@ def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
             f"{source} is not a notebook: {error}. Make it anew or put back a copy."
         ) from error
     resources: dict[str, Any] = {}
-    rubrics = _rubrics(notebook)
+    rubrics, given = _rubrics(notebook), {grade_id(cell): _given_part(cell.source) for cell in notebook.cells}
     for step in steps:
         try:
             notebook, resources = _step(step)().preprocess(notebook, resources)
@@ -66,8 +66,9 @@ def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
             raise MasterUnusable(f"{source} cannot be prepared as nbgrader does it: {error}") from error
     _check_cells(source, notebook)
     for cell in notebook.cells:
-        if grade_id(cell) in rubrics:
-            cell.metadata["autograder"] = {"rubric": rubrics[grade_id(cell)]}
+        if is_answer(cell):
+            name = grade_id(cell)
+            cell.metadata["autograder"] = {"rubric": rubrics.get(name, ""), "given": given[name]}
     return notebook
 
 
@@ -79,6 +80,14 @@ def _rubrics(source: NotebookNode) -> dict[str, str]:
             with contextlib.suppress(CellError):
                 found[grade_id(cell)] = find_model_answer(cell.source)
     return found
+
+
+def _given_part(source: str) -> str:
+    """The lines of a source's cell outside of its solution; empty where nbgrader replaces the whole cell."""
+    lines = source.splitlines()
+    begin = next((place for place, line in enumerate(lines) if "BEGIN SOLUTION" in line), len(lines))
+    end = next((place for place, line in enumerate(lines) if "END SOLUTION" in line), 0)
+    return "\n".join((*lines[:begin], *lines[end + 1 :])) if begin < end else ""
 
 
 def check_of(cell: NotebookNode) -> Check | None:

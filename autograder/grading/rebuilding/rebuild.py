@@ -17,14 +17,20 @@ from nbformat import NotebookNode
 
 from autograder.boxes.execution import CellType
 from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding.matching import Known, match, normalized
+from autograder.kit.in_words import counted
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from autograder.grading.rebuilding.submission import SubmittedCell
 
 _START = ""
 _HIDDEN = re.compile(r"(BEGIN|END) (HIDDEN TESTS|MARK SCHEME)")
+_ELSEWHERE = (
+    "This cell was missing from the notebook that was handed in. Look for its answer in the other cells."
+)
+_MOST_NAMED = 5
 _SHOWN = re.compile(r"\(attachment:([\w.-]+)\)")
 
 
@@ -70,43 +76,48 @@ class _Sorting:
     def __init__(self, master: NotebookNode, submitted: Sequence[SubmittedCell]) -> None:
         self._master = {grade_id(cell): cell for cell in master.cells if grade_id(cell)}
         self._submitted = submitted
-        self._places: dict[str, list[int]] = {}
-        for index, cell in enumerate(submitted):
-            if cell.grade_id in self._master:
-                self._places.setdefault(cell.grade_id, []).append(index)
+        self._matches = match([_known(cell) for cell in master.cells], submitted)
+        self._places = self._matches.places
         self._chosen = {name: self._choose(name, places) for name, places in self._places.items()}
+        self._elsewhere = {
+            name: self._choose(name, places) for name, places in self._matches.elsewhere.items()
+        }
+        for name in [name for name in self._master if name in self._elsewhere]:
+            if self._is_in_its_place(name, self._elsewhere[name]):
+                self._chosen[name] = self._elsewhere.pop(name)
 
     def cells(self) -> list[NotebookNode]:
         """The cells of the rebuilt notebook."""
-        groups = self._extras_by_anchor()
+        extras, late = self._extras_by_anchor(), self._late_checks()
         built: list[NotebookNode] = []
-        pending: list[NotebookNode] = [_extra(cell) for cell in groups.get(_START, [])]
+        pending: list[NotebookNode] = [_extra(cell) for cell in extras.get(_START, [])]
         for name, cell in self._master.items():
-            present = name in self._chosen
-            if present or is_check(cell):
-                # A check that was deleted comes back behind the student's own cells, which it may need.
-                built += pending
+            if name not in late:
+                if name in self._chosen or is_check(cell):
+                    # A check that was deleted comes back behind the student's own cells, which it may need.
+                    built += pending
+                    pending = []
+                built.append(self._filled(name, cell))
+            # Any other deleted cell comes back before them: the student may have changed what it defines.
+            pending += [_extra(extra) for extra in extras.get(name, [])]
+            for check in [check for check, anchor in late.items() if anchor == name]:
+                built += [*pending, nodes.copied(self._master[check])]
                 pending = []
-            built.append(self._filled(name, cell))
-            # Any other deleted cell comes back before them: its stub must not replace an answer given
-            # elsewhere.
-            pending += [_extra(extra) for extra in groups.get(name, [])]
         return built + pending
 
     def remarks(self) -> list[str]:
         """The differences from the master that the student should know."""
-        found = [
-            f"The cell {_quoted(name)} was missing. It was put back."
-            for name in self._master
-            if name not in self._chosen
-        ]
+        found = [*self._on_lost_marks(), *self._on_missing_cells()]
         for name, places in self._places.items():
             found += self._remarks_on(name, places)
-        order = [name for name, _ in sorted(self._chosen.items(), key=lambda item: item[1])]
+        order = sorted(self._chosen, key=lambda name: self._chosen[name])
         if order != [name for name in self._master if name in self._chosen]:
             found.append("Cells of the notebook had changed places. They were put in their order again.")
+        unmarked = self._matches.unmarked
         strangers = {
-            cell.grade_id for cell in self._submitted if cell.grade_id and cell.grade_id not in self._master
+            cell.grade_id
+            for place, cell in enumerate(self._submitted)
+            if cell.grade_id and cell.grade_id not in self._master and place not in unmarked
         }
         found += [
             f"There is no graded cell {_quoted(name)} in this notebook. It runs as a cell of your own."
@@ -114,7 +125,27 @@ class _Sorting:
         ]
         return found
 
-    def _remarks_on(self, name: str, places: list[int]) -> list[str]:
+    def _on_lost_marks(self) -> Iterator[str]:
+        in_their_place = self._chosen.keys() & self._matches.elsewhere.keys()
+        if count := len(self._matches.unmarked) + len(in_their_place):
+            yield (
+                f"{counted(count, 'cell')} had lost the metadata by which nbgrader knows a cell: some editors and "
+                "programs drop it. The grader recognized the cells by their ids or their text."
+            )
+
+    def _on_missing_cells(self) -> Iterator[str]:
+        missing = [name for name in self._master if name not in self._chosen]
+        answers = [name for name in missing if is_answer(self._master[name])]
+        given = [name for name in missing if name not in answers]
+        if given:
+            yield f"{_were(given)} missing and put back."
+        if empty := [name for name in answers if name not in self._elsewhere]:
+            yield f"{_were(empty)} missing and put back without an answer."
+        for name in answers:
+            if name in self._elsewhere:
+                yield f"The cell {_quoted(name)} was missing. What it asks for is in another cell, and that one counts."
+
+    def _remarks_on(self, name: str, places: Sequence[int]) -> list[str]:
         master, cell = self._master[name], self._submitted[self._chosen[name]]
         found = []
         if len(places) > 1 and is_answer(master):
@@ -129,12 +160,11 @@ class _Sorting:
                 f"The cell {_quoted(name)} had become a {cell.kind} cell. "
                 f"It is a {master.cell_type} cell again."
             )
-        handed_out = (master.source.strip(), _without_hidden(master.source).strip())
-        if not is_answer(master) and cell.source.strip() not in handed_out:
+        if not is_answer(master) and normalized(cell.source) not in map(normalized, _handed_out(master)):
             found.append(f"The cell {_quoted(name)} is not yours to change. The original was used.")
         return found
 
-    def _choose(self, name: str, places: list[int]) -> int:
+    def _choose(self, name: str, places: Sequence[int]) -> int:
         """The last submitted cell of that name before its check, as the check sees it when all cells are run.
 
         A copy of the untouched stub does not count, and one behind the check only where there is no other.
@@ -150,14 +180,47 @@ class _Sorting:
         checks = (self._places[one] for one in behind if is_check(self._master[one]) and one in self._places)
         return max(next(checks, [len(self._submitted)]))
 
+    def _anchor(self, place: int) -> str:
+        """The named cell that is at a place, or that a cell at this place follows."""
+        before = {at: name for name, at in self._chosen.items() if at <= place}
+        return before[max(before)] if before else _START
+
+    def _is_in_its_place(self, name: str, place: int) -> bool:
+        """True if a cell is exactly where an answer's own cell would be: nothing moves if it is taken for that one."""
+        names, anchor = list(self._master), self._anchor(place)
+        behind = {at: other for other, at in self._chosen.items() if at > place}
+        return (
+            place not in self._chosen.values()
+            and (not anchor or names.index(anchor) < names.index(name))
+            and (not behind or names.index(name) < names.index(behind[min(behind)]))
+        )
+
+    def _late_checks(self) -> dict[str, str]:
+        """The checks that wait for an answer in another cell, and the named cell behind which that one is."""
+        names = list(self._master)
+        late: dict[str, str] = {}
+        for name, place in self._elsewhere.items():
+            check = next((one for one in names[names.index(name) :] if is_check(self._master[one])), "")
+            anchor = self._anchor(place)
+            if check and anchor and names.index(anchor) >= names.index(check):
+                late[check] = max(late.get(check, anchor), anchor, key=names.index)
+        return late
+
     def _extras_by_anchor(self) -> dict[str, list[SubmittedCell]]:
         """The student's own cells, by the named cell that they follow."""
+        anchors = {place: name for name, place in self._chosen.items()}
+        given = {
+            place
+            for name, places in self._places.items()
+            if not is_answer(self._master[name])
+            for place in places
+        }
         groups: dict[str, list[SubmittedCell]] = {}
         anchor = _START
         for index, cell in enumerate(self._submitted):
-            if self._chosen.get(cell.grade_id) == index:
-                anchor = cell.grade_id
-            elif cell.grade_id not in self._master or is_answer(self._master[cell.grade_id]):
+            if index in anchors:
+                anchor = anchors[index]
+            elif index not in given:
                 groups.setdefault(anchor, []).append(cell)
         return groups
 
@@ -165,7 +228,15 @@ class _Sorting:
         filled = nodes.copied(cell)
         if is_answer(cell) and name in self._chosen:
             filled["source"] = self._submitted[self._chosen[name]].source
+        elif is_answer(cell) and self._may_be_answered_elsewhere(name):
+            # No stub: it would replace what the student has defined. For a person to see where to look.
+            filled["source"] = _ELSEWHERE if cell.cell_type == CellType.MARKDOWN else f"# {_ELSEWHERE}"
         return filled
+
+    def _may_be_answered_elsewhere(self, name: str) -> bool:
+        """True if another cell answers a missing one, or a person has to look: nbgrader gives a stub zero points."""
+        by_a_person = self._master[name].metadata.nbgrader.get("grade", False) and bool(self._matches.own)
+        return name in self._elsewhere or by_a_person
 
 
 def grade_id(cell: NotebookNode) -> str:
@@ -182,6 +253,22 @@ def is_check(cell: NotebookNode) -> bool:
     """True if the cell is one that is graded automatically."""
     marked = bool(cell.metadata.get("nbgrader", {}).get("grade", False))
     return marked and not is_answer(cell) and cell.cell_type == CellType.CODE
+
+
+def _known(cell: NotebookNode) -> Known:
+    return Known(
+        name=grade_id(cell),
+        kind=CellType(cell.cell_type),
+        identifier=str(cell.get("id", "")),
+        texts=_handed_out(cell),
+        is_answer=is_answer(cell),
+        given=str(cell.metadata.get("autograder", {}).get("given", "")),
+    )
+
+
+def _handed_out(cell: NotebookNode) -> tuple[str, str]:
+    """The text of a master's cell, and that of the same cell as students get it."""
+    return cell.source, _without_hidden(cell.source)
 
 
 def is_the_masters(cell: NotebookNode) -> bool:
@@ -255,6 +342,12 @@ def _escaped(text: str) -> str:
     """A remark may quote what a student wrote; none of it may become markup."""
     text = text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     return re.sub(r"([\\\[\]*#!|~$])", r"\\\1", " ".join(text.split()))
+
+
+def _were(names: Sequence[str]) -> str:
+    """The beginning of a sentence about cells: those of the names, of many only the first."""
+    shown = ", ".join(map(_quoted, names[:_MOST_NAMED])) + (" …" if len(names) > _MOST_NAMED else "")
+    return f"The cell {shown} was" if len(names) == 1 else f"{len(names)} cells ({shown}) were"
 
 
 def _quoted(name: str) -> str:

@@ -57,11 +57,13 @@ class SubmittedCell:
         kind: The cell's type as it was submitted.
         source: Its text.
         grade_id: The name it claims to have, empty for none.
+        identifier: Its id, empty for none.
     """
 
     kind: CellType
     source: str
     grade_id: str = ""
+    identifier: str = ""
 
 
 class NotAFile(UnreadableSubmission):
@@ -274,14 +276,19 @@ def _cell(cell: Any) -> SubmittedCell | None:
         source = "".join(source)
     if not isinstance(source, str) or len(source) > MAX_CELL_CHARACTERS:
         return None
-    # A lone surrogate is legal JSON but no text: it could not be written to a file again.
-    return SubmittedCell(
-        CellType(cell["cell_type"]), source.encode("utf-8", "replace").decode("utf-8"), _grade_id(cell)
-    )
+    return SubmittedCell(CellType(cell["cell_type"]), _text(source), _grade_id(cell), _name(cell.get("id")))
 
 
 def _grade_id(cell: Mapping[str, Any]) -> str:
     metadata = cell.get("metadata")
     nbgrader = metadata.get("nbgrader") if isinstance(metadata, Mapping) else None
-    grade_id = nbgrader.get("grade_id") if isinstance(nbgrader, Mapping) else None
-    return grade_id.encode("utf-8", "replace").decode("utf-8")[:200] if isinstance(grade_id, str) else ""
+    return _name(nbgrader.get("grade_id")) if isinstance(nbgrader, Mapping) else ""
+
+
+def _name(value: Any) -> str:
+    return _text(value)[:200] if isinstance(value, str) else ""
+
+
+def _text(value: str) -> str:
+    """A text that can be written to a file: a lone surrogate is legal JSON, but it has no UTF-8."""
+    return value.encode("utf-8", "replace").decode("utf-8")

@@ -24,7 +24,7 @@ def code(source: Any, **fields: Any) -> dict[str, Any]:
     return {"cell_type": "code", "source": source, "metadata": {}, "outputs": [], **fields}
 
 
-def test_takes_the_text_and_the_claimed_name_and_nothing_else() -> None:
+def test_takes_the_text_the_claimed_name_and_the_id_and_nothing_else() -> None:
     tagged = code(
         ["a = 1\n", "b = 2"],
         metadata={"tags": ["skip-execution"], "nbgrader": {"grade_id": "Talker", "points": 1000}},
@@ -32,7 +32,7 @@ def test_takes_the_text_and_the_claimed_name_and_nothing_else() -> None:
         id="x",
     )
     cells, left_out = parse(notebook(tagged))
-    assert cells == [SubmittedCell(CellType.CODE, "a = 1\nb = 2", "Talker")]
+    assert cells == [SubmittedCell(CellType.CODE, "a = 1\nb = 2", "Talker", "x")]
     assert left_out == 0
 
 

@@ -1,0 +1,231 @@
+"""Which cell of the master each submitted cell is, even if an editor has dropped the marks by which nbgrader knows it.
+
+A cell is recognized by its grade_id, else by its id, else by its text. If an answer has no such cell, it is looked for
+in the student's other cells, by what they define. All of this decides only which text of a student answers which cell:
+the text of given cells and of checks always comes from the master.
+"""
+
+from __future__ import annotations
+
+import ast
+import functools
+import posixpath
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.boxes.execution import CellType
+from autograder.masters.code_cells import python_of, written_file
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from autograder.grading.rebuilding.submission import SubmittedCell
+
+_WRITES = re2.compile(r"\A\s*%%writefile[ \t]+(?:-a[ \t]+|--append[ \t]+)?[\"']?([^\s\"']+)")
+
+
+@dataclass(frozen=True)
+class Known:
+    """A cell of the master, with everything by which a submitted cell is recognized as this one.
+
+    Attributes:
+        name: Its grade_id, empty for a text cell that nbgrader does not know.
+        kind: Its type.
+        identifier: The id that the cell has in the released notebook.
+        texts: Its text as the master and the released notebook have it.
+        is_answer: Whether students write it.
+        given: The part of an answer's text that students are given, such as the question above the answer.
+    """
+
+    name: str
+    kind: CellType
+    identifier: str
+    texts: tuple[str, ...]
+    is_answer: bool
+    given: str = ""
+
+
+@dataclass(frozen=True)
+class Matches:
+    """The submitted cells, by the master's cells that they are.
+
+    Attributes:
+        places: The places of the submitted cells that each of the master's cells has, by grade_id.
+        unmarked: The places of those that had lost their grade_id.
+        elsewhere: For answers without such a cell, the places of cells that define the same or write the same file.
+        own: The places of all cells that are none of the master's, and in which a student has written something.
+    """
+
+    places: Mapping[str, Sequence[int]]
+    unmarked: frozenset[int]
+    elsewhere: Mapping[str, Sequence[int]]
+    own: frozenset[int]
+
+
+def match(master: Sequence[Known], submitted: Sequence[SubmittedCell]) -> Matches:
+    """Recognize the submitted cells.
+
+    Args:
+        master: The master's cells, in their order.
+        submitted: The submitted cells.
+    """
+    matching = _Matching(master, submitted)
+    matching.by_id()
+    matching.by_text()
+    matching.by_given_part()
+    elsewhere = matching.elsewhere()
+    taken = {place for places in matching.places.values() for place in places}
+    return Matches(
+        matching.places, frozenset(matching.unmarked), elsewhere, frozenset(matching.written - taken)
+    )
+
+
+def normalized(text: str) -> str:
+    """A text without what editors change by themselves: blanks at the ends of lines, empty lines around it."""
+    return "\n".join(line.rstrip() for line in text.strip().splitlines())
+
+
+class _Matching:
+    def __init__(self, master: Sequence[Known], submitted: Sequence[SubmittedCell]) -> None:
+        self._master = {cell.name: cell for cell in master if cell.name}
+        self._submitted = submitted
+        handed_out = {"", *(normalized(text) for cell in master for text in cell.texts)}
+        self.written = {
+            place for place, cell in enumerate(submitted) if normalized(cell.source) not in handed_out
+        }
+        """The places of the cells in which a student has written something."""
+        self.unmarked: set[int] = set()
+        self.places: dict[str, list[int]] = {}
+        for place, cell in enumerate(submitted):
+            if cell.grade_id in self._master:
+                self.places.setdefault(cell.grade_id, []).append(place)
+
+    def by_id(self) -> None:
+        """Take cells without a known grade_id for the missing cells of the same id."""
+        names = {cell.identifier: cell.name for cell in self._missing() if cell.identifier}
+        for place, cell in self._left():
+            self._take(names.get(cell.identifier, ""), place)
+
+    def by_text(self) -> None:
+        """Take cells for the missing cells of exactly the same text; of several, the first for the first."""
+        names: dict[str, list[str]] = {}
+        for missing in self._missing():
+            for text in {normalized(text) for text in missing.texts} - {""}:
+                names.setdefault(text, []).append(missing.name)
+        for place, cell in self._left():
+            same = names.get(normalized(cell.source), [])
+            self._take(next((name for name in same if name not in self.places), ""), place)
+
+    def by_given_part(self) -> None:
+        """Take cells for missing answers that define nothing, such as texts, if the given part is in them alone."""
+        for missing in self._missing():
+            if not missing.is_answer or _defines(missing) or not self._is_telling(missing):
+                continue
+            for place, cell in self._left():
+                if cell.kind is missing.kind and _has_lines(cell.source, missing.given):
+                    self._take(missing.name, place)
+
+    def elsewhere(self) -> dict[str, list[int]]:
+        """Find the cells that define what missing answers were to define.
+
+        A given cell into which an answer was merged is the student's own from now on: the original is put back.
+        """
+        code = {
+            place: cell.source
+            for place, cell in enumerate(self._submitted)
+            if cell.kind is CellType.CODE and place in self.written
+        }
+        left = [place for place, _ in self._left() if place in code]
+        found = {}
+        for missing in self._missing() if code else ():
+            if missing.is_answer:
+                places = [place for place, text in code.items() if _is_answered_by(missing, text)]
+                places = places or [place for place in left if _is_mentioned_by(missing, code[place])]
+                if places:
+                    found[missing.name] = places
+        merged = {place for places in found.values() for place in places}
+        for name in [name for name in self.places if not self._master[name].is_answer]:
+            self.places[name] = [place for place in self.places[name] if place not in merged]
+            if not self.places[name]:
+                del self.places[name]
+        return found
+
+    def _take(self, name: str, place: int) -> None:
+        if name and name not in self.places:
+            self.places[name] = [place]
+            self.unmarked.add(place)
+
+    def _missing(self) -> list[Known]:
+        return [cell for name, cell in self._master.items() if name not in self.places]
+
+    def _left(self) -> list[tuple[int, SubmittedCell]]:
+        taken = {place for places in self.places.values() for place in places}
+        return [(place, cell) for place, cell in enumerate(self._submitted) if place not in taken]
+
+    def _is_telling(self, missing: Known) -> bool:
+        """True if the given part of an answer is in no other cell of the master."""
+        others = (text for cell in self._master.values() if cell is not missing for text in cell.texts)
+        return bool(missing.given.strip()) and not any(_has_lines(text, missing.given) for text in others)
+
+
+def _defines(answer: Known) -> str:
+    """What a stub defines: the path of the file that it writes, else a pattern for its names; empty for neither."""
+    return _file(answer.texts[0]) or (_names(answer.texts[0]) if answer.kind is CellType.CODE else "")
+
+
+def _is_answered_by(answer: Known, text: str) -> bool:
+    """True if a text defines, at its top level, what a stub defines."""
+    if file := _file(answer.texts[0]):
+        return _file(text) == file
+    names = _names(answer.texts[0])
+    return bool(names) and re2.search(names, text) is not None
+
+
+def _is_mentioned_by(answer: Known, text: str) -> bool:
+    """True if a text mentions the file that a stub writes, such as a script that writes this file in another way."""
+    file = re2.escape(posixpath.basename(_file(answer.texts[0])))
+    return bool(file) and re2.search(rf"(?:^|[^\w.-]){file}(?:[^\w-]|$)", text) is not None
+
+
+def _file(source: str) -> str:
+    """The path of the file that a cell writes; empty for any other cell."""
+    found = _WRITES.match(source)
+    return posixpath.normpath(found[1]) if found else ""
+
+
+@functools.lru_cache(maxsize=1024)
+def _names(stub: str) -> str:
+    """A pattern for texts that define a name that a stub defines; empty if the stub defines none."""
+    names = "|".join(map(re2.escape, _defined_names(stub)))
+    return (
+        rf"(?m)^(?:(?:async[ \t]+)?def|class)[ \t]+(?:{names})\b"
+        rf"|^(?:{names})[ \t]*(?::[^=\n]*)?=(?:[^=]|$)"
+        rf"|^(?:from|import)\b.*\b(?:{names})\b"
+        if names
+        else ""
+    )
+
+
+def _defined_names(stub: str) -> list[str]:
+    if written_file(stub) is not None:
+        return []
+    try:
+        body = ast.parse(python_of(stub)).body
+    except SyntaxError:
+        return []  # an instructor's own stub, with a magic in it
+    names = []
+    for node in body:
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+            names.append(node.name)
+        elif isinstance(node, (ast.Assign, ast.AnnAssign)):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            names += [target.id for target in targets if isinstance(target, ast.Name)]
+    return names
+
+
+def _has_lines(text: str, lines: str) -> bool:
+    """True if a text has these lines, in this order; blanks around a line do not count."""
+    there = (line.strip() for line in text.splitlines())
+    return all(line.strip() in there for line in lines.splitlines() if line.strip())
