@@ -31,6 +31,7 @@ class Task:
         limits: All limits.
         files: Files of the assignment that are beside the notebook, by relative path.
         problem: Why there is nothing to execute; empty for a notebook that can be.
+        remarks: Sentences on what was put right in the notebook.
         boxed: Execute in boxes, or not at all. False is for the course's own notebooks, and for an instructor who has
             typed so; such a result never counts as one from a box.
     """
@@ -44,6 +45,7 @@ class Task:
     limits: Limits = field(default_factory=Limits)
     files: Mapping[str, bytes] = field(default_factory=dict)
     problem: str = ""
+    remarks: tuple[str, ...] = ()
     boxed: bool = True
 
     def beside_others(self, beside: bool) -> Task:

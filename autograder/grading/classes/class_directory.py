@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
     from traitlets.config import Config
 
+    from autograder.grading.rebuilding.named_cells import NamedCells
+
 CONFIG_NAME = "nbgrader_config.py"
 STATE_NAME = ".autograder"
 SUFFIX = ".ipynb"
@@ -184,6 +186,19 @@ class ClassDirectory:
         )
 
         return read_master(self.path / "source" / assignment / f"{notebook}{SUFFIX}", self.config)
+
+    @functools.cached_property
+    def named_cells(self) -> NamedCells:
+        """The named cells of all of its notebooks, as they are now."""
+        from autograder.grading.rebuilding.named_cells import NamedCells
+
+        return NamedCells(
+            {
+                (assignment, notebook): self.path / "source" / assignment / f"{notebook}{SUFFIX}"
+                for assignment in self.assignments()
+                for notebook in self.notebooks(assignment)
+            }
+        )
 
     def files(self, assignment: str) -> dict[str, bytes]:
         """The files beside the assignment's notebooks, by relative path."""

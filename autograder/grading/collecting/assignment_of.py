@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import itertools
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
@@ -15,9 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from autograder.grading.classes.class_directory import ClassDirectory
-
-Target = tuple[str, str]
-"""An assignment, and one of its notebooks."""
+    from autograder.grading.rebuilding.named_cells import Target
+    from autograder.grading.rebuilding.submission import SubmittedCell
 
 
 class NoTarget(ValueError):
@@ -69,8 +67,11 @@ class AssignmentOf:
     def __init__(self, directory: ClassDirectory, asked: str = "") -> None:
         self._directory = directory
         self._asked = asked
-        self.notes: list[str] = []
+
+    @property
+    def notes(self) -> list[str]:
         """A sentence on each source of the class that cannot be read."""
+        return self._directory.named_cells.notes
 
     def is_notebook(self, file: str) -> bool:
         """True if a file of this name is a notebook of the class."""
@@ -90,11 +91,16 @@ class AssignmentOf:
             data: What it holds.
 
         Raises:
-            NoTarget: Nothing says which; or its cells are those of another one than its name or the instructor says.
+            NoTarget: Nothing says which; or its cells are those of several, or of another one than its name or the
+                instructor says.
         """
         named = self._notebooks.get(stem_of(name)[0].casefold(), [])
-        names = _names(data)
-        held = self._by_its_cells(names)
+        cells = _cells(data)
+        names = {cell.grade_id for cell in cells} - {""}
+        mixed = self._directory.named_cells.assignments(cells)
+        if len(mixed) > 1 and self._asked not in mixed:
+            raise _of_several(mixed)
+        held = self._directory.named_cells.closest(names, self._asked if self._asked in mixed else "")
         agreed = [target for target in named if not held or target in held]
         if self._asked:
             target = self._of_asked(agreed or held)
@@ -138,12 +144,6 @@ class AssignmentOf:
             )
         return _only(here) or _only([(self._asked, one) for one in self._directory.notebooks(self._asked)])
 
-    def _by_its_cells(self, names: set[str]) -> list[Target]:
-        """The notebooks that have most of these cells; none where they have no names of the class."""
-        shared = {target: len(names & own) for target, own in self._grade_ids.items()}
-        most = max(shared.values(), default=0)
-        return [target for target, count in shared.items() if most and count == most]
-
     @functools.cached_property
     def _notebooks(self) -> dict[str, list[Target]]:
         """Assignments and notebooks by the notebook's name, which several assignments may have."""
@@ -151,34 +151,26 @@ class AssignmentOf:
             {name: self._directory.notebooks(name) for name in self._directory.assignments()}
         )
 
-    @functools.cached_property
-    def _grade_ids(self) -> dict[Target, set[str]]:
-        """The names of the cells of each notebook, as they are handed out; none of one that cannot be read."""
-        found: dict[Target, set[str]] = {}
-        for assignment, notebook in itertools.chain.from_iterable(self._notebooks.values()):
-            path = self._directory.path / "source" / assignment / f"{notebook}{SUFFIX}"
-            try:
-                cells, _ = parse(path.read_bytes())
-            except UnreadableSubmission as error:
-                cells = []
-                self.notes.append(
-                    f"{path} cannot be read ({error}): what is for it is told by file names alone"
-                )
-            found[assignment, notebook] = {cell.grade_id for cell in cells} - {""}
-        return found
 
-
-def _names(data: bytes) -> set[str]:
-    """The names of a notebook's cells; none of what cannot be read."""
+def _cells(data: bytes) -> list[SubmittedCell]:
+    """A notebook's cells; none of what cannot be read."""
     try:
-        return {cell.grade_id for cell in parse(data)[0] if cell.grade_id}
+        return parse(data)[0]
     except UnreadableSubmission:
-        return set()
+        return []
 
 
 def _only(targets: Sequence[Target]) -> Target | None:
     """The one target that there is; None where there is none, or several."""
     return targets[0] if len(targets) == 1 else None
+
+
+def _of_several(assignments: list[str]) -> NoTarget:
+    """The reason against a file that has the checks of several assignments: it would count for one of them alone."""
+    return NoTarget(
+        f"it has the cells of {' and of '.join(assignments)}: ask for a notebook of each; or collect this one alone, "
+        f"once for each of them, the first time with --assignment {assignments[0]}"
+    )
 
 
 def _contradiction(named: list[Target], held: list[Target]) -> NoTarget:

@@ -34,7 +34,9 @@ _MOST_NAMED = 5
 _SHOWN = re.compile(r"\(attachment:([\w.-]+)\)")
 
 
-def rebuild(master: NotebookNode, submitted: Sequence[SubmittedCell], left_out: int = 0) -> NotebookNode:
+def rebuild(
+    master: NotebookNode, submitted: Sequence[SubmittedCell], left_out: int = 0, others: Sequence[str] = ()
+) -> NotebookNode:
     """Build the notebook that is executed and graded from the master and the submitted cells.
 
     Args:
@@ -42,12 +44,17 @@ def rebuild(master: NotebookNode, submitted: Sequence[SubmittedCell], left_out: 
             grade_id.
         submitted: The submission's cells.
         left_out: The number of cells that could not be read.
+        others: Other assignments of which the submission has graded cells.
 
     Returns:
         nbformat 4.5. Its first cell shows what was put right, where anything was; its metadata has that, too.
     """
     sorting = _Sorting(master, submitted)
-    remarks = sorting.remarks()
+    remarks = [
+        f"This notebook has the checks of {other}, too. They are not graded here: hand in the notebook of {other}."
+        for other in others
+    ]
+    remarks += sorting.remarks()
     if left_out:
         remarks.append(f"{left_out} cell(s) had not the form of a notebook cell and were left out.")
     return _finished(master, sorting.cells(), remarks)
@@ -119,10 +126,14 @@ class _Sorting:
             for place, cell in enumerate(self._submitted)
             if cell.grade_id and cell.grade_id not in self._master and place not in unmarked
         }
-        found += [
-            f"There is no graded cell {_quoted(name)} in this notebook. It runs as a cell of your own."
-            for name in sorted(strangers)
-        ]
+        if len(strangers) == 1:
+            found.append(
+                f"There is no graded cell {_quoted(*strangers)} in this notebook. It runs as a cell of your own."
+            )
+        elif strangers:
+            found.append(
+                f"There are no graded cells {_listed(sorted(strangers))}. They run as cells of your own."
+            )
         return found
 
     def _on_lost_marks(self) -> Iterator[str]:
@@ -141,9 +152,11 @@ class _Sorting:
             yield f"{_were(given)} missing and put back."
         if empty := [name for name in answers if name not in self._elsewhere]:
             yield f"{_were(empty)} missing and put back without an answer."
-        for name in answers:
-            if name in self._elsewhere:
-                yield f"The cell {_quoted(name)} was missing. What it asks for is in another cell, and that one counts."
+        found = [name for name in answers if name in self._elsewhere]
+        if len(found) == 1:
+            yield f"{_were(found)} missing. What it asks for is in another cell, and that one counts."
+        elif found:
+            yield f"{_were(found)} missing. What they ask for is in other cells, and those count."
 
     def _remarks_on(self, name: str, places: Sequence[int]) -> list[str]:
         master, cell = self._master[name], self._submitted[self._chosen[name]]
@@ -345,9 +358,17 @@ def _escaped(text: str) -> str:
 
 
 def _were(names: Sequence[str]) -> str:
-    """The beginning of a sentence about cells: those of the names, of many only the first."""
-    shown = ", ".join(map(_quoted, names[:_MOST_NAMED])) + (" …" if len(names) > _MOST_NAMED else "")
-    return f"The cell {shown} was" if len(names) == 1 else f"{len(names)} cells ({shown}) were"
+    """The beginning of a sentence about cells."""
+    return (
+        f"The cell {_quoted(*names)} was"
+        if len(names) == 1
+        else f"{len(names)} cells ({_listed(names)}) were"
+    )
+
+
+def _listed(names: Sequence[str]) -> str:
+    """The names, of many only the first."""
+    return ", ".join(map(_quoted, names[:_MOST_NAMED])) + (" …" if len(names) > _MOST_NAMED else "")
 
 
 def _quoted(name: str) -> str:

@@ -58,12 +58,14 @@ class SubmittedCell:
         source: Its text.
         grade_id: The name it claims to have, empty for none.
         identifier: Its id, empty for none.
+        is_graded: Whether it claims to carry points; believed only of a source.
     """
 
     kind: CellType
     source: str
     grade_id: str = ""
     identifier: str = ""
+    is_graded: bool = False
 
 
 class NotAFile(UnreadableSubmission):
@@ -276,13 +278,16 @@ def _cell(cell: Any) -> SubmittedCell | None:
         source = "".join(source)
     if not isinstance(source, str) or len(source) > MAX_CELL_CHARACTERS:
         return None
-    return SubmittedCell(CellType(cell["cell_type"]), _text(source), _grade_id(cell), _name(cell.get("id")))
-
-
-def _grade_id(cell: Mapping[str, Any]) -> str:
     metadata = cell.get("metadata")
-    nbgrader = metadata.get("nbgrader") if isinstance(metadata, Mapping) else None
-    return _name(nbgrader.get("grade_id")) if isinstance(nbgrader, Mapping) else ""
+    marks = metadata.get("nbgrader") if isinstance(metadata, Mapping) else None
+    marks = marks if isinstance(marks, Mapping) else {}
+    return SubmittedCell(
+        CellType(cell["cell_type"]),
+        _text(source),
+        _name(marks.get("grade_id")),
+        _name(cell.get("id")),
+        marks.get("grade") is True,
+    )
 
 
 def _name(value: Any) -> str:

@@ -28,7 +28,6 @@ from autograder.grading.task import Task
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from pathlib import Path
 
     from nbformat import NotebookNode
 
@@ -51,7 +50,7 @@ def task_of(directory: ClassDirectory, submission: Submission, notebook: str) ->
     """
     student, assignment = submission.student, submission.assignment
     master = directory.master(assignment, notebook)
-    rebuilt, problem = _rebuilt(submission.folder / f"{notebook}{SUFFIX}", master)
+    rebuilt, problem = _rebuilt(directory, submission, notebook, master)
     prose = [cell.source for cell in master.cells if cell.cell_type == CellType.MARKDOWN]
     cells = cells_of(rebuilt, demonstrations=are_run(directory), prose=prose)
     work = hashlib.sha256(msgspec.json.encode(cells)).hexdigest()
@@ -65,13 +64,17 @@ def task_of(directory: ClassDirectory, submission: Submission, notebook: str) ->
         limits=limits_of(directory),
         files=directory.files(assignment),
         problem=problem,
+        remarks=() if problem else tuple(rebuilt.metadata["autograder"]["remarks"]),
         boxed=not sandboxing.switched_off(directory),
     )
     return task, rebuilt
 
 
-def _rebuilt(path: Path, master: NotebookNode) -> tuple[NotebookNode, str]:
+def _rebuilt(
+    directory: ClassDirectory, submission: Submission, notebook: str, master: NotebookNode
+) -> tuple[NotebookNode, str]:
     """The notebook that stands for the submitted file, and why it was not taken over (empty where it was)."""
+    path = submission.folder / f"{notebook}{SUFFIX}"
     try:
         cells, left_out = parse(read_bytes(path))
         if is_of_another(master, cells):
@@ -80,7 +83,8 @@ def _rebuilt(path: Path, master: NotebookNode) -> tuple[NotebookNode, str]:
             )
     except UnreadableSubmission as error:
         return rebuild_unreadable(master, str(error)), str(error)
-    return rebuild(master, cells, left_out), ""
+    others = [one for one in directory.named_cells.assignments(cells) if one != submission.assignment]
+    return rebuild(master, cells, left_out, others), ""
 
 
 def cells_of(

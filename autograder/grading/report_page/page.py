@@ -14,7 +14,7 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.errors import GradingError, clear_disk_errors, clear_place_errors
 from autograder.grading.report_page import statistics as figures
-from autograder.grading.reporting.rows import DROPPED, EXCUSED, columns
+from autograder.grading.reporting.rows import DROPPED, EXCUSED, columns, remarks_on
 from autograder.grading.returning.page_exporter import POLICY
 from autograder.grading.table.class_table import ClassTable, by_exercise, read_table
 from autograder.regular_files import write_whole
@@ -100,6 +100,7 @@ def _page(
         mistakes=figures.mistakes(table),
         times=_times(directory, table),
         progress=_progress(store, table),
+        remarks=remarks_on(table.rows),
         names=names,
     )
 

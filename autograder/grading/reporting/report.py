@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from autograder.grading.reporting.rows import DROPPED, LATE, NO_EXERCISE, Row, total
+from autograder.grading.reporting.rows import DROPPED, LATE, NO_EXERCISE, Row, remarks_on, total
 from autograder.grading.running.timings import Timings
 from autograder.regular_files import name_as_text
 from autograder.verdict import State
@@ -124,6 +124,7 @@ def _submissions(rows: tuple[Row, ...]) -> list[dict[str, Any]]:
                 "score": total(exercises),
                 "max_score": sum(row.max_score for row in exercises),
                 "is_dropped": exercises != all_rows,
+                "remarks": remarks_on(all_rows).get((student, assignment), ""),
                 "late_penalty": -sum(row.score for row in exercises if row.exercise == LATE),
                 "exercises": [
                     {

@@ -12,7 +12,16 @@ from rich.table import Table
 from rich.text import Text
 
 from autograder.cards.readable import printable
-from autograder.grading.reporting.rows import DROPPED, EXCUSED, LATE, NOT_SUBMITTED, WAITS, columns, total
+from autograder.grading.reporting.rows import (
+    DROPPED,
+    EXCUSED,
+    LATE,
+    NOT_SUBMITTED,
+    WAITS,
+    columns,
+    remarks_on,
+    total,
+)
 from autograder.grading.running.progress import plain_line
 from autograder.grading.task import UNREADABLE
 from autograder.kit.in_words import counted
@@ -65,6 +74,8 @@ def show(report: GradeReport, console: Console | None = None) -> None:
         plain_line(console, f"unreadable   {printable(where)}: {printable(reason)}", "yellow")
     for name, due in report.due.items():
         plain_line(console, f"due          {name} {due:%Y-%m-%d %H:%M}, time zone {due.tzinfo}")
+    for (student, assignment), words in remarks_on(report.rows).items():
+        plain_line(console, f"remark       {printable(student)}/{assignment}: {words}")
     for notice in report.notices:
         plain_line(console, f"note         {printable(notice)}")
     for problem in report.problems:

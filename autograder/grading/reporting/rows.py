@@ -6,6 +6,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from autograder.cards.readable import one_line
 from autograder.grading.reporting.spreadsheet import csv_text
 from autograder.grading.task import points
 from autograder.regular_files import write_whole
@@ -49,6 +50,7 @@ COLUMNS = (
 )
 
 
+_LONGEST_REMARKS = 600
 _NOTHING_JUDGED = (NOT_SUBMITTED, NOT_GRADED, EXCUSED, State.NOT_CHECKED)
 
 
@@ -77,6 +79,7 @@ class Row:
         extra: Points that a person gave on top.
         waits: Whether a person has to look at it.
         name: The student's name, empty where it is not known.
+        remarks: Sentences on what was put right in the notebook, such as cells that were missing.
     """
 
     student: str
@@ -92,6 +95,7 @@ class Row:
     extra: float = 0.0
     waits: bool = False
     name: str = ""
+    remarks: tuple[str, ...] = ()
 
     @property
     def is_blank(self) -> bool:
@@ -149,9 +153,18 @@ def rows_of(task: Task, execution: Execution) -> list[Row]:
                 state=str(verdict.state),
                 diagnosis=diagnosis.key if diagnosis else "",
                 reason=diagnosis.text if diagnosis else "",
+                remarks=task.remarks,
             )
         )
     return found
+
+
+def remarks_on(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
+    """The remarks on the notebooks of each student and assignment, in one line; only of those that have any."""
+    found: dict[tuple[str, str], dict[str, None]] = {}
+    for row in rows:
+        found.setdefault((row.student, row.assignment), {}).update(dict.fromkeys(row.remarks))
+    return {key: one_line(" ".join(remarks), _LONGEST_REMARKS) for key, remarks in found.items() if remarks}
 
 
 def write_csv(path: Path, rows: Iterable[Row]) -> None:

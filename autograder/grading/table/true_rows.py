@@ -79,7 +79,9 @@ def _rows_of(
         said = by_exercise.get(cell.exercise)
         kept = entry.cells.get(cell.notebook, {}).get(cell.name) if entry else None
         if said is not None:
-            row = replace(row, state=said.state, diagnosis=said.diagnosis, reason=said.reason)
+            row = replace(
+                row, state=said.state, diagnosis=said.diagnosis, reason=said.reason, remarks=said.remarks
+            )
         elif kept is None:
             row = replace(row, state=NOT_GRADED if is_there else NOT_SUBMITTED)
         else:

@@ -1,0 +1,85 @@
+"""The named cells of all notebooks of a class: by them a notebook says which one it is, whatever its file is called."""
+
+from __future__ import annotations
+
+import functools
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from autograder.grading.rebuilding.submission import UnreadableSubmission, parse
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable
+    from pathlib import Path
+
+    from autograder.grading.rebuilding.submission import SubmittedCell
+
+Target = tuple[str, str]
+"""An assignment, and one of its notebooks."""
+
+
+class NamedCells:
+    """The named cells of the sources of a class, read when the first question is asked.
+
+    Args:
+        sources: The file of each notebook.
+    """
+
+    def __init__(self, sources: dict[Target, Path]) -> None:
+        self._paths = sources
+        self.notes: list[str] = []
+        """A sentence on each source that cannot be read."""
+
+    def closest(self, names: Collection[str], assignment: str = "") -> list[Target]:
+        """The notebooks that have most of these names; none if they have none of them.
+
+        Args:
+            names: The names of cells.
+            assignment: Only notebooks of this one; of all by default.
+        """
+        shared = {
+            target: len({cell.grade_id for cell in cells if cell.grade_id} & set(names))
+            for target, cells in self._sources.items()
+            if assignment in ("", target[0])
+        }
+        most = max(shared.values(), default=0)
+        return [target for target, count in shared.items() if most and count == most]
+
+    def assignments(self, cells: Iterable[SubmittedCell]) -> list[str]:
+        """The assignments whose graded cells are among these; without its name, a cell may still have its id."""
+        marks = {mark for cell in cells for mark in _marks(cell)}
+        return sorted({self._graded[mark] for mark in marks & self._graded.keys()})
+
+    @functools.cached_property
+    def _graded(self) -> dict[str, str]:
+        """The assignments, by what tells a graded cell of theirs from those of all other assignments."""
+        cells = [(assignment, cell) for (assignment, _), own in self._sources.items() for cell in own]
+        often = Counter(
+            mark for mark, _ in {(mark, assignment) for assignment, cell in cells for mark in _marks(cell)}
+        )
+        return {
+            mark: assignment
+            for assignment, cell in cells
+            if cell.is_graded
+            for mark in _marks(cell)
+            if often[mark] == 1
+        }
+
+    @functools.cached_property
+    def _sources(self) -> dict[Target, list[SubmittedCell]]:
+        """The cells of each notebook; none of what cannot be read."""
+        found: dict[Target, list[SubmittedCell]] = {}
+        for target, path in self._paths.items():
+            try:
+                found[target], _ = parse(path.read_bytes())
+            except UnreadableSubmission as error:
+                found[target] = []
+                self.notes.append(
+                    f"{path} cannot be read ({error}): what is for it is told by file names alone"
+                )
+        return found
+
+
+def _marks(cell: SubmittedCell) -> set[str]:
+    """The marks by which a cell is told from others: its name and its id."""
+    return {f"{kind} {mark}" for kind, mark in (("name", cell.grade_id), ("id", cell.identifier)) if mark}

@@ -1,0 +1,54 @@
+"""What the grader puts right in a notebook is said to the student, in the terminal, and on the page about the class."""
+
+from __future__ import annotations
+
+import io
+from typing import TYPE_CHECKING
+
+import pytest
+from nbformat.v4 import new_code_cell
+from rich.console import Console
+
+from autograder.grading.report_page.page import write_report
+from autograder.grading.reporting.report import report_json
+from autograder.grading.reporting.report_table import show
+
+if TYPE_CHECKING:
+    from conftest import FakeEngine, TinyClass
+
+    from autograder.grading.reporting.report import GradeReport
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+
+
+def printed(report: GradeReport) -> list[str]:
+    out = io.StringIO()
+    show(report, Console(file=out, width=200))
+    return out.getvalue().splitlines()
+
+
+def test_it_is_said_everywhere_also_when_nothing_has_changed_since(
+    tiny: TinyClass, fake_engine: FakeEngine
+) -> None:
+    notebook = tiny.released()
+    notebook.cells = [
+        cell for cell in notebook.cells if cell.metadata.get("nbgrader", {}).get("grade_id") != "Talker"
+    ]
+    notebook.cells.append(new_code_cell("def Talker():\n    return 7"))
+    tiny.submit("ada")
+    tiny.hand_in("eve", notebook)
+    words = "The cell `Talker` was missing. What it asks for is in another cell, and that one counts."
+    for report in (tiny.grade(feedback=True), tiny.grade(feedback=True)):
+        assert [line for line in printed(report) if line.startswith("remark ")] == [
+            f"remark       eve/lab_1_2: {words}"
+        ]
+        assert words in report_json(report).decode()
+    page = (tiny.path / "feedback" / "eve" / "lab_1_2" / "lab_1_2.html").read_text()
+    assert "What it asks for is in another cell" in page
+    assert "What it asks for is in another cell" in write_report(tiny.path).read_text()
+    assert "What it asks for is in another cell" not in write_report(tiny.path, names=False).read_text()
+
+
+def test_an_honest_notebook_has_no_line(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    tiny.submit("ada")
+    assert "remark " not in "\n".join(printed(tiny.grade()))
