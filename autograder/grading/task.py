@@ -32,6 +32,7 @@ class Task:
         files: Files of the assignment that are beside the notebook, by relative path.
         problem: Why there is nothing to execute; empty for a notebook that can be.
         remarks: Sentences on what was put right in the notebook.
+        pictures: Stands for the pictures that the student has attached: work with others is other work.
         boxed: Execute in boxes, or not at all. False is for the course's own notebooks, and for an instructor who has
             typed so; such a result never counts as one from a box.
     """
@@ -46,6 +47,7 @@ class Task:
     files: Mapping[str, bytes] = field(default_factory=dict)
     problem: str = ""
     remarks: tuple[str, ...] = ()
+    pictures: str = ""
     boxed: bool = True
 
     def beside_others(self, beside: bool) -> Task:

@@ -6,9 +6,11 @@ A test proves that nbgrader's own command gives the same bytes.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
+from urllib.parse import quote
 
 from nbconvert.exporters import NotebookExporter
+from nbformat import NotebookNode
 from nbgrader.converters import GenerateAssignment
 from nbgrader.preprocessors import ClearSolutions, NbGraderPreprocessor
 from nbgrader.utils import is_solution
@@ -16,9 +18,6 @@ from traitlets.config import Config
 
 from autograder.masters.code_cells import find_region
 from autograder.masters.master_errors import CellError
-
-if TYPE_CHECKING:
-    from nbformat import NotebookNode
 
 
 class LeaveStubs(ClearSolutions):
@@ -44,12 +43,41 @@ class LeaveStubs(ClearSolutions):
         return super().preprocess_cell(cell, resources, cell_index)
 
 
+class KeepShownPictures(NbGraderPreprocessor):
+    """Takes off the pictures that no text of the released notebook shows: those of a solution would stay attached."""
+
+    def preprocess_cell(
+        self,
+        cell: NotebookNode,
+        resources: dict[str, Any],
+        cell_index: int,  # noqa: ARG002  (nbconvert's signature)
+    ) -> tuple[NotebookNode, dict[str, Any]]:
+        """Keep what one cell shows."""
+        if "attachments" in cell:
+            cell.attachments = shown_attachments(cell.source, cell.attachments)
+            if not cell.attachments:
+                del cell["attachments"]
+        return cell, resources
+
+
+def shown_attachments(source: str, attachments: NotebookNode) -> NotebookNode:
+    """The attachments that a text shows."""
+    return NotebookNode(
+        {
+            name: picture
+            for name, picture in attachments.items()
+            if f"attachment:{name}" in source or f"attachment:{quote(name)}" in source
+        }
+    )
+
+
 def release_preprocessors() -> list[type[NbGraderPreprocessor]]:
-    """The steps of nbgrader for a release, with :class:`LeaveStubs` in the place of ClearSolutions.
+    """The steps of nbgrader for a release, :class:`LeaveStubs` for ClearSolutions, then :class:`KeepShownPictures`.
 
     A class's ``nbgrader_config.py`` names them through :class:`autograder.masters.release_steps.ReleaseSteps`.
     """
-    return [LeaveStubs if step is ClearSolutions else step for step in GenerateAssignment().preprocessors]
+    steps = [LeaveStubs if step is ClearSolutions else step for step in GenerateAssignment().preprocessors]
+    return [*steps, KeepShownPictures]
 
 
 def release_text(source: NotebookNode) -> str:

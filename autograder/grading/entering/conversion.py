@@ -152,11 +152,14 @@ def _with_results(nb: NotebookNode, task: Task, execution: Execution) -> Noteboo
 def _with_rubrics(cells: Sequence[NotebookNode]) -> Iterator[NotebookNode]:
     """The cells, and below each question that a person grades what the instructor wrote for that person."""
     for cell in cells:
-        rubric = cell.metadata.pop("autograder", {}).get("rubric", "")
+        known = cell.metadata.pop("autograder", {})
         yield cell
-        if rubric:
-            text = f"**How this answer is graded**\n\n{rubric}"
-            yield nodes.cell(CellType.MARKDOWN, text, f"rubric-{cell.id}"[:64])
+        if known.get("rubric"):
+            text = f"**How this answer is graded**\n\n{known['rubric']}"
+            made = nodes.cell(CellType.MARKDOWN, text, f"rubric-{cell.id}"[:64])
+            if known["pictures"]:
+                made["attachments"] = known["pictures"]
+            yield made
 
 
 def _graded_outputs(

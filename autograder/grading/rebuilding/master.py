@@ -19,6 +19,7 @@ from autograder.grading.rebuilding import nodes
 from autograder.grading.rebuilding.rebuild import grade_id, is_answer, is_check
 from autograder.masters.code_cells import find_model_answer
 from autograder.masters.master_errors import CellError
+from autograder.masters.release import shown_attachments
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -68,17 +69,19 @@ def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
     for cell in notebook.cells:
         if is_answer(cell):
             name = grade_id(cell)
-            cell.metadata["autograder"] = {"rubric": rubrics.get(name, ""), "given": given[name]}
+            cell.metadata["autograder"] = {**rubrics.get(name, {}), "given": given[name]}
     return notebook
 
 
-def _rubrics(source: NotebookNode) -> dict[str, str]:
-    """The model answers and rules for points of the questions that a person grades, by grade_id."""
+def _rubrics(source: NotebookNode) -> dict[str, dict[str, Any]]:
+    """The model answers and rules for points of the questions that a person grades, with pictures, by grade_id."""
     found = {}
     for cell in source.cells:
         if cell.cell_type == "markdown" and is_answer(cell):
             with contextlib.suppress(CellError):
-                found[grade_id(cell)] = find_model_answer(cell.source)
+                text = find_model_answer(cell.source)
+                pictures = shown_attachments(text, cell.get("attachments", {}))
+                found[grade_id(cell)] = {"rubric": text, "pictures": pictures}
     return found
 
 

@@ -1,9 +1,9 @@
 """The notebook that is executed: built from the trusted master, with nothing but text from the submission.
 
 Locked cells and check cells come from the master, in its order. From the submission come the text of the
-solution cells and the student's own cells, which keep their place relative to their neighbours. Everything
-else that a submission brings (metadata, tags, outputs, attachments, ids) is left behind. The figures that its text
-cells show are the master's, and each of them is there no more often than in the master.
+solution cells and the student's own cells, which keep their place relative to their neighbours, and the bitmaps that
+these texts show. Everything else that a submission brings (metadata, tags, outputs, ids) is left behind. The other
+figures that its text cells show are the master's, and each of them is there no more often than in the master.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from autograder.grading.rebuilding.matching import Known, match, normalized
 from autograder.kit.in_words import counted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from autograder.grading.rebuilding.submission import SubmittedCell
 
@@ -31,7 +31,9 @@ _ELSEWHERE = (
     "This cell was missing from the notebook that was handed in. Look for its answer in the other cells."
 )
 _MOST_NAMED = 5
-_SHOWN = re.compile(r"\(attachment:([\w.-]+)\)")
+_SHOWN = re.compile(r"\(attachment:([\w.%+-]+)\)")
+_PICTURE_CHARACTERS = 10_000_000
+"""Of all bitmaps that a student has attached to a notebook together; a screenshot has a million."""
 
 
 def rebuild(
@@ -239,8 +241,11 @@ class _Sorting:
 
     def _filled(self, name: str, cell: NotebookNode) -> NotebookNode:
         filled = nodes.copied(cell)
+        if is_answer(cell):
+            filled.pop("attachments", None)
         if is_answer(cell) and name in self._chosen:
-            filled["source"] = self._submitted[self._chosen[name]].source
+            answer = self._submitted[self._chosen[name]]
+            filled.update(source=answer.source, attachments=_attachments(answer))
         elif is_answer(cell) and self._may_be_answered_elsewhere(name):
             # No stub: it would replace what the student has defined. For a person to see where to look.
             filled["source"] = _ELSEWHERE if cell.cell_type == CellType.MARKDOWN else f"# {_ELSEWHERE}"
@@ -308,8 +313,9 @@ def _finished(master: NotebookNode, cells: list[NotebookNode], remarks: list[str
     for index, cell in enumerate(cells):
         # As items: to set an attribute, nbformat's nodes look for it in their class first.
         cell["id"] = _cell_id(cell, index)
-        cell.pop("attachments", None)
-        if cell["cell_type"] == CellType.MARKDOWN and (shown := figures.of(cell["source"])):
+        attached = cell.pop("attachments", {})
+        own = {} if is_the_masters(cell) else attached
+        if cell["cell_type"] == CellType.MARKDOWN and (shown := figures.of(cell["source"], own)):
             cell["attachments"] = shown
         if cell["cell_type"] == CellType.CODE:
             cell["outputs"] = []
@@ -325,25 +331,48 @@ def _finished(master: NotebookNode, cells: list[NotebookNode], remarks: list[str
 
 
 class _Figures:
-    """The master's figures, to be handed to the text cells that show them."""
+    """The pictures for the text cells that show them: a student's own, else the master's."""
 
     def __init__(self, master: NotebookNode) -> None:
         self._pictures: dict[str, NotebookNode] = {}
         self._left: Counter[str] = Counter()
+        self._characters = _PICTURE_CHARACTERS
         for cell in master.cells:
+            shown = set(
+                _SHOWN.findall(_without_hidden(cell.source))
+            )  # others are of what students do not get
             for name, picture in cell.get("attachments", {}).items():
-                self._pictures[name] = picture
-                self._left[name] += 1
+                if name in shown:
+                    self._pictures[name] = picture
+                    self._left[name] += 1
 
-    def of(self, source: str) -> NotebookNode:
-        """The figures that a text shows, of those that are left: copies of one cell must not swell a page."""
-        names = [name for name in dict.fromkeys(_SHOWN.findall(source)) if self._left[name] > 0]
-        self._left.subtract(names)
-        return nodes.copied(NotebookNode({name: self._pictures[name] for name in names}))
+    def of(self, source: str, own: Mapping[str, Mapping[str, str]]) -> NotebookNode:
+        """The pictures that a text shows, of those that are left: copies of one cell must not swell a page.
+
+        Args:
+            source: The text.
+            own: The pictures that its student has attached to it.
+        """
+        found: dict[str, Mapping[str, str]] = {}
+        for name in dict.fromkeys(_SHOWN.findall(source)):
+            size = sum(map(len, own.get(name, {}).values()))
+            if 0 < size <= self._characters:
+                self._characters -= size
+                found[name] = own[name]
+            elif self._left[name] > 0:
+                self._left[name] -= 1
+                found[name] = self._pictures[name]
+        return nodes.copied(NotebookNode(found))
 
 
 def _extra(cell: SubmittedCell) -> NotebookNode:
-    return nodes.cell(cell.kind, cell.source, "own")
+    made = nodes.cell(cell.kind, cell.source, "own")
+    made["attachments"] = _attachments(cell)
+    return made
+
+
+def _attachments(cell: SubmittedCell) -> dict[str, dict[str, str]]:
+    return {name: {kind: data} for name, kind, data in cell.pictures}
 
 
 def _remarks_cell(remarks: list[str]) -> NotebookNode:

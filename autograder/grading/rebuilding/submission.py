@@ -15,6 +15,7 @@ from typing import IO, TYPE_CHECKING, Any
 import re2
 
 from autograder.boxes.execution import CellType
+from autograder.boxes.outputs import IMAGES
 from autograder.regular_files import files_below, opened
 
 if TYPE_CHECKING:
@@ -33,6 +34,7 @@ HARMLESS_LENGTH = 6_000
 """Of a notebook's own cells that become a page without a trial: the worst of them take less than a page's budget."""
 _QUOTED = re2.compile(r'(?s)"(?:[^"\\]|\\.)*"')
 """A text in JSON."""
+_BASE64 = re2.compile(r"[A-Za-z0-9+/=\s]+")
 _LONGEST_SHOWN = 80
 _CELL_TYPES = tuple(CellType)
 _KINDS = {
@@ -49,6 +51,9 @@ class UnreadableSubmission(ValueError):
     """The submission cannot be taken as a notebook; the message is a sentence for the student."""
 
 
+Picture = tuple[str, str, str]
+
+
 @dataclass(frozen=True)
 class SubmittedCell:
     """All that is taken over from a submitted cell.
@@ -59,6 +64,7 @@ class SubmittedCell:
         grade_id: The name it claims to have, empty for none.
         identifier: Its id, empty for none.
         is_graded: Whether it claims to carry points; believed only of a source.
+        pictures: The bitmaps attached to a text cell: name, type and contents as base64.
     """
 
     kind: CellType
@@ -66,6 +72,7 @@ class SubmittedCell:
     grade_id: str = ""
     identifier: str = ""
     is_graded: bool = False
+    pictures: tuple[Picture, ...] = ()
 
 
 class NotAFile(UnreadableSubmission):
@@ -287,7 +294,20 @@ def _cell(cell: Any) -> SubmittedCell | None:
         _name(marks.get("grade_id")),
         _name(cell.get("id")),
         marks.get("grade") is True,
+        tuple(_pictures(cell)),
     )
+
+
+def _pictures(cell: Mapping[str, Any]) -> Iterator[Picture]:
+    """The attached bitmaps; a drawing that may hold a script is none of them."""
+    attached = cell.get("attachments")
+    for name, kinds in attached.items() if isinstance(attached, Mapping) else ():
+        for kind in IMAGES if isinstance(kinds, Mapping) else ():
+            data = kinds.get(kind)
+            data = "".join(data) if isinstance(data, list) and all(isinstance(x, str) for x in data) else data
+            if isinstance(data, str) and _BASE64.fullmatch(data):
+                yield _name(name), kind, data
+                break
 
 
 def _name(value: Any) -> str:

@@ -65,6 +65,7 @@ def task_of(directory: ClassDirectory, submission: Submission, notebook: str) ->
         files=directory.files(assignment),
         problem=problem,
         remarks=() if problem else tuple(rebuilt.metadata["autograder"]["remarks"]),
+        pictures=_hash_of_pictures(rebuilt),
         boxed=not sandboxing.switched_off(directory),
     )
     return task, rebuilt
@@ -85,6 +86,13 @@ def _rebuilt(
         return rebuild_unreadable(master, str(error)), str(error)
     others = [one for one in directory.named_cells.assignments(cells) if one != submission.assignment]
     return rebuild(master, cells, left_out, others), ""
+
+
+def _hash_of_pictures(rebuilt: NotebookNode) -> str:
+    own = [
+        cell["attachments"] for cell in rebuilt.cells if "attachments" in cell and not is_the_masters(cell)
+    ]
+    return hashlib.sha256(msgspec.json.encode(own)).hexdigest() if own else ""
 
 
 def cells_of(

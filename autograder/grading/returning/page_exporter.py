@@ -17,6 +17,7 @@ from jinja2 import pass_context
 from nbconvert.exporters import HTMLExporter
 from nbconvert.exporters.templateexporter import TemplateExporter
 from nbconvert.filters.highlight import Highlight2HTML
+from nbconvert.filters.markdown_mistune import MarkdownWithMath
 from nbconvert.filters.widgetsdatatypefilter import WidgetsDataTypeFilter
 from nbconvert.preprocessors import CSSHTMLHeaderPreprocessor
 from nbformat import NotebookNode
@@ -25,7 +26,7 @@ from traitlets.config import Config
 from autograder.grading.rebuilding import nodes
 from autograder.grading.rebuilding.rebuild import is_check, is_the_masters
 from autograder.grading.returning.page_head import with_summary, without_dead_links
-from autograder.grading.returning.sanitize import clean, make_harmless
+from autograder.grading.returning.sanitize import Renderer, clean, make_harmless
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -43,6 +44,7 @@ _REMEMBERED = 1024
 _REMEMBERED_CHARACTERS = 8_000_000
 """Of rendered parts of pages; those that the students of a chapter share have about a million."""
 _PICTURE = re2.compile(r"(?i)<img\b[^>]*")
+_SHOWS_ATTACHED = re2.compile(r'(?P<before><img\b(?:\s+[\w-]+="[^"]*")*?\s+)src="attachment:(?P<name>[^"]*)"')
 _ALTERNATIVE = re2.compile(r"(?i)\salt=")
 
 
@@ -162,12 +164,31 @@ class PageExporter(HTMLExporter):
 def markdown_to_html(context: Any, source: str) -> str:
     """Stands for nbconvert's filter of that name; what does not come from the master word for word is cleaned.
 
-    In ``nbgrader_config.py`` it is ``HTMLExporter.filters["markdown2html"]``, for formgrader.
+    In ``nbgrader_config.py`` it is ``HTMLExporter.filters["markdown2html"]``, for formgrader. A picture that is not
+    attached is left out: nbconvert would make no page at all.
     """
-    rendered: str = _NBCONVERTS.markdown2html(context, source)
-    harmless = rendered if is_the_masters(context.get("cell", {})) else clean(rendered)
+    cell = context.get("cell", {})
+    rendered = MarkdownWithMath(renderer=Renderer(escape=False)).render(source)
+    harmless = rendered if is_the_masters(cell) else clean(rendered)
     # Neither nbgrader's pages nor nbconvert's classic template keep a picture within its column.
-    return without_dead_links(harmless.replace("<img ", '<img style="max-width: 100%" '))
+    page = without_dead_links(harmless.replace("<img ", '<img style="max-width: 100%" '))
+    attached = dict(cell.get("attachments", {}))
+    return _with_pictures(page, attached.get if is_the_masters(cell) else attached.pop)
+
+
+def _with_pictures(page: str, take: Callable[[str, dict[str, str]], Mapping[str, str]]) -> str:
+    """A piece of a page with the pictures that are attached to its cell.
+
+    Args:
+        page: HTML in which a picture is the name of an attachment.
+        take: Takes an attachment by its name. A student's is there once: a page must not swell.
+    """
+
+    def shown(tag: Any) -> str:
+        kind, data = next(iter(take(tag["name"], {}).items()), ("", ""))
+        return f'{tag["before"]}src="data:{kind};base64,{data}"' if data else tag["before"]
+
+    return _SHOWS_ATTACHED.sub(shown, page)
 
 
 # The same for all students of an assignment, and most of a page.
@@ -180,10 +201,6 @@ def without_scripts(head: str) -> str:
     """
     policy = f'<meta http-equiv="Content-Security-Policy" content="{POLICY}" />'
     return _SCRIPT.sub("", head).replace("<head>", f"<head>\n{policy}", 1)
-
-
-# By default nbconvert also looks for templates in the current folder, and runs what a file named conf.json there names.
-_NBCONVERTS = HTMLExporter(extra_template_basedirs=[str(_OURS)])
 
 
 @functools.lru_cache(maxsize=8)

@@ -63,9 +63,8 @@ _CONTROL = dict.fromkeys((*range(1, 9), 11, 12, *range(14, 32)), "?")
 # Only what opens a page when it is clicked. No "//" at the beginning: it would be another host.
 _LINK = re2.compile(r"https?://\S+|mailto:[^\s:]+|#\S*|(/|/?[\w%.-][\w%./-]*)(#\S*)?")
 _PICTURE = re2.compile(r"data:image/(png|jpeg|gif|webp);base64,[A-Za-z0-9+/=\s]*")
-_DATA, _ATTACHED = "data:image/png;base64,", "attachment:"
-Figures = tuple[tuple[str, str], ...]
-"""The names of PNGs and their contents, as a notebook keeps them."""
+_ATTACHED = "attachment:"
+_ATTACHMENT = re2.compile(rf"{_ATTACHED}[\w.%+-]+")
 # Those that Pygments gives to pieces of code, and mistune to a block of it: others could dress a text up as a
 # verdict, or lay it over the page.
 _CLASSES = {name for name in STANDARD_TYPES.values() if name} | {"highlight"}
@@ -120,12 +119,12 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
 
 # Most text cells of a class are the ones that were handed out: looked at once, not once a student.
 @functools.lru_cache(maxsize=1024)
-def harmless_markdown(source: str, figures: Figures = ()) -> str:
+def harmless_markdown(source: str, figures: tuple[str, ...] = ()) -> str:
     """Markdown that says the same as ``source`` and can do nothing.
 
     Args:
         source: Whatever a student typed into a text cell.
-        figures: Those of the master that the cell has been given; each may be shown once.
+        figures: The names of the bitmaps that are attached to the cell; each may be shown once.
     """
     if len(source) > LONGEST_MARKDOWN:
         return as_typed(source)
@@ -151,14 +150,18 @@ def as_typed(source: str) -> str:
     return f"{fence}text\n{_cut(source, LONGEST_MARKDOWN)}\n{fence}"
 
 
-def _figures(cell: Any) -> Figures:
-    """The figures of a text cell; anything else that is attached to it is taken off."""
+def _figures(cell: Any) -> tuple[str, ...]:
+    """The names of the bitmaps of a text cell; anything else that is attached to it is taken off."""
     attached = cell.pop("attachments", {})
-    figures = {name: str(kinds.get("image/png", "")) for name, kinds in attached.items()}
-    figures = {name: data for name, data in figures.items() if data and _PICTURE.fullmatch(_DATA + data)}
-    if figures:
-        cell["attachments"] = {name: {"image/png": data} for name, data in figures.items()}
-    return tuple(figures.items())
+    bitmaps = {
+        name: {kind: data}
+        for name, kinds in attached.items()
+        for kind, data in kinds.items()
+        if kind in IMAGES and _PICTURE.fullmatch(f"data:{kind};base64,{data}")
+    }
+    if bitmaps:
+        cell["attachments"] = bitmaps
+    return tuple(bitmaps)
 
 
 def _longest_shown(lengths: Iterable[int]) -> int:
@@ -221,7 +224,7 @@ def _value_that_may_stay(tag: str, name: str, value: str) -> str | None:
         case "a", "href":
             stays = _LINK.fullmatch(value) is not None
         case "img", "src":
-            stays = _PICTURE.fullmatch(value) is not None
+            stays = (_PICTURE.fullmatch(value) or _ATTACHMENT.fullmatch(value)) is not None
         case _:
             stays = True
     return value if stays else None
@@ -233,19 +236,26 @@ _CLEANER = nh3.Cleaner(
     attributes=_ATTRIBUTES,
     attribute_filter=_value_that_may_stay,
     filter_style_properties={"text-align"},
-    url_schemes={"http", "https", "mailto", "data"},
+    url_schemes={"http", "https", "mailto", "data", _ATTACHED.rstrip(":")},
     link_rel=None,
 )
 
 
-class _Looking(IPythonRenderer):
+class Renderer(IPythonRenderer):
+    """nbconvert's, but for attached pictures: they come into the page last, as a megabyte takes long to be parsed."""
+
+    def _embed_image_or_attachment(self, src: str) -> str:
+        embedded: str = super()._embed_image_or_attachment("" if src.startswith(_ATTACHED) else src)
+        return embedded or src
+
+
+class _Looking(Renderer):
     """Renders as nbconvert does, and notes whatever is more than plain Markdown."""
 
-    def __init__(self, figures: Figures = ()) -> None:
-        attachments = {name: {"image/png": data} for name, data in figures}
-        super().__init__(escape=False, exclude_anchor_links=True, attachments=attachments)
+    def __init__(self, figures: tuple[str, ...] = ()) -> None:
+        super().__init__(escape=False, exclude_anchor_links=True)
         self.is_plain = True
-        self._left = set(attachments)
+        self._left = set(figures)
 
     def block_html(self, html: str) -> str:
         """HTML on lines of its own."""

@@ -156,3 +156,21 @@ def test_a_file_that_is_too_large_is_not_read(tmp_path: Path) -> None:
         file.truncate(submission.MAX_BYTES + 1)
     with pytest.raises(UnreadableSubmission, match="the limit is 50 MB"):
         read_bytes(tmp_path / "mine.ipynb")
+
+
+def test_of_what_is_attached_only_bitmaps_are_taken() -> None:
+    attached = {
+        "shot.png": {"image/png": ["aGVs\n", "bG8="], "text/html": "<b>"},
+        "photo.jpg": {"image/jpeg": "aGVsbG8="},
+        "drawn.svg": {"image/svg+xml": "PHN2Zz4="},
+        "odd.png": {"image/png": "<script>"},
+        "none.png": "aGVsbG8=",
+        "list.png": {"image/png": [1]},
+    }
+    text = {"cell_type": "markdown", "source": "x", "attachments": attached}
+    assert parse(notebook(text))[0][0].pictures == (
+        ("shot.png", "image/png", "aGVs\nbG8="),
+        ("photo.jpg", "image/jpeg", "aGVsbG8="),
+    )
+    odd = {"cell_type": "markdown", "source": "x", "attachments": ["x"]}
+    assert parse(notebook(odd))[0][0].pictures == ()

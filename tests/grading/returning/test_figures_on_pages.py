@@ -21,6 +21,7 @@ CHAPTERS = Path(__file__).resolve().parents[3] / "chapters"
 PICTURE = 'src="data:image/png;base64,'
 SHOWS = "![a graph](attachment:graph.png)"
 DATA = base64.b64encode(b"a picture").decode()
+SHOT = base64.b64encode(b"a screenshot of a student's").decode()
 
 
 def page_of(notebook: NotebookNode) -> str:
@@ -77,12 +78,65 @@ def test_html_around_a_figure_leaves_it_there(master: NotebookNode) -> None:
     assert "fired" not in re.sub(r"&lt;script.*", "", page)
 
 
-def test_a_picture_of_a_student_is_left_out(master: NotebookNode) -> None:
-    rebuilt = rebuild(master, submitted("![mine](attachment:mine.png) " + SHOWS))
-    assert set(rebuilt.cells[0].attachments) == {"graph.png"}
+def pasted(text: str, *pictures: tuple[str, str, str]) -> SubmittedCell:
+    return SubmittedCell(CellType.MARKDOWN, text, pictures=pictures)
+
+
+@pytest.mark.parametrize("kind", ["image/png", "image/jpeg"])
+@pytest.mark.parametrize(
+    "words", ["", "<b>Look</b> ", "\n\n![svg](attachment:drawn.svg)\n\n", "- in a list: "]
+)
+def test_a_picture_that_a_student_has_pasted_is_shown(master: NotebookNode, kind: str, words: str) -> None:
+    cell = pasted(f"{words}![mine](attachment:0b9f-shot.png) {SHOWS}", ("0b9f-shot.png", kind, SHOT))
+    rebuilt = rebuild(master, [cell])
     page = page_of(rebuilt)
-    assert "[picture left out: mine]" in page
-    assert page.count(PICTURE) == 1
+    assert page.count(f'src="data:{kind};base64,{SHOT}"') == 1
+    assert page.count(f"{PICTURE}{DATA}") == 1
+    assert ("[picture left out: svg]" in page) is ("svg" in words)
+    assert page_of(rebuilt) == page, "formgrader's page is made of what was made harmless already"
+
+
+def test_the_students_own_picture_is_not_the_masters_of_the_same_name(master: NotebookNode) -> None:
+    page = page_of(rebuild(master, [pasted(SHOWS, ("graph.png", "image/png", SHOT))]))
+    assert (SHOT in page, DATA in page) == (True, False)
+
+
+def test_pictures_that_would_swell_a_page_are_left_out(master: NotebookNode) -> None:
+    large = "A" * 4_000_000
+    cells = [pasted("![x](attachment:x.png)" * 9, ("x.png", "image/png", large)) for _ in range(9)]
+    page = page_of(rebuild(master, cells))
+    assert page.count(large) == 2
+    assert len(page) < 10_000_000
+
+
+def test_one_that_is_not_shown_by_the_text_is_not_kept(master: NotebookNode) -> None:
+    rebuilt = rebuild(master, [pasted("nothing", ("x.png", "image/png", SHOT))])
+    assert "attachments" not in rebuilt.cells[0]
+
+
+def test_a_picture_that_is_not_there_is_left_out(master: NotebookNode) -> None:
+    """nbconvert makes no page at all, and formgrader answers 500."""
+    assert "[picture left out: mine]" in page_of(rebuild(master, [pasted("![mine](attachment:mine.png)")]))
+    locked = master.cells[0]
+    locked.metadata["nbgrader"] = {"grade_id": "given", "locked": True, "solution": False}
+    del locked["attachments"]
+    assert 'alt="a graph"' in page_of(rebuild(master, []))
+
+
+def test_what_students_do_not_get_is_in_no_page_of_theirs(master: NotebookNode) -> None:
+    """The master still has the pictures of its solutions and mark schemes."""
+    master.cells[0].attachments["scheme.png"] = {"image/png": SHOT}
+    hidden = "### BEGIN MARK SCHEME\n![x](attachment:other.png)\n### END MARK SCHEME"
+    task = nbformat.v4.new_markdown_cell(hidden, attachments={"other.png": {"image/png": SHOT}})
+    master.cells.append(task)
+    page = page_of(rebuild(master, submitted("![x](attachment:scheme.png) ![x](attachment:other.png)")))
+    assert SHOT not in page
+
+
+def test_the_text_of_a_picture_is_no_picture(master: NotebookNode) -> None:
+    text = '`<img src="attachment:x.png">` &lt;img src="attachment:x.png"&gt; src="attachment:x.png" '
+    page = page_of(rebuild(master, [pasted(f"{text} ![x](attachment:x.png)", ("x.png", "image/png", SHOT))]))
+    assert page.count(SHOT) == 1
 
 
 def test_nothing_but_a_png_stays_attached() -> None:

@@ -1,0 +1,108 @@
+"""Pictures of a question that a person grades: a solution's is not handed out, a student's is shown to the person."""
+
+from __future__ import annotations
+
+import base64
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import nbformat
+import pytest
+from nbconvert.exporters import HTMLExporter
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+from own_assignment import EngineWithAsserts, marked
+
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.classes.new_class import release
+from autograder.grading.running import engine
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from tiny_class import TinyClass
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+GIVEN, SCHEME, SHOT, DRAWN = (
+    base64.b64encode(name.encode()).decode() for name in ("given", "scheme", "shot", "<svg>")
+)
+QUESTION = """\
+Why is a topic many-to-many? ![graph](attachment:graph.png)
+
+### BEGIN SOLUTION
+Three points for what is in ![scheme](attachment:scheme.png)
+### END SOLUTION
+"""
+PICTURES = {"graph.png": {"image/png": GIVEN}, "scheme.png": {"image/png": SCHEME}}
+ANSWER = "Look:\n\n![shot](attachment:shot.png)\n\n![drawn](attachment:drawn.svg)"
+
+
+@pytest.fixture
+def quiz(tiny: TinyClass, monkeypatch: pytest.MonkeyPatch) -> TinyClass:
+    """A class with an assignment whose question has a picture for all, and its solution one for those who grade."""
+    monkeypatch.setattr(engine, "execute_all", EngineWithAsserts().execute_all)
+    why = marked(new_markdown_cell(QUESTION, attachments=PICTURES), "why", 5)
+    why.metadata.nbgrader.update(solution=True, locked=False)
+    cells = [marked(new_code_cell("assert True"), "test", 1), why]
+    notebook = new_notebook(
+        cells=cells, metadata={"kernelspec": {"name": "python3", "display_name": "Python 3"}}
+    )
+    path = tiny.path / "source" / "quiz" / "quiz.ipynb"
+    path.parent.mkdir()
+    nbformat.write(notebook, path)
+    return tiny
+
+
+def hand_in(quiz: TinyClass, student: str, shot: str) -> Path:
+    notebook = nbformat.read(quiz.path / "release" / "quiz" / "quiz.ipynb", as_version=4)
+    why = notebook.cells[-1]
+    why.source = why.source.replace("YOUR ANSWER HERE", ANSWER)
+    why.attachments["shot.png"] = {"image/png": shot}
+    why.attachments["drawn.svg"] = {"image/svg+xml": DRAWN}
+    path = quiz.path / "submitted" / student / "quiz" / "quiz.ipynb"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    nbformat.write(notebook, path)
+    return path
+
+
+def pages(quiz: TinyClass, student: str) -> list[str]:
+    """The student's page, and the one that formgrader makes with the class's configuration."""
+    graded = quiz.path / "autograded" / student / "quiz" / "quiz.ipynb"
+    formgrader = HTMLExporter(config=ClassDirectory(quiz.path).config)
+    page, _ = formgrader.from_notebook_node(nbformat.read(graded, as_version=4))
+    return [(quiz.path / "feedback" / student / "quiz" / "quiz.html").read_text(), page]
+
+
+@pytest.mark.parametrize("by", ["new-class", "nbgrader generate_assignment"])
+def test_the_picture_of_a_solution_is_not_handed_out(quiz: TinyClass, by: str) -> None:
+    if by == "new-class":
+        release(ClassDirectory(quiz.path))
+    else:
+        command = [sys.executable, "-m", "nbgrader", "generate_assignment", "quiz"]
+        subprocess.run(command, cwd=quiz.path, check=True, capture_output=True)
+    text = (quiz.path / "release" / "quiz" / "quiz.ipynb").read_text()
+    assert GIVEN in text
+    assert SCHEME not in text
+    assert "scheme.png" not in text
+
+
+def test_whoever_grades_sees_the_screenshot_and_what_earns_points(quiz: TinyClass) -> None:
+    release(ClassDirectory(quiz.path))
+    hand_in(quiz, "ada", SHOT)
+    quiz.grade(feedback=True)
+    for page in pages(quiz, "ada"):
+        assert page.count(f'src="data:image/png;base64,{SHOT}"') == 1
+        assert page.count(GIVEN) == 1
+        assert page.count(SCHEME) == 1
+        assert "[picture left out: drawn]" in page
+        assert DRAWN not in page
+
+
+def test_another_picture_with_the_same_words_is_other_work(quiz: TinyClass) -> None:
+    release(ClassDirectory(quiz.path))
+    hand_in(quiz, "ada", SHOT)
+    quiz.grade(feedback=True)
+    other = base64.b64encode(b"a clearer one").decode()
+    hand_in(quiz, "ada", other)
+    quiz.grade(feedback=True)
+    assert [(other in page, SHOT in page) for page in pages(quiz, "ada")] == [(True, False)] * 2
