@@ -24,6 +24,7 @@ from autograder.grading.classes.class_directory import ClassDirectory, Submissio
 from autograder.grading.classes.configuration import check_configuration
 from autograder.grading.entering.writer import Writer
 from autograder.grading.errors import GradingError, check_known
+from autograder.grading.reporting.rows import remarks_on
 from autograder.grading.returning.page_exporter import PageExporter
 
 if TYPE_CHECKING:
@@ -96,7 +97,8 @@ class _OurAutograde(_Ours, Autograde):
             )
             # A file without a place may be anybody's: it is no failure of the one whose button was pressed.
             refused = [(f"{one.path}: {one.reason}", one.path.is_absolute()) for one in report.refused]
-            for notice in (*report.notices, *(text for text, in_class in refused if not in_class)):
+            remarks = [f"{'/'.join(key)}: {words}" for key, words in remarks_on(report.rows).items()]
+            for notice in (*report.notices, *remarks, *(text for text, in_class in refused if not in_class)):
                 self.log.warning("%s", notice)
             problems += [text for text, in_class in refused if in_class or everybody]
             problems += report.problems

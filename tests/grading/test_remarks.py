@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from nbformat.v4 import new_code_cell
 from rich.console import Console
+from test_nbgrader_and_ours import nbgrader_autograde
 
 from autograder.grading.report_page.page import write_report
 from autograder.grading.reporting.report import report_json
@@ -47,6 +48,16 @@ def test_it_is_said_everywhere_also_when_nothing_has_changed_since(
     assert "What it asks for is in another cell" in page
     assert "What it asks for is in another cell" in write_report(tiny.path).read_text()
     assert "What it asks for is in another cell" not in write_report(tiny.path, names=False).read_text()
+
+
+def test_nbgraders_own_command_says_it_too(
+    tiny: TinyClass, fake_engine: FakeEngine, caplog: pytest.LogCaptureFixture
+) -> None:
+    notebook = tiny.released()
+    notebook.cells.pop()
+    tiny.hand_in("eve", notebook)
+    nbgrader_autograde(tiny)
+    assert "eve/lab_1_2: The cell `lab_1_2-listener` was missing and put back." in caplog.text
 
 
 def test_an_honest_notebook_has_no_line(tiny: TinyClass, fake_engine: FakeEngine) -> None:

@@ -10,18 +10,18 @@ from __future__ import annotations
 
 import itertools
 import re  # noqa: TID251  (a class of characters each, nothing repeated: there is nothing to try twice)
-from collections import Counter
 from typing import TYPE_CHECKING
-
-from nbformat import NotebookNode
 
 from autograder.boxes.execution import CellType
 from autograder.grading.rebuilding import nodes
 from autograder.grading.rebuilding.matching import Known, match, normalized
+from autograder.grading.rebuilding.shown_pictures import ShownPictures
 from autograder.kit.in_words import counted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
+
+    from nbformat import NotebookNode
 
     from autograder.grading.rebuilding.submission import SubmittedCell
 
@@ -31,9 +31,6 @@ _ELSEWHERE = (
     "This cell was missing from the notebook that was handed in. Look for its answer in the other cells."
 )
 _MOST_NAMED = 5
-_SHOWN = re.compile(r"\(attachment:([\w.%+-]+)\)")
-_PICTURE_CHARACTERS = 10_000_000
-"""Of all bitmaps that a student has attached to a notebook together; a screenshot has a million."""
 
 
 def rebuild(
@@ -309,13 +306,17 @@ def _without_hidden(source: str) -> str:
 def _finished(master: NotebookNode, cells: list[NotebookNode], remarks: list[str]) -> NotebookNode:
     if remarks:
         cells = [_remarks_cell(remarks), *cells]
-    figures = _Figures(master)
+    pictures = ShownPictures(
+        (_handed_out(cell)[1], cell.get("attachments", {}))
+        for cell in master.cells
+        if not is_the_masters(cell)
+    )
     for index, cell in enumerate(cells):
         # As items: to set an attribute, nbformat's nodes look for it in their class first.
         cell["id"] = _cell_id(cell, index)
         attached = cell.pop("attachments", {})
-        own = {} if is_the_masters(cell) else attached
-        if cell["cell_type"] == CellType.MARKDOWN and (shown := figures.of(cell["source"], own)):
+        shown = attached if is_the_masters(cell) else pictures.of(cell["source"], attached)
+        if cell["cell_type"] == CellType.MARKDOWN and shown:
             cell["attachments"] = shown
         if cell["cell_type"] == CellType.CODE:
             cell["outputs"] = []
@@ -328,41 +329,6 @@ def _finished(master: NotebookNode, cells: list[NotebookNode], remarks: list[str
             "autograder": {"remarks": remarks},
         },
     )
-
-
-class _Figures:
-    """The pictures for the text cells that show them: a student's own, else the master's."""
-
-    def __init__(self, master: NotebookNode) -> None:
-        self._pictures: dict[str, NotebookNode] = {}
-        self._left: Counter[str] = Counter()
-        self._characters = _PICTURE_CHARACTERS
-        for cell in master.cells:
-            shown = set(
-                _SHOWN.findall(_without_hidden(cell.source))
-            )  # others are of what students do not get
-            for name, picture in cell.get("attachments", {}).items():
-                if name in shown:
-                    self._pictures[name] = picture
-                    self._left[name] += 1
-
-    def of(self, source: str, own: Mapping[str, Mapping[str, str]]) -> NotebookNode:
-        """The pictures that a text shows, of those that are left: copies of one cell must not swell a page.
-
-        Args:
-            source: The text.
-            own: The pictures that its student has attached to it.
-        """
-        found: dict[str, Mapping[str, str]] = {}
-        for name in dict.fromkeys(_SHOWN.findall(source)):
-            size = sum(map(len, own.get(name, {}).values()))
-            if 0 < size <= self._characters:
-                self._characters -= size
-                found[name] = own[name]
-            elif self._left[name] > 0:
-                self._left[name] -= 1
-                found[name] = self._pictures[name]
-        return nodes.copied(NotebookNode(found))
 
 
 def _extra(cell: SubmittedCell) -> NotebookNode:

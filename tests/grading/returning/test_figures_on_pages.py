@@ -123,6 +123,16 @@ def test_a_picture_that_is_not_there_is_left_out(master: NotebookNode) -> None:
     assert 'alt="a graph"' in page_of(rebuild(master, []))
 
 
+def test_a_locked_cell_keeps_its_own_pictures(master: NotebookNode) -> None:
+    master.cells[0].metadata["nbgrader"] = {"grade_id": "given", "locked": True, "solution": False}
+    remark, locked, copy = rebuild(master, submitted(SHOWS)).cells
+    assert [set(cell.get("attachments", {})) for cell in (remark, locked, copy)] == [
+        set(),
+        {"graph.png"},
+        set(),
+    ]
+
+
 def test_what_students_do_not_get_is_in_no_page_of_theirs(master: NotebookNode) -> None:
     """The master still has the pictures of its solutions and mark schemes."""
     master.cells[0].attachments["scheme.png"] = {"image/png": SHOT}

@@ -1,0 +1,54 @@
+"""The pictures that the text cells of a rebuilt notebook show."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+import re2
+from nbformat import NotebookNode
+
+from autograder.grading.rebuilding import nodes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+MOST_CHARACTERS = 10_000_000
+"""Of all bitmaps that a student has attached to a notebook together; a screenshot has a million."""
+_SHOWN = re2.compile(r"\(attachment:([\w.%+-]+)\)")
+
+
+class ShownPictures:
+    """The pictures for the text cells that show them: a student's own, else the master's.
+
+    Args:
+        given: The text that students get of each of the master's cells, and what is attached to the cell. A picture
+            that no such text shows is of a solution: no student gets it.
+    """
+
+    def __init__(self, given: Iterable[tuple[str, Mapping[str, Mapping[str, str]]]]) -> None:
+        self._pictures: dict[str, Mapping[str, str]] = {}
+        self._left: Counter[str] = Counter()
+        self._characters = MOST_CHARACTERS
+        for text, attached in given:
+            for name in attached.keys() & set(_SHOWN.findall(text)):
+                self._pictures[name] = attached[name]
+                self._left[name] += 1
+
+    def of(self, text: str, own: Mapping[str, Mapping[str, str]]) -> NotebookNode:
+        """The pictures that a text shows, of those that are left: copies of one cell must not swell a page.
+
+        Args:
+            text: The text of a cell.
+            own: The pictures that its student has attached to it.
+        """
+        found: dict[str, Mapping[str, str]] = {}
+        for name in dict.fromkeys(_SHOWN.findall(text)):
+            size = sum(map(len, own.get(name, {}).values()))
+            if 0 < size <= self._characters:
+                self._characters -= size
+                found[name] = own[name]
+            elif self._left[name] > 0:
+                self._left[name] -= 1
+                found[name] = self._pictures[name]
+        return nodes.copied(NotebookNode(found))
