@@ -69,7 +69,7 @@ def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
     for cell in notebook.cells:
         if is_answer(cell):
             name = grade_id(cell)
-            cell.metadata["autograder"] = {**rubrics.get(name, {}), "given": given[name]}
+            cell.metadata["autograder"] = {**rubrics.get(name, {}), "given": given.get(name, "")}
     return notebook
 
 

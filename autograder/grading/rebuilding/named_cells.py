@@ -72,7 +72,7 @@ class NamedCells:
         for target, path in self._paths.items():
             try:
                 found[target], _ = parse(path.read_bytes())
-            except UnreadableSubmission as error:
+            except (OSError, UnreadableSubmission) as error:
                 found[target] = []
                 self.notes.append(
                     f"{path} cannot be read ({error}): what is for it is told by file names alone"
