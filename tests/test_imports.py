@@ -24,7 +24,8 @@ ALL = frozenset(PARTS)
 MAY_IMPORT = {
     "verdict": frozenset[str](),
     "course": frozenset[str](),
-    "kit": frozenset({"verdict"}),
+    "code_of_elsewhere": frozenset[str](),
+    "kit": frozenset({"code_of_elsewhere", "verdict"}),
     "exercises": frozenset({"course", "kit"}),
     "messages": frozenset({"verdict"}),
     "cards": frozenset({"verdict"}),

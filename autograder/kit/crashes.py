@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
+from autograder import code_of_elsewhere
 from autograder.kit.evidence import is_cut_off
 from autograder.kit.known_crashes import KNOWN, NOT_SPUN_WHILE_CALLING
 from autograder.kit.model import Advice, Mistake
@@ -15,6 +16,7 @@ from autograder.kit.python_names import MARKS
 from autograder.kit.quoted_names import FRAME_WITH_CODE, Name, is_a_library, names
 
 if TYPE_CHECKING:
+    from autograder.code_of_elsewhere import Elsewhere
     from autograder.kit.evidence import Evidence, Part
     from autograder.kit.known_crashes import Crash
 
@@ -38,7 +40,7 @@ def traceback_of(evidence: Evidence) -> str:
     return next((text for text in crashes if not meant(text)), crashes[0] if crashes else "")
 
 
-def _recogniser(crash: Crash) -> Mistake:
+def _recogniser(crash: Crash | Elsewhere) -> Mistake:
     compiled = re2.compile(f"(?m){crash.pattern}")
 
     def recognise(evidence: Evidence) -> Advice | None:
@@ -47,7 +49,9 @@ def _recogniser(crash: Crash) -> Mistake:
         if found is None:
             return None
         said = {name: Name(text or "") for name, text in found.groupdict().items()}
-        words = meaning(traceback)._asdict() | names(traceback) | said
+        types = [kind for ends in evidence.reference.interface.values() for kind in ends.values()]
+        here = code_of_elsewhere.packages(kind.partition("/")[0] for kind in types)
+        words = meaning(traceback)._asdict() | names(traceback) | {"here": Name(here)} | said
         return Advice(crash.text.format(**words).rstrip(), crash.next_step.format(**words), traceback)
 
     return Mistake(crash.key, recognise, certain=True)
@@ -138,6 +142,27 @@ def _went_on_without_it(part: Part) -> bool:
     return next(outputs, part.ending).t > given.t + LEFT_LYING
 
 
+_COROUTINE = re2.compile(
+    # A method, or a function of rclpy's, may be a callback that the end of the program was too early for.
+    r"^<coroutine object (?P<returned>\S+) at |RuntimeWarning: coroutine '(?P<warned>[a-z]\w*)' was never awaited"
+)
+
+
+def _never_awaited(evidence: Evidence) -> Advice | None:
+    """A function of the student's made a coroutine, as its value or as Python's own warning says, and that was all."""
+    said = [line for part in evidence for line in part.said()]
+    found = next(filter(None, map(_COROUTINE.search, said)), None)
+    name = (found["returned"] or found["warned"]).rpartition(".")[2] if found else ""
+    if name in ("", "await_or_execute"):
+        return None
+    return Advice(
+        f"{name} is an `async def`: calling it only makes a coroutine, and nothing inside it runs before something "
+        "awaits that.",
+        "Write def in place of async def. In place of an await, wait for the future: "
+        "rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0).",
+    )
+
+
 _NO_PACKAGE = re2.compile(r"^Package (?:'(?P<name>[^']*)' )?not found")
 
 
@@ -164,7 +189,9 @@ def _only_slips(mistake: Mistake) -> Mistake:
 
 CRASHES: tuple[Mistake, ...] = (
     Mistake("call_never_spun", _answer_not_taken),
+    *map(_recogniser, code_of_elsewhere.ROWS),
     *map(_recogniser, KNOWN),
+    Mistake(code_of_elsewhere.KEY, _never_awaited, certain=True),
     Mistake("cut_off", _cut_off, certain=True),
     Mistake("module_not_found", _package_not_found, certain=True),
 )

@@ -39,12 +39,6 @@ KNOWN = (
         ASKS_FOR_INPUT.next_step,
     ),
     Crash(
-        "init_twice",
-        r"Context\.init\(\) must only be called once",
-        "rclpy.init() was called although ROS was already started.",
-        "Call rclpy.init() once per process. In a notebook, start_ros() has done it: leave rclpy.init() out.",
-    ),
-    Crash(
         "not_initialized",
         r"load_entry_point.*\n(?:[ ~^]*\n)? +File .*, in __init__\n(?:.*\n)*.*NotInitializedException",
         "The entry point names the class of your node, so nothing has called rclpy.init().",
@@ -80,22 +74,6 @@ KNOWN = (
         "its parentheses.",
         "Write def __init__(self): in the class, indented by four spaces, with two underscores on each side of init. "
         "Its first line is super().__init__('your_node_name').",
-    ),
-    Crash(
-        "newer_api",
-        # Of rclpy 7.2 and later: contexts and entities for `with`, more names, arithmetic with durations.
-        r"\b(?:init\(|with \().*\n(?:[ ~^]*\n)?"
-        r"(?:TypeError: 'NoneType' object does not support the (?:asynchronous )?context manager protocol"
-        r"|AttributeError: __a?enter__)"
-        r"|^ +(?:async )?with .*\n(?:[ ~^]*\n)?TypeError: '(?:\w*(?:Node|Talker|Listener|Publisher|Subscriber|Server)"
-        r"|Subscription|Client|Service|Timer)' object does not support the (?:asynchronous )?context manager protocol"
-        r"|ImportError: cannot import name '(?:MessageInfo|TimerInfo|InitContextManager|EventsExecutor|AsyncNode)' "
-        r"from 'rclpy"
-        r"|has no attribute 'get_(?:clients|servers)_info_by_service'"
-        r"|TypeError: unsupported operand type\(s\) for [-+*/]+: 'Duration' and",
-        "This is written for a newer ROS 2 than Jazzy, which the course uses: Jazzy's rclpy does not know it yet.",
-        "Look for pages about Jazzy. Write rclpy.init() as a line of its own, without `with`, and make the node in the "
-        "next line. In a notebook, start_ros() has called rclpy.init() already.",
     ),
     Crash(
         "handle_overwritten",

@@ -197,7 +197,7 @@ RUNNING: Sequence[Row] = (
     ),
     (
         r"rclpy_resolve_name\(\): incompatible function arguments",
-        "A name is needed here as a string, and something else was given: perhaps name and type are swapped.",
+        "A name is needed here as a string, and something else was given.",
         "First the type, then the name in quotation marks: create_publisher(String, 'topic', 10).",
     ),
     (

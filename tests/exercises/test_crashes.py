@@ -27,6 +27,10 @@ OLD = {
 }
 
 
+def _output(text: str) -> Event:
+    return Event(1.0, "output", "stderr", {"text": text})
+
+
 def _shown(lines: list[str]) -> Evidence:
     shown = ["Traceback (most recent call last):", '  File "talker.py", line 3, in main', *lines]
     return Evidence(
@@ -215,6 +219,26 @@ def test_what_happens_in_a_line_of_ones_own_is_not_taken_for_a_mistake_with_ros(
     lines: list[str], key: str
 ) -> None:
     assert next(m.key for m in (*CRASHES, *OTHER_CRASHES) if m.recognise(_shown(lines))) == key
+
+
+@pytest.mark.parametrize(
+    ("event", "told"),
+    [
+        (
+            Event(1.0, "subject", "returned", {"value": "<coroutine object ask at 0x7f>"}),
+            "ask is an `async def`",
+        ),
+        (_output("sys:1: RuntimeWarning: coroutine 'main' was never awaited"), "main is an `async def`"),
+        (_output("sys:1: RuntimeWarning: coroutine 'ActionServer._execute_goal' was never awaited"), ""),
+        (_output("sys:1: RuntimeWarning: coroutine 'await_or_execute' was never awaited"), ""),
+    ],
+)
+def test_a_function_that_only_makes_a_coroutine_is_named_and_no_callback_that_came_too_late(
+    event: Event, told: str
+) -> None:
+    evidence = Evidence([Part("part", {}, [event])], Reference("x", {}))
+    advice = next(filter(None, (m.recognise(evidence) for m in CRASHES)), None)
+    assert (advice.text.startswith(told) and bool(told)) if advice else not told
 
 
 def test_nothing_is_meant_by_nothing() -> None:

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import dis
 import re  # noqa: TID251  (a student's cells, in their own kernel)
+import traceback
 from dataclasses import dataclass
 from pathlib import Path
 from types import CodeType, FunctionType
 from typing import Any
 
-from autograder.notebook.cells.cell_output import last_student_line, notebook_shell
+from autograder import code_of_elsewhere, course
+from autograder.notebook.cells.cell_output import last_student_line, notebook_shell, student_frames
 
 _ENTRY_POINTS = "entry_points"
 """The list that a cell hands to ``package_files.add_entry_points``."""
@@ -43,14 +45,16 @@ class FailedCells:
         self._failures: dict[str, _Failure] = {}
         shell.events.register("pre_run_cell", self._cell_begins)
         shell.events.register("post_run_cell", self._cell_ended)
-        shell.set_custom_exc((NameError,), self._show_name_error)
+        shell.set_custom_exc(
+            (NameError, ImportError, AttributeError, TypeError, RuntimeError), self._show_error
+        )
 
     def why_missing(self, name: str) -> str:
         """The reason why the newest code of a class or function did not run, with the error; empty where it did."""
         failure = self._failures.get(name)
         if failure is None:
             return ""
-        return f"Your cell that defines {name} stopped before {name} was defined: {failure.error}."
+        return f"Your cell that defines {name} stopped before {name} was defined: {failure.error}"
 
     def _cell_begins(self, info: Any) -> None:
         self._source = info.raw_cell or ""
@@ -69,13 +73,15 @@ class FailedCells:
             if error is None or self._shell.user_ns.get(name) is not before[name]:
                 self._failures.pop(name, None)
             else:
-                self._failures[name] = _Failure(cell, _named(error))
+                self._failures[name] = _Failure(cell, " ".join(filter(None, (_named(error), _here(error)))))
 
-    def _show_name_error(self, shell: Any, kind: type, error: NameError, trace: Any, tb_offset: Any) -> None:
+    def _show_error(self, shell: Any, kind: type, error: Exception, trace: Any, tb_offset: Any) -> None:
         del kind, tb_offset
-        words = self._what_to_run(str(error.name))
+        words = self._what_to_run(str(error.name)) if isinstance(error, NameError) else ""
         if words and trace.tb_next is not None and trace.tb_next.tb_next is None:  # raised by the cell itself
             error._render_traceback_ = lambda: [words]  # type: ignore[attr-defined]
+        elif here := _here(error):
+            error.add_note(here)
         shell.showtraceback(running_compiled_code=True)
 
     def _what_to_run(self, name: str) -> str:
@@ -99,12 +105,26 @@ def _defined(source: str) -> set[str]:
 
 
 def _named(error: BaseException) -> str:
-    """An error's name, line and message, in one line."""
+    """An error's name, line and message, as a sentence."""
     message = error.msg if isinstance(error, SyntaxError) else str(error)
     place = last_student_line(error)
     line = error.lineno if isinstance(error, SyntaxError) else place and place[1]
     named = type(error).__name__ + (f" in line {line}" if line else "")
-    return f"{named}, {message.rstrip('.?')}" if message else named
+    return (f"{named}, {message.rstrip('.?')}" if message else named) + "."
+
+
+def _here(error: BaseException) -> str:
+    """What to write in this course, if the error shows code of elsewhere; empty otherwise."""
+    shown = traceback.format_exception(type(error), error, student_frames(error.__traceback__))
+    found = code_of_elsewhere.recognised("".join(shown), code_of_elsewhere.packages(_packages_of_types()))
+    return f"{found.text} {found.next_step}" if found else ""
+
+
+def _packages_of_types() -> tuple[str, ...]:
+    try:
+        return course.interfaces()
+    except (OSError, course.NoCourse, course.BrokenChapter):  # a grader's kernel sees no course
+        return ()
 
 
 _cells = FailedCells(notebook_shell()) if notebook_shell() is not None else None

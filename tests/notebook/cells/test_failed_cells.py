@@ -28,7 +28,7 @@ CHECK = "check('lab', Talker)"
 
 def text_of(output: Any) -> str:
     if output.output_type == "error":
-        assert output.ename in {"NameError", "StaleCodeError"}
+        assert output.ename in {"NameError", "ModuleNotFoundError", "StaleCodeError"}
     if output.output_type == "stream":
         return " ".join(output.text.split())
     text = "\n".join(output.traceback) if output.output_type == "error" else output.data["text/plain"]
@@ -64,6 +64,17 @@ def test_a_class_whose_newest_code_did_not_run_is_not_judged(said: Callable[...,
         assert "Correct that cell and run it" in words
         assert "the judge was asked" not in words
         assert "Traceback" not in words
+
+
+def test_code_of_elsewhere_is_told_below_the_cell_and_by_the_check(said: Callable[..., list[str]]) -> None:
+    tutorial = "from example_interfaces.srv import AddTwoInts\nclass Talker:\n    pass"
+    ros1 = "class Talker:\n    pub = rospy.Publisher('chatter')"
+    shown, checked, old = said((tutorial,), (tutorial, CHECK), (RIGHT, ros1, CHECK))
+    assert "No module named 'example_interfaces'" in shown
+    for words in (shown, checked):
+        assert "write my_robot_interfaces in place of example_interfaces" in words
+    assert "Write self.create_publisher(String, 'chatter', 10)" in old
+    assert "The notebook still has an older Talker2. Correct that cell" in old
 
 
 def test_a_class_that_the_checked_function_uses_must_not_be_older_than_its_cell(
