@@ -80,6 +80,8 @@ def raised(how: str, traceback: str) -> Advice:
     return Advice(f"{how}: {what_and_where(traceback)}{why and f'. {why}'}", next_step, traceback)
 
 
+_EXECUTOR = "rclpy/executors.py"
+"""The file that calls callbacks: what a traceback has of the student's below it is one."""
 _FRAME = re2.compile(r'(?m)^ +File "(?P<file>[^"\n]*)", line (?P<line>\d+), in (?P<function>[^\n]*)$')
 
 
@@ -87,15 +89,26 @@ def _crashed(evidence: Evidence) -> Advice | None:
     traceback = traceback_of(evidence)
     if not traceback:
         return None
-    return raised("The program stopped with an exception", traceback)
+    spun = _was_spun(evidence) or _EXECUTOR in traceback
+    return raised(
+        "Spinning the node ended with an exception" if spun else "The program stopped with an exception",
+        traceback,
+    )
 
 
 def _exception_in_callback(evidence: Evidence) -> Advice | None:
     traceback = traceback_of(evidence)
-    spun = any(p.first("subject", "constructed") for p in evidence if p.ending and p.ending.name == "raised")
-    if not traceback or not (spun or "rclpy/executors.py" in traceback):
-        return None
+    files = [frame["file"] for frame in _FRAME.finditer(traceback)]
+    spins = next((place for place, file in enumerate(files) if file.endswith(_EXECUTOR)), len(files))
+    called = files if _was_spun(evidence) else files[spins:]
+    if all(map(is_a_library, called)) and ", in await_or_execute\n" not in traceback:
+        return None  # no callback was called: ROS raised it itself, as where it is to spin what is no node
     return raised("A callback raised an exception, and that ended the spinning of the node", traceback)
+
+
+def _was_spun(evidence: Evidence) -> bool:
+    """True if a node of a notebook was made, and raised afterwards; its traceback has no line of rclpy's."""
+    return any(p.first("subject", "constructed") for p in evidence if p.ending and p.ending.name == "raised")
 
 
 def _cut_off(evidence: Evidence) -> Advice | None:

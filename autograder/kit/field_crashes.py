@@ -55,12 +55,25 @@ FIELDS = (
     ),
     Crash(
         "field_type",
+        r"The '(?P<field>\w+)' field must be an integer in (?P<range>\[[^\]]*\])",
+        "The field {field} of a message got a number that is too large or too small for it: it takes {range}.",
+        "Look at what makes this number. A number that has gone through float(...), or a / in place of //, is not "
+        "exact any more: add and multiply whole numbers.",
+    ),
+    Crash(
+        "field_type",
         r"The '(?P<field>\w+)' (?:field|numpy\.ndarray) must|bad argument type for built-in operation"
-        r"|must be an integer in \[|AssertionError: The '"
-        r"|SystemError: <(?:function|class|built-in).*returned (?:a result with an exception|NULL)",
+        r"|AssertionError: The '",
         "A field of a message got a value of the wrong type.",
         "Convert it before you assign: int(...) for an int64, str(...) for a string. Command-line arguments "
         "are strings.",
+    ),
+    Crash(
+        "field_type",
+        r"SystemError: <(?:function|class|built-in).*returned (?:a result with an exception|NULL)",
+        "A field of a message got a value that it cannot take: of another type, or a number that is too large for it.",
+        "Print the value, and its type(...), above the line that assigns it. int(...) makes a whole number of a "
+        "string; a sum of whole numbers fits if no float(...) has rounded it on the way.",
     ),
     Crash(
         "field_typo",

@@ -24,6 +24,8 @@ _CALLED_BY_RCLPY = (
 )
 """Before what is raised where rclpy calls a callback; a notebook's traceback leaves rclpy's own lines out."""
 
+_WITHOUT_NAME = r"TypeError: Node\.__init__\(\) missing 1 required positional argument: 'node_name'"
+
 KNOWN = (
     Crash(
         "syntax_error",
@@ -69,9 +71,21 @@ KNOWN = (
     ),
     Crash(
         "super_init_missing",
-        r"TypeError: Node\.__init__\(\) missing 1 required positional argument: 'node_name'",
-        "The node has no name: its class has no method __init__, or super().__init__() is called with nothing between "
-        "its parentheses.",
+        rf"__init__\(.*{MARKS}{_WITHOUT_NAME}",
+        "The node has no name: __init__ of Node is called without one.",
+        "Write the name between the parentheses: super().__init__('your_node_name').",
+    ),
+    Crash(
+        "crashed",
+        rf"\bNode\(.*{MARKS}{_WITHOUT_NAME}",
+        "The node has no name: Node is called without one.",
+        "Write the name between its parentheses: Node('your_node_name'). In the class of a node, "
+        "super().__init__('your_node_name') makes the node, and no other is needed.",
+    ),
+    Crash(
+        "super_init_missing",
+        _WITHOUT_NAME,
+        "The node has no name: its class has no method __init__ that gives it one.",
         "Write def __init__(self): in the class, indented by four spaces, with two underscores on each side of init. "
         "Its first line is super().__init__('your_node_name').",
     ),
@@ -308,7 +322,7 @@ KNOWN = (
     ),
     Crash(
         "nested_spin",
-        r"[Ee]xecutor is already spinning|generator already executing",
+        r", in await_or_execute\n(?:.*\n)+.*generator already executing",
         "A callback spins although its own executor is spinning already.",
         "Never call spin or spin_until_future_complete inside a callback: give the future that call_async returned a "
         "function to go on in, with its add_done_callback(...).",

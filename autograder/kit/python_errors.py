@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import re2
 
+from autograder.kit.python_calls import CALLS
 from autograder.kit.python_names import MARKS, NAMES
 from autograder.kit.python_syntax import READING
 from autograder.kit.quoted_names import Name, names
@@ -71,10 +72,28 @@ RUNNING: Sequence[Row] = (
         "it. If the value comes from a function of yours, look for a missing return.",
     ),
     (
-        rf"(?:\b(?P<table>[A-Za-z_][\w.]*)\[(?P<what>[\w.()]+)\].*{MARKS})?"
-        r"TypeError: unhashable type: '(?P<kind>\w+)'",
+        rf"\b(?P<table>[A-Za-z_][\w.]*)\[(?P<what>[\w.()]+)\].*{MARKS}TypeError: unhashable type: '(?P<kind>\w+)'",
         "A value of the type {kind} cannot be looked up in a dictionary.",
-        "Look up one of its fields, with a dot, as in {table:STATUS_NAMES}[{what:answer}.status].",
+        "Look up one of its fields, with a dot, as in {table}[{what}.status].",
+    ),
+    (
+        # The executor keeps its nodes in a set; a notebook's traceback leaves rclpy's own lines out.
+        r"(?:\A|rclpy/executors\.py\".*\n(?: .*\n){1,2})TypeError: unhashable type: '(?P<class>\w+)'",
+        "ROS cannot keep your node: its class {class} has no hash, which @dataclass, or a method __eq__ of the class, "
+        "takes away.",
+        "A node cannot be a `@dataclass`: delete that word, and write def __init__(self): with "
+        "super().__init__('your_node_name') as its first line. Set the fields below that, as in self.count = 0.",
+    ),
+    (
+        r"^TypeError: unhashable type: '(?P<kind>\w+)'",
+        "A value of the type {kind} cannot be a key of a dictionary or an element of a set.",
+        "Take a number, a string, or one field of the value in its place, as in STATUS_NAMES[answer.status].",
+    ),
+    (
+        rf"(?:\bspin\w*\((?P<class>[A-Za-z_]\w*)[,)].*\n(?:.*\n)*)?"
+        rf".*node\.subscriptions.*{MARKS}TypeError: 'property' object is not iterable",
+        "A spin takes a node, and got the class of one.",
+        "Write parentheses after the class, which makes a node of it: rclpy.spin({class:YourNode}()).",
     ),
     (
         rf"(?:\b(?P<list>[A-Za-z_][\w.]*)\.append\(.*{MARKS})?TypeError: list\.append\(\) takes exactly one argument",
@@ -174,115 +193,7 @@ RUNNING: Sequence[Row] = (
         "Put the value into an f-string, in braces, as in info(f'{{response.sum}}'). Of a message take the field, as "
         "in info(f'{{message.data}}').",
     ),
-    (
-        r"^TypeError: (?:\w+\.)?publish\(\) missing",
-        "publish was called without a message.",
-        "Write your message between its parentheses.",
-    ),
-    (
-        r"^TypeError: (?:String|Twist|Vector3|U?Int\d+|Float\d+|Bool"
-        r"|\w+_(?:Request|Response|Goal|Result|Feedback))\.__init__\(\) takes 1 positional argument",
-        "A message takes its fields by their names.",
-        "Name the field between the parentheses, as in String(data='hello'), or set it in the next line.",
-    ),
-    (
-        rf"^ +(?:.*[ (])?\w+_callback=(?P<name>\w+)\(\).*{MARKS}TypeError: \w+\(\) missing",
-        "The parentheses after {name} call it in this line, without the arguments that ROS would give it.",
-        "Write only its name, {name}, without parentheses: ROS calls the function when it is time.",
-    ),
-    (
-        r"^TypeError: isinstance\(\) arg 2 must be a type",
-        "The publisher was made with an object, such as String(), where the type itself is needed.",
-        "Leave out the parentheses after the type: create_publisher(String, 'topic', 10).",
-    ),
-    (
-        r"rclpy_resolve_name\(\): incompatible function arguments",
-        "A name is needed here as a string, and something else was given.",
-        "First the type, then the name in quotation marks: create_publisher(String, 'topic', 10).",
-    ),
-    (
-        r"^TypeError: (?:Node\.)?get_logger\(\) takes 1 positional argument",
-        "get_logger() takes nothing: it gives you the logger, and the logger has the method info.",
-        "Write self.get_logger().info(...), with the string between the second parentheses.",
-    ),
-    (
-        r"^TypeError: Node\.(?P<method>create_\w+)\(\) takes (?:from \d+ to )?\d+ positional arguments? but \d+ were",
-        "{method} got more arguments than it takes.",
-        "Compare with the lab: create_publisher(type, topic, depth), create_subscription(type, topic, method, depth), "
-        "create_timer(seconds, method), create_service(type, name, method), create_client(type, name).",
-    ),
-    (
-        rf"(?:\w*(?:time|sec|patience|limit)\w*=(?P<limit>[\w.]+)\).*{MARKS})?TypeError: (?:\w+\.)*(?P<what>"
-        r"wait_for_(?:service|server)|spin_once|spin_until_future_complete|call)\(\) got an unexpected keyword "
-        r"argument '(?P<name>\w*(?:time|sec|patience|limit)\w*)'",
-        "{what} takes its limit under the name timeout_sec, and not under {name}.",
-        "Left of the = write timeout_sec, as in {what}(..., timeout_sec={limit:5.0}).",
-    ),
-    (
-        r"^TypeError: (?:Client\.)?call(?:_async)?\(\) (?:takes .*positional argument|got an unexpected keyword)",
-        "A call takes one thing, the request.",
-        "Put the numbers into the request first, as in call_async(AddTwoInts.Request(a=2, b=3)).",
-    ),
-    (
-        r"^TypeError: (?:ActionClient\.)?send_goal(?:_async)?\(\) got an unexpected keyword argument '(?:order|x|y)'",
-        "send_goal_async takes a goal, and what your code gives it is a field of one.",
-        "Put the field into a goal first, as in send_goal_async(Fibonacci.Goal(order=10), feedback_callback=...).",
-    ),
-    (
-        r"^TypeError: ActionServer\.__init__\(\) got an unexpected keyword argument '(?P<name>\w+)'",
-        "An ActionServer takes no argument called {name}.",
-        "Its functions are called goal_callback=, execute_callback= and cancel_callback=: write one of these.",
-    ),
-    (
-        r"^TypeError: (?:ActionClient\.)?send_goal(?:_async)?\(\) got an unexpected keyword argument '(?P<name>\w+)'",
-        "send_goal_async takes the goal and feedback_callback=, and nothing called {name}.",
-        "Write feedback_callback= before the name of the method that is given the feedback, or leave it out.",
-    ),
-    (
-        r"^TypeError: ActionServer\.__init__\(\) takes .* positional arguments? but",
-        "After the node, the type and the name, an ActionServer takes its functions by their keywords.",
-        "Write goal_callback=, execute_callback= or cancel_callback= before each of them.",
-    ),
-    (
-        r"^TypeError: Node\.__init__\(\) takes .* positional arguments? but",
-        "super().__init__ hands over self by itself, and takes the name of the node.",
-        "Write super().__init__('your_node_name'), with nothing but the name between the second parentheses.",
-    ),
-    (
-        r"^TypeError: (?:\w+\.)*?(?P<what>\w+)(?:\.__init__)?\(\) takes (?P<takes>.*\d) positional arguments? but "
-        r"(?P<got>\d+) w\w+ given",
-        "{what} takes {takes} arguments and got {got}; in a method, self is counted as well.",
-        "Its first line, def ..., or the lab's text names its arguments: give it one value for each, in their order.",
-    ),
-    (
-        r"^TypeError: (?P<what>AddTwoInts|SetBool|Trigger|Fibonacci|WalkTo)\.__init__\(\) got an unexpected keyword",
-        "{what} itself only holds its parts together: the fields are in a part.",
-        "Make the part that you need, such as AddTwoInts.Request(a=2, b=3) or Fibonacci.Goal(order=10).",
-    ),
-    (
-        r"^TypeError: spin\(\) missing 1 required positional argument: 'node'",
-        "rclpy.spin has to know which node it spins.",
-        "Write your node between its parentheses: rclpy.spin(your_node).",
-    ),
-    (
-        r"^TypeError: __init__\(\): incompatible constructor arguments",
-        "One of the arguments in this line has the wrong type.",
-        "First the type, then the name in quotation marks, then the method without parentheses, as in "
-        "create_service(AddTwoInts, 'add_two_ints', self.your_method).",
-    ),
-    (
-        r"^TypeError: (?P<what>ActionServer|ActionClient)\.__init__\(\) missing \d+ required positional arguments?: "
-        r"(?:.*')?action_name'",
-        "The node is missing: it is the first argument of every {what}.",
-        "Write self first: {what}(self, Fibonacci, 'fibonacci', ...).",
-    ),
-    (
-        r"^TypeError: (?:\w+\.)*?(?P<what>\w+)(?:\.__init__)?\(\) missing \d+ required positional arguments?: "
-        r"(?P<names>.+)",
-        "{what} got less than it needs. Missing: {names}.",
-        "Its first line, def ..., or the lab's text names its arguments: give it one value for each, in their order. "
-        "Where the first value is left out, Python names the last argument.",
-    ),
+    *CALLS,
     (
         r"Invalid(?:Topic|Service|Node|Namespace)\w*NameException|InvalidNamespaceException",
         "A name in ROS has letters, digits and underscores only, no digit at its beginning, and no slash at its end.",
@@ -316,6 +227,13 @@ RUNNING: Sequence[Row] = (
         "next(...) asked for one more, and none was left.",
         "Take the values in a for loop, or give next(...) a second argument, which it returns at the end: "
         "next(values, None).",
+    ),
+    (
+        r"^ValueError: generator already executing",
+        "Two threads spin at once by the same executor. rclpy.spin(node) uses one executor for the whole program.",
+        "Spin once, by one executor that has all your nodes: executor = MultiThreadedExecutor(), "
+        "executor.add_node(...) for each of them, executor.spin(). Or give each thread an executor of its own: "
+        "rclpy.spin(node, executor).",
     ),
     (
         r"^ValueError: (?:not enough|too many) values to unpack \(expected (?P<names>\d+)",
@@ -364,22 +282,16 @@ RUNNING: Sequence[Row] = (
         "Leave out the str(...) or the quotation marks around it; int(...) makes a whole number of a string.",
     ),
     (
-        r"^TypeError: (?:\w+\.)?(?P<what>publish\w*)\(\) got an unexpected keyword argument '(?P<name>\w+)'",
-        "{what} takes a message, and {name} is a field of one.",
-        "Put the field into a message, as in publish(String(data='hello')), or "
-        "publish_feedback(Fibonacci.Feedback(partial_sequence=numbers)).",
-    ),
-    (
-        r"^TypeError: (?:\w+\.)*?(?P<what>\w+)(?:\.__init__)?\(\) got an unexpected keyword argument '(?P<name>\w+)'",
-        "{what} takes no argument called {name}.",
-        "Its first line, def ..., or the lab's text names its arguments: compare the name, letter by letter, or leave "
-        "it out.",
+        r"^ +File ",
+        "",
+        "Read the traceback from the bottom: the last line says what, the lines above it where. Correct the line "
+        "that is yours.",
     ),
     (
         r"",
         "",
-        "Read the traceback from the bottom: the last line says what, the lines above it where. Correct the line "
-        "that is yours.",
+        "ROS raised this in code of its own. Compare what your code gives to ROS, between the parentheses of each "
+        "create_... and of what spins, with the lab's text: types, names, methods and their order.",
     ),
 )
 """Python's words about a program that runs."""

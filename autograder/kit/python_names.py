@@ -13,7 +13,6 @@ Row = tuple[str, str, str]
 MARKS = r"\n(?:[ ~^]*\n)?"
 """From a line of code to what Python says of it: perhaps a line of marks below the code."""
 _OWN = r"AttributeError: '(?P<class>[A-Z]\w*)' object has no attribute '(?P<name>\w+)'"
-_TYPE = r"AttributeError: '[A-Z]\w*' object has no attribute '(?P<name>[A-Z]\w*)'"
 _OF_RCLPY = (
     r"\w+GoalHandle|Publisher|Subscription|Timer|Client|Service|ActionClient|ActionServer|RcutilsLogger"
 )
@@ -34,6 +33,10 @@ _IMPORTED_FROM = {
     "std_msgs.msg": "String",
 }
 """The module of each name that beginners import from another one, or forget to import."""
+_TYPE = (
+    r"AttributeError: '[A-Z]\w*' object has no attribute "
+    rf"'(?P<name>{'|'.join(_IMPORTED_FROM.values())}|AddTwoInts|Fibonacci)'"
+)
 
 NAMES: Sequence[Row] = (
     *(
@@ -55,6 +58,12 @@ NAMES: Sequence[Row] = (
         rf"^ +self\.(?P<name>\w+) == .*{MARKS}AttributeError: '[A-Z]\w*' object has no attribute",
         "Two equals signs compare, so self.{name} gets no value.",
         "Write a single one: self.{name} = ...",
+    ),
+    (
+        r"\b(?:spin\w*|add_node)\((?P<what>[\w.]*).*\n(?:.*\n)*?AttributeError: '(?P<class>\w+)' object has no "
+        r"attribute 'executor'",
+        "A spin takes a node, and {what:what it got} is of the type {class} here.",
+        "Give it your node. If a function is to make the node, end it with return node.",
     ),
     (
         r"AttributeError: 'NoneType' object has no attribute '(?P<name>append)'",
@@ -142,9 +151,17 @@ NAMES: Sequence[Row] = (
         "Write time.{name} in place of {owner:node}.{name}.",
     ),
     (
+        # Each node has lists of these names; what is missing is the student's own.
+        rf"^{_OWN}\. Did you mean: '(?:publishers|subscriptions|clients|services|timers|guards|waitables)'",
+        "{class} has nothing called {name} so far.",
+        "Set it in __init__, above the line that needs it, with self. before it: self.{name} = ..., which keeps what "
+        "create_publisher, create_client or another create_... returns.",
+    ),
+    (
         rf"^{_OWN}\. Did you mean: '(?P<meant>\w+)'",
         "{class} has nothing called {name}, and has {meant}.",
-        "If that is what you mean, write {meant}. If {name} is a value of your own, set self.{name} in __init__.",
+        "If that is what you mean, write {meant}. If {name} is something else, write it in the class: a value as "
+        "self.{name} = ... in __init__, a method as def {name}(self, ...).",
     ),
     (
         r"^ +.*\bspin\w*\((?P<what>\w+)[,)].*\n(?:.*\n)*AttributeError: '(?P<class>Client|ActionClient|Publisher"

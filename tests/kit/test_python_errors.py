@@ -3,15 +3,28 @@
 from __future__ import annotations
 
 import functools
+from typing import TYPE_CHECKING
 
 import pytest
 
 from autograder.kit.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.kit.model import Advice
+
 TRANSITION = "RCLError: Failed to update goal state: goal_handle attempted invalid transition from state"
 SAID = {
     "AttributeError: 'Talker' object has no attribute 'cuont'. Did you mean: 'count'?": "write count.",
+    "AttributeError: 'Talker' object has no attribute 'publisher'. Did you mean: 'publishers'?": "self.publisher = ...",
+    "AttributeError: 'Talker' object has no attribute 'Run'. Did you mean: 'run'?": "write run.",
+    "AttributeError: 'Talker' object has no attribute 'Counter'": "Talker has nothing called Counter so far",
+    "TypeError: unhashable type: 'list'": "cannot be a key of a dictionary",
+    "AssertionError: The 'data' field must be an integer in [-128, 127]": "too small for it: it takes [-128, 127]",
+    "SystemError: <built-in method publish of x> returned a result with an exception set": "or a number that is too",
+    "LookupError: nothing": "Read the traceback from the bottom",
     "AttributeError: 'Talker' object has no attribute 'create_timr'": "Compare the spelling: create_publisher",
     "NameError: name 'count' is not defined. Did you mean: 'self.count'?": "To use it, write self.count",
     "NameError: name 'comand' is not defined. Did you mean: 'command'?": "and knows command",
@@ -170,12 +183,12 @@ def test_the_card_names_what_to_mend(last: str) -> None:
         (
             "execute_callback=compute(),",
             "TypeError: compute() missing 1 required positional argument: 'goal_handle'",
-            "Write only its name, compute",
+            "write only its name, compute",
         ),
         (
             "self.server = ActionServer(self, Fibonacci, 'fibonacci', execute_callback=compute(), cancel_callback=x)",
             "TypeError: compute() missing 1 required positional argument: 'goal_handle'",
-            "Write only its name, compute",
+            "write only its name, compute",
         ),
         (
             "self.publisher = self.create_publisher(String, chatter, 10)",
@@ -405,6 +418,74 @@ def test_only_a_line_of_the_students_own_tells_a_name(file: str, future: str) ->
     assert f"Read {future}.result().sum" in told(f"Traceback (most recent call last):\n{lines}{last}")
 
 
+@pytest.mark.parametrize(
+    ("code", "key", "says"),
+    [
+        ("super().__init__()", "super_init_missing", "__init__ of Node is called without one"),
+        ("self.node = Node()", "crashed", "Node is called without one"),
+        ("node = Talker()", "super_init_missing", "its class has no method __init__"),
+    ],
+)
+def test_a_node_without_a_name_is_told_from_the_line_that_called(code: str, key: str, says: str) -> None:
+    frames = f'Traceback (most recent call last):\n  File "talker.py", line 3, in f\n    {code}\n'
+    last = "TypeError: Node.__init__() missing 1 required positional argument: 'node_name'"
+    assert diagnosed(f"{frames}{last}") == key
+    assert says in told(f"{frames}{last}")
+
+
+IN_THE_EXECUTOR = (
+    'Traceback (most recent call last):\n  File "talker.py", line 12, in <module>\n    rclpy.spin(Talker)\n'
+    '  File "/venv/lib/python3.11/site-packages/rclpy/executors.py", line 601, in _wait_for_ready_callbacks\n'
+    "    subscriptions.extend(filter(self.can_execute, node.subscriptions))\n"
+    "TypeError: 'property' object is not iterable"
+)
+IN_A_CALLBACK = (
+    'Traceback (most recent call last):\n  File "talker.py", line 12, in <module>\n    rclpy.spin(node)\n'
+    '  File "/venv/lib/python3.11/site-packages/rclpy/executors.py", line 108, in await_or_execute\n'
+    "    return callback(*args)\n"
+    '  File "talker.py", line 7, in tick\n    1 / 0\nZeroDivisionError: division by zero'
+)
+
+
+def test_only_what_a_callback_raised_is_called_an_exception_in_a_callback() -> None:
+    assert diagnosed(IN_A_CALLBACK) == "exception_in_callback"
+    assert diagnosed(IN_THE_EXECUTOR) == "crashed"
+    assert "rclpy.spin(Talker())" in told(IN_THE_EXECUTOR)
+
+
+GENERATOR = "ValueError: generator already executing"
+
+
+def test_a_spin_inside_a_callback_is_told_only_where_a_callback_spins() -> None:
+    in_a_thread = (
+        'Traceback (most recent call last):\n  File "talker.py", line 3, in run\n    rclpy.spin(node)\n'
+    )
+    nested = IN_A_CALLBACK.replace("1 / 0", "rclpy.spin(other)").replace(
+        "ZeroDivisionError: division by zero", ""
+    )
+    assert diagnosed(f"{nested}{GENERATOR}") == "nested_spin"
+    assert diagnosed(f"{in_a_thread}{GENERATOR}") == "crashed"
+    assert "Two threads spin at once by the same executor" in told(f"{in_a_thread}{GENERATOR}")
+
+
+def test_what_ros_raised_of_a_notebooks_node_names_the_node_and_no_traceback_that_is_not_there() -> None:
+    """The traceback of a notebook has the student's lines only, and here is none of them."""
+    made, no_hash = Event(0.1, "subject", "constructed"), "TypeError: unhashable type: 'Talker'"
+    assert diagnosed(no_hash, made) == "crashed"
+    assert "A node cannot be a `@dataclass`" in told(no_hash, made)
+    for words in (told("RuntimeError: nothing known", made), told("ValueError: neither")):
+        assert "Compare what your code gives to ROS" in words
+        assert "Read the traceback" not in words
+
+
+def test_a_spin_of_nothing_names_what_it_was_given() -> None:
+    frames = (
+        'Traceback (most recent call last):\n  File "talker.py", line 3, in f\n    rclpy.spin(make_node())\n'
+    )
+    words = told(f"{frames}AttributeError: 'NoneType' object has no attribute 'executor'")
+    assert "A spin takes a node, and make_node is of the type NoneType" in words
+
+
 def test_a_program_s_traceback_has_lines_of_the_generated_module_in_it() -> None:
     frames = (
         'Traceback (most recent call last):\n  File "talker.py", line 3, in tick\n    message = String(dat="x")\n'
@@ -455,9 +536,19 @@ def test_an_answer_was_left_lying_only_if_it_was_so_in_each_run(
     assert (first.recognise(Evidence(runs, Reference("x", {}))) is not None) == is_told
 
 
-def told(traceback: str) -> str:
+def told(traceback: str, *before: Event) -> str:
     """What the diagnosis of a subject says that ended with this traceback."""
-    event = Event(0.1, "subject", "raised", {"traceback": traceback})
-    evidence = Evidence([Part("part", {}, [event])], Reference("x", {}))
-    advice = next(filter(None, (mistake.recognise(evidence) for mistake in (*CRASHES, *OTHER_CRASHES))))
+    _, advice = _found(traceback, before)
     return f"{advice.text} {advice.next_step}"
+
+
+def diagnosed(traceback: str, *before: Event) -> str:
+    """The key of that diagnosis."""
+    return _found(traceback, before)[0]
+
+
+def _found(traceback: str, before: Sequence[Event]) -> tuple[str, Advice]:
+    event = Event(0.1, "subject", "raised", {"traceback": traceback})
+    evidence = Evidence([Part("part", {}, [*before, event])], Reference("x", {}))
+    asked = ((mistake.key, mistake.recognise(evidence)) for mistake in (*CRASHES, *OTHER_CRASHES))
+    return next((key, advice) for key, advice in asked if advice is not None)

@@ -149,9 +149,9 @@ class Speaks:
             return None  # only texts that came once more are missing
         return Advice(
             f"At the pace of {self._paced_by}, a string every {self._pace:g} s, your listener misses some, such as "
-            f"“{_text(missing[0])}”; when it is given more time, it says all.",
-            "Let the callback only log and return, without time.sleep: while it runs, new messages wait, and no more "
-            "of them than the depth of the queue.",
+            f"“{_text(missing[0])}”; of strings that come one at a time it misses none.",
+            "While a callback runs, new messages wait, and no more of them than the depth of the queue. Let the "
+            "callback only log and return, without time.sleep, and give the subscription the depth 10.",
         )
 
 

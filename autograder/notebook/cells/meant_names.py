@@ -35,7 +35,9 @@ def meant_name(error: BaseException, trace: TracebackType | None) -> str:
         if missing in _attributes(local.get("self")):
             return f". Did you mean: 'self.{missing}'?"
         known = [*local, *(trace.tb_frame.f_globals if trace is not None else {}), *dir(builtins)]
-    near = difflib.get_close_matches(missing, [name for name in known if name[:1] != "_"], 1, _NEAR)
+    public = [name for name in known if name[:1] != "_"]
+    same = [name for name in public if name.lower() == missing.lower()]
+    near = same or difflib.get_close_matches(missing, public, 1, _NEAR)
     return f". Did you mean: '{near[0]}'?" if near else ""
 
 

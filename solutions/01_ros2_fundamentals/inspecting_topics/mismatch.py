@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 KEYS = ("topic_published", "topic_subscribed", "type_published", "type_subscribed")
 """The keys of the dictionary that is asked for."""
 CASES = ("the name differs", "the type differs", "both differ")
+MAX_QUOTED = 200
+"""Characters of a line that a card quotes."""
 ANSWERING = {Pace.FAST: 8.0, Pace.REAL_TIME: 15.0}
 """Seconds of wall time for an answer; discovery takes up to three in a process that has just started."""
 
@@ -288,14 +290,17 @@ def no_answer(seen: Evidence, _: Evidence) -> Advice | None:
     """Something came back, and it is no dictionary with the four keys."""
     for part, given in _wrong(seen):
         if part.ending is not None and (given is None or not set(KEYS) <= set(given)):
-            missing = ", ".join(key for key in KEYS if key not in (given or {}))
-            return Advice(
-                f"Your answer lacks {missing}." if given else "Your function ended without an answer.",
-                "Return a dictionary with the keys "
-                + ", ".join(KEYS)
-                + " (a program prints it). If yours has them, "
-                "it did not find that side: go through all ends of each topic, not only the first.",
-            )
+            asked = f"Return a dictionary with the keys {', '.join(KEYS)} (a program prints it)."
+            if given:
+                missing = ", ".join(key for key in KEYS if key not in given)
+                return Advice(
+                    f"Your answer lacks {missing}.",
+                    f"{asked} If yours has them, it did not find that side: go through all ends of each topic, not "
+                    "only the first.",
+                )
+            said = [line for line in part.said() if line != "None" and len(line) <= MAX_QUOTED]
+            last = f": the last that it said is “{said[-1]}”" if said else ""
+            return Advice(f"Your function ended without an answer{last}.", asked)
     return None
 
 

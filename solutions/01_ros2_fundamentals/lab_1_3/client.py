@@ -103,7 +103,7 @@ client.knows(
     "wrong_sum_reported",
     lambda seen, _: recipe.another_sum(seen),
     "The service answered {0.answer}, but your program said “{0.line}”.",
-    "Report the field sum of the answer that the service gave, and add nothing up yourself.",
+    "Report the field sum of the answer as it is: all its digits, and no sum of your own.",
     late=True,
     certain=Client.ended_each_time,
 )

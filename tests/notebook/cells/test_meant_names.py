@@ -24,6 +24,7 @@ class Driver:
         ("sefl.publisher(command)", "name 'sefl' is not defined. Did you mean: 'self'?"),
         ("publisher(command)", "name 'publisher' is not defined. Did you mean: 'self.publisher'?"),
         ("self.publsher(command)", "object has no attribute 'publsher'. Did you mean: 'publisher'?"),
+        ("self.DRIVE()", "object has no attribute 'DRIVE'. Did you mean: 'drive'?"),
         ("raise TimeOutError", "name 'TimeOutError' is not defined. Did you mean: 'TimeoutError'?"),
         ("chatter", "name 'chatter' is not defined"),
         ("self.publisher[command]", "is not subscriptable"),
