@@ -13,7 +13,8 @@ from autograder.kit.known_crashes import KNOWN, NOT_SPUN_WHILE_CALLING
 from autograder.kit.model import Advice, Mistake
 from autograder.kit.python_errors import meaning
 from autograder.kit.python_names import MARKS
-from autograder.kit.quoted_names import FRAME_WITH_CODE, Name, is_a_library, names
+from autograder.kit.quoted_names import Name, is_a_library, names, own_line
+from autograder.kit.workspace_report import report_of
 
 if TYPE_CHECKING:
     from autograder.code_of_elsewhere import Elsewhere
@@ -193,6 +194,31 @@ def _package_not_found(evidence: Evidence) -> Advice | None:
     )
 
 
+_MISSING_PART = re2.compile(
+    r"ModuleNotFoundError: No module named '(?P<package>\w+)\.(?P<folder>\w+)(?:\.\w+)*'"
+)
+
+
+def _not_installed(evidence: Evidence) -> Advice | None:
+    """A folder of a package's modules that its setup.py does not install: it is in the sources, and nowhere else."""
+    traceback, report = traceback_of(evidence), report_of(evidence.main)
+    found = _MISSING_PART.search(traceback)
+    if found is None or report is None:
+        return None
+    folder = f"{found['package']}/{found['folder']}/"
+    files = (
+        file for package in report.packages if package.name == found["package"] for file in package.modules
+    )
+    if not any(file.startswith(folder) for file in files):
+        return None
+    return Advice(
+        f"The folder {folder} is in your package, but setup.py does not install it.",
+        "In setup.py write packages=find_packages(exclude=['test']), and import it: from setuptools import "
+        "find_packages, setup. It takes each folder that has an __init__.py in it. Then check again: the judge builds.",
+        traceback,
+    )
+
+
 def _only_slips(mistake: Mistake) -> Mistake:
     def recognise(evidence: Evidence) -> Advice | None:
         return None if meant(traceback_of(evidence)) else mistake.recognise(evidence)
@@ -202,6 +228,7 @@ def _only_slips(mistake: Mistake) -> Mistake:
 
 CRASHES: tuple[Mistake, ...] = (
     Mistake("call_never_spun", _answer_not_taken),
+    Mistake("module_not_found", _not_installed, certain=True),
     *map(_recogniser, code_of_elsewhere.ROWS),
     *map(_recogniser, KNOWN),
     Mistake(code_of_elsewhere.KEY, _never_awaited, certain=True),
@@ -235,7 +262,4 @@ def on_purpose(traceback: str) -> bool:
 
 def meant(traceback: str) -> bool:
     """True if the innermost line of a traceback is one of the program's own that says ``raise`` or ``assert``."""
-    frames = list(FRAME_WITH_CODE.finditer(traceback))
-    if not frames or is_a_library(frames[-1]["file"]):
-        return False
-    return re2.search(r"(?:^|[:;] *)(?:raise|assert)\b", frames[-1]["code"]) is not None
+    return re2.search(r"(?:^|[:;] *)(?:raise|assert)\b", own_line(traceback)) is not None

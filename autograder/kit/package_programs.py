@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.model import Advice, Pace
+from autograder.kit.quoted_names import own_line
 from autograder.kit.workspace_report import BUILDING, report_of
 
 if TYPE_CHECKING:
@@ -66,6 +67,14 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
     report = report_of(evidence.main)
     if report is not None and report.built and report.missing == entry.program:
         own = package_of(report, entry.package)
+        if own and any(line.partition("=")[0].strip() == entry.program for line in own.programs):
+            return Advice(
+                f"The package is built, and setup.py names the program {entry.program}, but it is not installed where "
+                f"`ros2 run` looks: in lib/{entry.package}.",
+                "setup.cfg, beside setup.py, says where programs go. It needs the lines [develop], "
+                f"script_dir=$base/lib/{entry.package}, [install] and install_scripts=$base/lib/{entry.package}. "
+                f"{_again(evidence)}",
+            )
         named = ", ".join(own.programs) if own else ""
         # Who has written none yet is told the form: the line itself is the answer.
         return Advice(
@@ -78,7 +87,9 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
             f"In setup.py, the list 'console_scripts' has to contain {entry.line if named else FORM}. "
             f"{_again(evidence)}",
         )
-    tracebacks = "\n".join(part.traceback for part in evidence)
+    # All that is below the start of a program is Python's own: no file of the student's has imported anything yet.
+    started = (part.traceback for part in evidence if _LOADS in part.traceback)
+    tracebacks = "\n".join(text for text in started if not own_line(text))
     found = re2.search(
         rf"No module named '{entry.package}\.(?P<module>\w+)'"
         rf"|module '{entry.package}\.\w+' has no attribute '(?P<name>\w+)'",
@@ -95,12 +106,9 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
     )
 
 
-_LED_NOWHERE = re2.compile(
-    r"(?m)^ +return next\(matches\)\.load\(\)\n(?: +[~^]+\n)?"
-    # All that is below the start of a program is Python's own: no file of the student's has imported anything yet.
-    r"(?: +File \"[^\"\n]*(?:/importlib/|<frozen importlib)[^\n]*\n(?:    [^\n]*\n)*)*"
-    r"ModuleNotFoundError: No module named '(?P<module>[\w.]+)'"
-)
+_LOADS = "next(matches).load()"
+"""The line, in the file that a build makes of an entry point, that imports its module."""
+_LED_NOWHERE = re2.compile(r"(?m)^ModuleNotFoundError: No module named '(?P<module>[\w.]+)'")
 
 
 def _again(evidence: Evidence) -> str:

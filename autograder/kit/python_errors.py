@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import re2
 
-from autograder.kit.python_calls import CALLS
 from autograder.kit.python_names import MARKS, NAMES
-from autograder.kit.python_syntax import READING
+from autograder.kit.python_syntax import CALLS, READING
 from autograder.kit.quoted_names import Name, names
 
 if TYPE_CHECKING:

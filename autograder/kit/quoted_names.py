@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re2
 
-FRAME_WITH_CODE = re2.compile(r'(?m)^ {2}File "(?P<file>[^"]*)", line \d+.*\n {4,}(?P<code>\S.*)$')
+_FRAME_WITH_CODE = re2.compile(r'(?m)^ {2}File "(?P<file>[^"]*)", line \d+.*\n {4,}(?P<code>\S.*)$')
 """A frame of a traceback, with the line of code that is quoted below it."""
 _LIBRARY = re2.compile(r"/lib/python3(?:\.\d+)?/|/(?:site|dist)-packages/|^/opt/ros/|^<frozen")
 _BUILT = re2.compile(
@@ -37,6 +37,12 @@ def is_a_library(file: str) -> bool:
     return _LIBRARY.search(file) is not None and (built is None or built["package"] in _ROS)
 
 
+def own_line(traceback: str) -> str:
+    """The innermost line of code in a traceback, if it is the student's; empty otherwise."""
+    frames = list(_FRAME_WITH_CODE.finditer(traceback))
+    return "" if not frames or is_a_library(frames[-1]["file"]) else str(frames[-1]["code"])
+
+
 def names(traceback: str) -> dict[str, Name]:
     """The names that a traceback tells, for a template: ``owner`` and ``future``, empty where they are not known.
 
@@ -50,10 +56,9 @@ def names(traceback: str) -> dict[str, Name]:
 
 def _owner(traceback: str) -> str:
     """What the student's line has before the attribute that is missing; empty where several things may be meant."""
-    missed, frames = _MISSED.search(traceback), list(FRAME_WITH_CODE.finditer(traceback))
-    if missed is None or not frames or is_a_library(frames[-1]["file"]):
+    missed = _MISSED.search(traceback)
+    if missed is None:
         return ""
-    found = {
-        one["owner"] for one in re2.finditer(_OWNER.replace("{name}", missed["name"]), frames[-1]["code"])
-    }
+    pattern = _OWNER.replace("{name}", missed["name"])
+    found = {one["owner"] for one in re2.finditer(pattern, own_line(traceback))}
     return str(found.pop()) if len(found) == 1 else ""

@@ -20,7 +20,7 @@ def build_report(part: Part) -> WorkspaceReport | None:
 
 def seen_of_build(report: WorkspaceReport) -> str:
     """The outcome of a build, in a few words for a card."""
-    if report.trouble == "build":
+    if report.trouble in ("build", "entry_point"):
         return f"colcon could not build {report.package or 'it'}: {report.line}"
     return report.line or report.trouble.replace("_", " ")
 
@@ -91,6 +91,13 @@ BUILD = (
         _unreadable,
         "Python could not read {0[0]} when {0[1].package} was built: {0[1].line}",
         "A bracket, a quote, a colon or the indentation is off there or just before it.",
+        certain=True,
+    ),
+    mistake(
+        "entry_point",
+        lambda evidence: _trouble(evidence, "entry_point"),
+        "colcon build fails in {0.package}: setup.py has an entry point of the wrong form.",
+        "{0.line}",
         certain=True,
     ),
     Mistake("build_failed", _build_failed, certain=True),

@@ -80,8 +80,8 @@ class WorkspaceReport:
     Attributes:
         phase: ``"found"`` before the build, ``"built"`` after it.
         built: Whether every package was built.
-        trouble: Which kind of trouble: ``"no_workspace"``, ``"no_package"``, ``"bad_package"``, ``"build"`` or
-            empty.
+        trouble: Which kind of trouble: ``"no_workspace"``, ``"no_package"``, ``"bad_package"``, ``"entry_point"``,
+            ``"build"`` or empty.
         package: The package that failed, else empty.
         line: The one line that matters of a failure.
         log: The end of the log of a failure.

@@ -14,13 +14,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from autograder.workspaces import entry_points
 from autograder.workspaces.packages import UNREADABLE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 PACKAGE = "my_robot_pkg"
-_ENTRY_POINT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*(\w+)\s*")
 _DEFINITIONS = re.compile(r"rosidl_generate_interfaces\s*\(\s*\$\{PROJECT_NAME\}[^)]*")
 
 
@@ -56,12 +56,12 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
     setup = Path(workspace) / "src" / package / "setup.py"
     wanted = list(entries)
     for entry in wanted:
-        if not isinstance(entry, str) or not _ENTRY_POINT.fullmatch(entry):
-            return _no_entry_point(entry)
+        if not isinstance(entry, str) or not entry_points.is_entry_point(entry):
+            return entry_points.objection(entry)
     try:
         text = setup.read_text(encoding="utf-8")
         tree = ast.parse(text)
-        programs = _programs(tree)
+        programs = entry_points.console_scripts(tree)
     except FileNotFoundError:
         return f"There is no {setup}. First make the package, as in Lab 1.1."
     except UNREADABLE as error:
@@ -144,32 +144,6 @@ def add_definition(workspace: str | Path, package: str, definition: str, needs: 
     return f"{package} generates: {generated}\n{add_dependencies(workspace, needs, package)}"
 
 
-def _no_entry_point(entry: object) -> str:
-    """The advice on something that has not the form of an entry point."""
-    if isinstance(entry, str) and entry.count("=") > 1 and entry.count(":") > 1:
-        return (
-            f"Two entry points have run together: {entry!r}. A comma is missing between them: Python joins two strings "
-            "with nothing between. Write a comma after each entry point, behind its closing quotation mark."
-        )
-    what = _what_is_wrong(entry) if isinstance(entry, str) else ""
-    return f"{entry!r} is no entry point. {what}Write: executable = package.module:function"
-
-
-def _what_is_wrong(entry: str) -> str:
-    """The slip in what was meant for an entry point, as a sentence and a space; empty where none is known."""
-    if len(entry.strip()) <= 1:
-        return "It is a single letter: put the string into a list, in square brackets. "
-    if "(" in entry:
-        return "Leave out the parentheses: the function is named here and not called. "
-    if "/" in entry:
-        return "Write dots in the module in place of slashes, as in an import. "
-    if "=" not in entry:
-        return "The equals sign between the executable and the module is missing. "
-    if ":" not in entry:
-        return "The colon between the module and the function is missing. "
-    return ""
-
-
 def _without_package(entries: list[str], package: str) -> list[str]:
     """A warning for each module that is named without its package."""
     modules = [(entry, _parts(entry)[1].partition(":")[0]) for entry in entries]
@@ -240,17 +214,6 @@ def _value(node: ast.expr, names: Mapping[str, object]) -> str | None:
         case _:
             return None
     return None if None in parts else "".join(part for part in parts if part)
-
-
-def _programs(tree: ast.Module) -> ast.List | None:
-    """The list of ``console_scripts`` in a setup.py."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Dict):
-            for key, value in zip(node.keys, node.values, strict=True):
-                named = isinstance(key, ast.Constant) and key.value == "console_scripts"
-                if named and isinstance(value, ast.List):
-                    return value
-    return None
 
 
 def _with_list(text: str, programs: ast.List, elements: list[_Element], last_comments: list[str]) -> str:

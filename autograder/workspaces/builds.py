@@ -106,7 +106,11 @@ class Builds:
             BuildTookTooLong: It was ended for that.
         """
         made = self._build(found, targets, name, cancelled)
-        wanted = set(targets(found)) if targets is not None and made.trouble == "build" else set[str]()
+        wanted = (
+            set(targets(found))
+            if targets is not None and made.trouble in ("build", "entry_point")
+            else set[str]()
+        )
         if not wanted or not made.package or made.package in wanted:
             return made
         own = tuple(package for package in found.packages if package.name in wanted)

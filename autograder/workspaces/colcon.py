@@ -22,6 +22,11 @@ if TYPE_CHECKING:
 
 MAX_LOG = 40_000
 """Characters of a failed build's log that are kept: its end."""
+_REFUSED = "setup()' was never called"
+"""In the last line of a build if setuptools has refused what setup.py gives it: its reason is in no log."""
+_WHAT_REFUSED = (
+    "setuptools refuses setup.py; `python3 setup.py --version`, in the folder of the package, says why"
+)
 _FAILED = re2.compile(r"(?m)^Failed\s+<<< (?P<name>\S+)")
 
 
@@ -37,8 +42,8 @@ class Build:
         unusable: What is wrong with those that cannot be used.
         seconds: Wall time that it took.
         reused: Whether the same sources had been built before.
-        trouble: ``"no_workspace"``, ``"no_package"``, ``"bad_package"`` or ``"build"``; empty where it is
-            well.
+        trouble: ``"no_workspace"``, ``"no_package"``, ``"bad_package"``, ``"entry_point"`` or ``"build"``; empty
+            where it is well.
         package: The package that failed, else empty.
         line: The one line that matters of a failure.
         log: The log of a failure.
@@ -83,7 +88,11 @@ def failed(found: Build, log: str) -> Build:
     own = _log_of(log, name)
     # What setup.py itself says when colcon first asks it goes past the package's part of the log.
     own = log if "CalledProcessError" in telling_line(own) else own
-    return replace(found, trouble="build", package=name, line=telling_line(own), log=own[-MAX_LOG:])
+    made = replace(found, trouble="build", package=name, line=telling_line(own), log=own[-MAX_LOG:])
+    if _REFUSED not in made.line:
+        return made
+    bad = next((package.bad_entry_point for package in found.packages if package.name == name), "")
+    return replace(made, trouble="entry_point", line=bad) if bad else replace(made, line=_WHAT_REFUSED)
 
 
 def look(workspace: Path) -> Build:

@@ -14,6 +14,7 @@ from xml.parsers.expat import ExpatError
 
 import re2
 
+from autograder.workspaces.entry_points import first_objection, is_entry_point
 from autograder.workspaces.room import Room
 from autograder.workspaces.sources import BadSources, Tree, is_source, read
 
@@ -103,6 +104,11 @@ class Package:
         setup.cfg, is known when the package is built.
         """
         return tuple(_entry_points(_text(self.folder / "setup.py")))
+
+    @property
+    def bad_entry_point(self) -> str:
+        """What is wrong with an entry point in its setup.py that setuptools refuses; empty if there is none such."""
+        return first_objection(_parsed(_text(self.folder / "setup.py")))
 
 
 def find_packages(src: Path) -> tuple[list[Package], list[str]]:
@@ -229,18 +235,19 @@ def _told(error: Exception) -> str:
     return "it is too deep" if isinstance(error, RecursionError | MemoryError) else str(error)
 
 
-def _entry_points(setup: str) -> Iterator[str]:
-    if len(setup) > MAX_SETUP:
-        return
+def _parsed(setup: str) -> ast.Module:
+    """The syntax tree of a setup.py; an empty one if it is too long or not valid Python."""
     try:
-        tree = ast.parse(setup)
+        return ast.parse(setup if len(setup) <= MAX_SETUP else "")
     except UNREADABLE:
-        return
-    for node in ast.walk(tree):
+        return ast.parse("")
+
+
+def _entry_points(setup: str) -> Iterator[str]:
+    for node in ast.walk(_parsed(setup)):
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             for line in node.value.splitlines():
-                # A text may also have lone surrogates in it, which re2 does not take.
-                if line.isascii() and re2.fullmatch(r"\s*[\w.-]+\s*=\s*[\w.]+\s*:\s*[\w.]+\s*", line):
+                if is_entry_point(line):
                     yield line.strip()
 
 

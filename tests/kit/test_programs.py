@@ -228,7 +228,9 @@ OWN_IMPORT = (
     [
         (LOADING, "my_robot_pakage", "names the module my_robot_pakage, which is not there"),
         (LOADING, "my_robot_pkg", ""),
+        (LOADING, "my_robot_pkg.tlaker", "leads to the module tlaker, which is not there"),
         ((*LOADING, *OWN_IMPORT), "helper", ""),
+        ((*LOADING, *OWN_IMPORT), "my_robot_pkg.helpers", ""),
     ],
 )
 def test_an_entry_point_that_leads_nowhere_is_told_from_an_import(

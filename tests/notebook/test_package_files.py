@@ -70,7 +70,7 @@ def test_a_corrected_entry_point_replaces_the_wrong_one(workspace: Path) -> None
 @pytest.mark.parametrize("entry", ["simple_node", "simple_node: my_robot_pkg", "a b = c:d", "x = y", 3])
 def test_what_is_no_entry_point_changes_nothing(workspace: Path, entry: str) -> None:
     before = (workspace / "src/my_robot_pkg/setup.py").read_text()
-    assert "is no entry point" in add_entry_points(workspace, [TALKER, entry])
+    assert "is not an entry point" in add_entry_points(workspace, [TALKER, entry])
     assert (workspace / "src/my_robot_pkg/setup.py").read_text() == before
 
 
@@ -86,7 +86,7 @@ def test_what_is_no_entry_point_changes_nothing(workspace: Path, entry: str) -> 
 )
 def test_what_is_wrong_with_it_is_said(workspace: Path, entry: str, what: str) -> None:
     told = add_entry_points(workspace, [entry])
-    assert "is no entry point" in told
+    assert "is not an entry point" in told
     assert what in told
 
 

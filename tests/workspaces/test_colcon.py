@@ -80,6 +80,24 @@ def test_a_failure_is_one_line_and_is_not_kept(workspace: Path, empty_cache: Pat
 
 
 @pytest.mark.parametrize(
+    ("old", "new", "trouble", "words"),
+    [
+        ("tiny_pkg.hello:main", "tiny_pkg.hello:main()", "entry_point", "Leave out the parentheses"),
+        ("hello = tiny", "hello: tiny", "entry_point", "The equals sign"),
+        ("version='0.0.0'", "python_requires='x y', version='0.0.0'", "build", "python3 setup.py --version"),
+    ],
+)
+def test_what_setuptools_refuses_without_a_word_is_named(
+    workspace: Path, old: str, new: str, trouble: str, words: str
+) -> None:
+    setup = workspace / "src" / "tiny_pkg" / "setup.py"
+    setup.write_text(setup.read_text().replace(old, new))
+    made = build(workspace)
+    assert (made.ok, made.trouble, made.package) == (False, trouble, "tiny_pkg")
+    assert words in made.line
+
+
+@pytest.mark.parametrize(
     ("make", "trouble", "word"),
     [
         (lambda folder: None, "no_workspace", "no folder"),

@@ -259,4 +259,10 @@ def _retold(tell: Tell, card: Place) -> Tell:
 def what_to_pass(exercise: str, subject: Any, call: str = "check") -> str:
     """The advice for a subject that is none."""
     kind = type(subject).__name__
+    names = getattr(notebook_shell(), "user_ns", {})
+    if names.get(kind) is subject:
+        return (
+            f"{kind} is an object now and not the class any more: a line of yours says {kind} = {kind}(...). Call the "
+            f"object something else there, as in node = {kind}(...), and run the cell that defines the class again."
+        )
     return f"{call}({exercise!r}, …) takes your class or function itself, without parentheses after it, not a {kind}"

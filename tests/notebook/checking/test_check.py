@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -88,3 +89,15 @@ def test_what_ended_before_is_not_shown_again(shown: list[Any], kept: Path) -> N
         journal.note(Entry("check", name, 1, 10, 10))
     check_cell.keep(passed(exercises.all_ids()[0]))
     assert shown == []
+
+
+def test_a_class_whose_name_was_given_to_its_object_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Talker:
+        pass
+
+    talker = Talker()
+    monkeypatch.setattr(check_cell, "notebook_shell", lambda: SimpleNamespace(user_ns={"Talker": talker}))
+    with pytest.raises(TypeError, match=r"a line of yours says Talker = Talker\(\.\.\.\)"):
+        check_cell.check("lab_9_1.talker", talker)
+    with pytest.raises(TypeError, match="takes your class or function itself"):
+        check_cell.check("lab_9_1.talker", Talker())

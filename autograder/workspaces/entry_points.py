@@ -1,0 +1,68 @@
+"""Entry points in a setup.py: their form, and what is wrong with one that has another."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+import re2
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+FORM = re2.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*")
+"""Executable, module and function. re2 takes no text with lone surrogates."""
+
+
+def console_scripts(tree: ast.AST) -> ast.List | None:
+    """The list of ``console_scripts`` in a setup.py."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Dict):
+            for key, value in zip(node.keys, node.values, strict=True):
+                named = isinstance(key, ast.Constant) and key.value == "console_scripts"
+                if named and isinstance(value, ast.List):
+                    return value
+    return None
+
+
+def first_objection(tree: ast.AST) -> str:
+    """What is wrong with the first entry point of a setup.py that has another form; empty if there is none such."""
+    listed = console_scripts(tree)
+    return next((objection(text) for text in _texts(listed) if not is_entry_point(text)), "")
+
+
+def _texts(listed: ast.List | None) -> Iterator[str]:
+    for element in listed.elts if listed else ():
+        if isinstance(element, ast.Constant) and isinstance(element.value, str):
+            yield element.value
+
+
+def is_entry_point(text: str) -> bool:
+    """True if a text has the form of an entry point."""
+    return text.isascii() and FORM.fullmatch(text) is not None
+
+
+def objection(entry: object) -> str:
+    """What is wrong with something that has not the form of an entry point, and what to write."""
+    if isinstance(entry, str) and entry.count("=") > 1 and entry.count(":") > 1:
+        return (
+            f"Two entry points have run together: {entry!r}. A comma is missing between them: Python joins two strings "
+            "with nothing between. Write a comma after each entry point, behind its closing quotation mark."
+        )
+    what = _what_is_wrong(entry) if isinstance(entry, str) else ""
+    return f"{entry!r} is not an entry point. {what}Write: executable = package.module:function"
+
+
+def _what_is_wrong(entry: str) -> str:
+    """The slip in what was meant for an entry point, as a sentence and a space; empty where none is known."""
+    if len(entry.strip()) <= 1:
+        return "It is a single letter: put the string into a list, in square brackets. "
+    if "(" in entry:
+        return "Leave out the parentheses: the function is named here and not called. "
+    if "/" in entry:
+        return "Write dots in the module in place of slashes, as in an import. "
+    if "=" not in entry:
+        return "The equals sign between the executable and the module is missing. "
+    if ":" not in entry:
+        return "The colon between the module and the function is missing. "
+    return ""
