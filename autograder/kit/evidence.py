@@ -93,13 +93,16 @@ class Part:
         for event in reversed(self.events):
             if event.kind == "subject" and event.data.get("traceback"):
                 return str(event.data["traceback"])
-        # Stream by stream: lines of one may come between those of the other.
+        # Stream by stream, and program by program below a launch: lines of one may come between those of another.
         streams: dict[str, list[str]] = {}
         for event in self.of("output"):
-            streams.setdefault(event.name, []).append(event.data["text"])
+            program, line = _LAUNCHED.fullmatch(event.data["text"]).groups()
+            streams.setdefault(f"{event.name} {program}", []).append(line)
         return next(filter(None, (_traceback_in(streams[name]) for name in sorted(streams))), "")
 
 
+_LAUNCHED = re2.compile(r"(?s)(\[[\w.]+-\d+\] )?(.*)")
+"""A line of output, behind what a launch puts before the lines of its programs, such as ``[talker-1]``."""
 _ENDINGS = ("exited", "returned", "raised")
 _OF_A_NOTEBOOK = ("started", "constructed", "never_constructed", "returned", "raised")
 INTERRUPTED = "Ctrl-C"

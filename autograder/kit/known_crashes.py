@@ -28,6 +28,12 @@ _WITHOUT_NAME = r"TypeError: Node\.__init__\(\) missing 1 required positional ar
 
 KNOWN = (
     Crash(
+        "launch_error",
+        r"RCLError: .*Couldn't parse remap rule: '(?:-r |--remap )?(?P<rule>[^']*)'",
+        "ROS cannot read the remapping rule {rule}, so the program that was given it ended at once.",
+        "A rule is made of two names. A name has letters, digits, underscores and slashes, and no slash at its end.",
+    ),
+    Crash(
         "syntax_error",
         r"^\s*(?:SyntaxError|IndentationError|TabError): (?P<what>.*?)[.?]*$",
         "Python could not read the program: {what}. {why}",

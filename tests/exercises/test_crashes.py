@@ -241,6 +241,22 @@ def test_a_function_that_only_makes_a_coroutine_is_named_and_no_callback_that_ca
     assert (advice.text.startswith(told) and bool(told)) if advice else not told
 
 
+def test_of_the_programs_of_a_launch_each_has_a_traceback_of_its_own() -> None:
+    """Their lines come one between the other, behind the name that the launch has for the program."""
+    head, frame = "Traceback (most recent call last):", '  File "talker.py", line 3, in main'
+    lines = [
+        head,
+        frame,
+        "    rclpy.init()",
+        "RCLError: failed: Couldn't parse remap rule: '-r a:=/b/'. Error: not set",
+    ]
+    shown = [f"[{program}] {line}" for line in lines for program in ("talker-1", "listener-2")]
+    evidence = Evidence([Part("part", {}, [_output(text) for text in shown])], Reference("x", {}))
+    assert evidence.main.traceback == "\n".join(lines)
+    advice = next(filter(None, (m.recognise(evidence) for m in CRASHES)))
+    assert "ROS cannot read the remapping rule a:=/b/" in advice.text
+
+
 def test_nothing_is_meant_by_nothing() -> None:
     assert not meant("")
 

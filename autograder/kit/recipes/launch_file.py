@@ -162,6 +162,11 @@ class Launched:
         return self.moved_by_rules and self.talkers < NODES and self.all_are_there
 
     @property
+    def rules(self) -> list[str]:
+        """The names that the rules of the launch's programs are for."""
+        return [old for process in processes(self._part) for old, _ in remappings(process.argv)]
+
+    @property
     def all_are_there(self) -> bool:
         """True if each program that was started has an end of a topic on the graph, or one has that does not tell."""
         known = {process for _, _, process in self._ends}

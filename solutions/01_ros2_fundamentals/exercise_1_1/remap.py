@@ -103,10 +103,23 @@ def not_remapped(seen: Launched, _: Launched) -> Advice | None:
             f"Your nodes are on {near}: the target of your rule is relative, so the namespace came in front of it.",
             f"Write the target with a slash at its front: {seen.topic}.",
         )
-    return Advice(
-        f"Your nodes use {names(there)}; the task asks for {seen.topic}.",
+    why = f"Your nodes use {names(there)}; the task asks for {seen.topic}."
+    lost = [old for old in seen.rules if any(name != old and name.endswith(old) for name in there)]
+    if lost and lost[0].startswith("/"):
+        return Advice(
+            f"{why} The rule is for {lost[0]}: the slash at its front makes this the whole name, and your nodes have a "
+            "namespace before theirs.",
+            f"Write the name as it is in the code, without a slash: remappings=[('chatter', '{seen.topic}')].",
+        )
+    how = (
         f"In Python: remappings=[('chatter', '{seen.topic}')]. In XML, inside <node>: <remap from=\"chatter\" "
-        f'to="{seen.topic}"/>. The name in the code comes first.',
+        f'to="{seen.topic}"/>. The name in the code comes first.'
+    )
+    if seen.rules:
+        return Advice(why, how)
+    return Advice(
+        f"{why} The launch file gives your programs no remapping rule.",
+        f"{how} A SetRemap holds only for the nodes below it in its own group.",
     )
 
 
