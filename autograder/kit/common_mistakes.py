@@ -37,6 +37,7 @@ __all__ = [
     "only_if_ended",
     "qos_mismatch",
     "servers",
+    "twin",
     "two_servers",
     "went_deaf",
 ]
@@ -239,6 +240,19 @@ def _worked(part: Part, role: str) -> bool:
         return True
     sent = part.first("sent")
     return role == "subscription" and sent is not None and bool(part.said(after=sent))
+
+
+_TWIN = re2.compile(
+    r"\[rcl\.logging_rosout\]: Publisher already registered for (?:provided )?node name:? '([^']*)'"
+)
+
+
+def twin(part: Part) -> str:
+    """The name that two nodes of the subject have at once, as rcl or the notebook says; empty if there is none."""
+    made = part.first("subject", "constructed")
+    found = (_TWIN.search(str(event.data["text"])) for event in part.of("output"))
+    told = next((str(match[1]) for match in found if match), "")
+    return told or str(made.data.get("twin", "") if made else "")
 
 
 _AT_ONCE = "The program ended at once, without a word and without a node:"

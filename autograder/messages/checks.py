@@ -76,10 +76,12 @@ class Constructed(_RunMessage, frozen=True):
     """The node is made; ``marker`` is the topic that was made after all that its constructor makes.
 
     ``goes_on`` says that something of it is left, a timer or a thread, which may make more once the node is spun.
+    ``twin`` is the node's name if the constructor has made a second node of this name.
     """
 
     marker: str
     goes_on: bool = False
+    twin: str = ""
 
 
 class Spared(_RunMessage, frozen=True):

@@ -210,10 +210,10 @@ class RemoteSubject:
                 record("willing", "to wait for an answer", seconds=_bounded(seconds), call=call)
             case checks.Looked():
                 record("looked", "graph")
-            case checks.Constructed(marker=marker, goes_on=goes_on):
+            case checks.Constructed(marker=marker, goes_on=goes_on, twin=twin):
                 self._may_make_more = goes_on
                 self._marker = marker[:MAX_MARKER]
-                record("subject", "constructed")
+                record("subject", "constructed", **({"twin": twin[:MAX_MARKER]} if twin else {}))
             case checks.Exited(code=code):
                 self._end("exited", ended, code=code)
             case checks.Returned(value=value):

@@ -229,10 +229,15 @@ class Hears:
             return None
         if len(seen.claims(self.expected(evidence))) < 4 and part.of("unanswered"):
             return None
+        twin = common.twin(part)
         return Advice(
-            "Your node is there with its publisher, but no message arrives while the judge listens.",
-            "If your code still has its TODO, begin there. Let the timer's method call publish(...), with the message "
-            "between the parentheses: a log line is not a message. Give the timer its period in seconds, "
+            "Your node is there with its publisher, but no message arrives while the judge listens."
+            + (f" Two nodes are called {twin}, and a spin takes only one." if twin else ""),
+            "If your class makes another Node(...), leave it out: self is the node, so write self.create_publisher and "
+            "self.create_timer."
+            if twin
+            else "If your code still has its TODO, begin there. Let the timer's method call publish(...), with the "
+            "message between the parentheses: a log line is not a message. Give the timer its period in seconds, "
             f"{reference_period(evidence.reference):g} and not {1000 * reference_period(evidence.reference):g}.",
         )
 

@@ -93,7 +93,9 @@ class SubjectRun:
                 f"{self._subject.__name__} is no Node: write class {self._subject.__name__}(Node)"
             )
         goes_on = any(node.timers) or not others.issuperset(threading.enumerate())
-        self._tell(Constructed(self._number, _mark(node, self._number), goes_on))
+        name = node.get_name()
+        twin = name if node.get_node_names().count(name) > 1 else ""
+        self._tell(Constructed(self._number, _mark(node, self._number), goes_on, twin))
         self._released.wait()
         threads = SpinThreads(
             [node],
