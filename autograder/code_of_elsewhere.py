@@ -179,7 +179,8 @@ ROWS = (
     Elsewhere(
         r"RuntimeError: (?:no running event loop|There is no current event loop)"
         r"|RuntimeError: asyncio\.run\(\) cannot be called from a running event loop"
-        r"|RuntimeError: This event loop is already running|RuntimeError: Task got bad yield",
+        r"|RuntimeError: This event loop is already running|RuntimeError: Task got bad yield"
+        r"|NameError: name 'asyncio' is not defined",
         "This is asyncio's way to wait. ROS calls callbacks by an executor of its own, which is not a loop of asyncio.",
         "Leave asyncio out. For a pause or for what comes again, write self.create_timer(0.5, self.tick). For an "
         "answer, give the future that call_async returned a function to go on in, with its add_done_callback(...).",

@@ -203,8 +203,9 @@ KNOWN = (
         "message_type",
         r"AttributeError: type object '(?P<got>\w+)' has no attribute '_TYPE_SUPPORT'",
         "The type of a message or a service is needed here, and your code gives a value of the type {got}.",
-        "Import the type, and write its name without quotation marks, before that of the topic, service or action: "
-        "create_publisher(String, 'topic', 10), ActionServer(self, Fibonacci, 'fibonacci', ...).",
+        "Import the type, and write its name without quotation marks, before that of the topic, service or action (in "
+        "ROS 1 the name comes first): create_publisher(String, 'topic', 10), create_service(AddTwoInts, "
+        "'add_two_ints', self.add), ActionServer(self, Fibonacci, 'fibonacci', ...).",
     ),
     Crash(
         "request_not_instantiated",

@@ -87,6 +87,13 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
             f"In setup.py, the list 'console_scripts' has to contain {entry.line if named else FORM}. "
             f"{_again(evidence)}",
         )
+    for part in evidence:
+        if _NO_FUNCTION.search(part.traceback):
+            return Advice(
+                "The entry point in setup.py names a module, and no function in it.",
+                f"Write {entry.line}: behind the module a colon, and the function. {_again(evidence)}",
+                part.traceback,
+            )
     # All that is below the start of a program is Python's own: no file of the student's has imported anything yet.
     started = (part.traceback for part in evidence if _LOADS in part.traceback)
     tracebacks = "\n".join(text for text in started if not own_line(text))
@@ -108,6 +115,9 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
 
 _LOADS = "next(matches).load()"
 """The line, in the file that a build makes of an entry point, that imports its module."""
+_NO_FUNCTION = re2.compile(
+    r"load_entry_point\(.*\)\(\)\)\n(?:[ ~^]*\n)?TypeError: 'module' object is not callable"
+)
 _LED_NOWHERE = re2.compile(r"(?m)^ModuleNotFoundError: No module named '(?P<module>[\w.]+)'")
 
 

@@ -89,10 +89,17 @@ RUNNING: Sequence[Row] = (
         "Take a number, a string, or one field of the value in its place, as in STATUS_NAMES[answer.status].",
     ),
     (
-        rf"(?:\bspin\w*\((?P<class>[A-Za-z_]\w*)[,)].*\n(?:.*\n)*)?"
-        rf".*node\.subscriptions.*{MARKS}TypeError: 'property' object is not iterable",
+        # A notebook's traceback leaves out rclpy's own line, which reads node.subscriptions.
+        rf"(?:\bspin\w*\((?P<class>[A-Za-z_]\w*)[,)].*\n(?:.*\n)*?|node\.subscriptions.*{MARKS})"
+        r"TypeError: 'property' object is not iterable",
         "A spin takes a node, and got the class of one.",
         "Write parentheses after the class, which makes a node of it: rclpy.spin({class:YourNode}()).",
+    ),
+    (
+        r"^TypeError: (?P<class>\w+) is not a Node: write class",
+        "",
+        "A check spins your class, so the class is the node: write class {class}(Node):, "
+        "super().__init__('your_node_name') as the first line of its __init__, and self.create_... below that.",
     ),
     (
         rf"(?:\b(?P<list>[A-Za-z_][\w.]*)\.append\(.*{MARKS})?TypeError: list\.append\(\) takes exactly one argument",

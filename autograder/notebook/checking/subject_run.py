@@ -90,7 +90,7 @@ class SubjectRun:
         node = self._subject(*self._arguments)
         if not isinstance(node, Node):
             raise TypeError(
-                f"{self._subject.__name__} is no Node: write class {self._subject.__name__}(Node)"
+                f"{self._subject.__name__} is not a Node: write class {self._subject.__name__}(Node)"
             )
         goes_on = any(node.timers) or not others.issuperset(threading.enumerate())
         name = node.get_name()
