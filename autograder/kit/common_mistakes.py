@@ -325,28 +325,23 @@ def ended_too_early(evidence: Evidence) -> Advice | None:
     code = ending.data.get("code")
     exited = f"ended by itself, with exit code {code}," if code else "ended by itself"
     how = {"exited": exited, "returned": "returned"}.get(ending.name, "ended")
-    keep = "Keep it alive while it has work to do, for example with rclpy.spin(your_node), above anything that ends it."
-    if isinstance(code, int) and code > 0:  # without an exception
-        asked = evidence.main.of("asked")
-        open_call = (
-            f" when {asked[-1].name} was called, and gave no answer" if _is_open(evidence.main) else ""
-        )
-        return Advice(
-            f"The program {how}{open_call or ' before its work was done'}.",
-            "No exception did that: sys.exit(...), exit() and os._exit(...) end the whole program, also in a "
-            f"callback{' such as that of the service' * bool(open_call)}. Find this line, and leave it out.",
-        )
-    if any(part.said() or any(map(part.of, _WORK)) for part in evidence):
-        return Advice(f"The program {how} before its work was done.", keep)
-    return Advice(
-        f"The program {how} and did nothing that the judge could see.",
-        f"{_BEGIN_AT_TODO} {keep}",
+    keep = (
+        "Keep it alive while it has work to do, for example with rclpy.spin(your_node), above anything that ends it; "
+        "exit() in a callback does, too."
     )
-
-
-def _is_open(part: Part) -> bool:
-    """True if the subject's service was called and did not answer."""
-    return len(part.of("asked")) > len(part.of("answered"))
+    if isinstance(code, int) and code > 0:
+        keep = (
+            "There was no traceback, so a line ends it: sys.exit(...), exit() or os._exit(...), perhaps in a callback. "
+            "Find this line, and leave it out."
+        )
+    elif not any(part.said() or any(map(part.of, _WORK)) for part in evidence):
+        return Advice(
+            f"The program {how} and did nothing that the judge could see.", f"{_BEGIN_AT_TODO} {keep}"
+        )
+    asked = evidence.main.of("asked")
+    is_open = len(asked) > len(evidence.main.of("answered"))
+    when = f"when {asked[-1].name} was called, and no answer came" if is_open else "before its work was done"
+    return Advice(f"The program {how} {when}.", keep)
 
 
 def only_if_ended(mistake: Mistake) -> Mistake:
