@@ -199,7 +199,7 @@ ROWS = (
         for names, python in _SPELLINGS.items()
     ),
     Elsewhere(
-        r"(?:ModuleNotFoundError: No module named|NameError: name) '(?P<name>rclcpp|RCLCPP_\w+|std|cout)\b",
+        r"(?:ModuleNotFoundError: No module named|NameError: name) '(?P<name>rclcpp|RCLCPP_\w+)\b",
         "{name} is C++, and this course writes ROS 2 in Python.",
         "The Python module is rclpy; a node writes its log with self.get_logger().info('...').",
     ),
@@ -220,7 +220,7 @@ ROWS = (
         "In Python these names end in async: call_async, send_goal_async, get_result_async, cancel_goal_async.",
     ),
     Elsewhere(
-        r"^ +.*\w(?:::|->)\w.*\n(?:[ ~^]*\n)?SyntaxError: ",
+        r"^ +(?:.*[\s=(,])?[A-Za-z_][\w.]*(?:::|->)[A-Za-z_].*\n(?:[ ~^]*\n)?SyntaxError: ",
         "This line is C++, and this course writes ROS 2 in Python.",
         "Write a dot in place of :: and of ->, as in self.publisher.publish(message), and import a type: from "
         "std_msgs.msg import String.",

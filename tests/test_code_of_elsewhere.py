@@ -99,6 +99,10 @@ NOTHING = (
     "node.create_timer(on_message, 0.5)",
     "1 < 'a'",
     "numbers = [1, 2][::]]",
+    "last = numbers[first::step",
+    "print(std)",
+    "def f(x)->int return x",
+    "rclpy.Anything()",
     "1 + 1",
 )
 

@@ -41,7 +41,8 @@ _TYPE = (
 NAMES: Sequence[Row] = (
     *(
         (
-            rf"^(?:NameError: name|ImportError: cannot import name) '(?P<name>{names})'",
+            rf"^(?:NameError: name|ImportError: cannot import name|AttributeError: module 'rclpy' has no attribute) "
+            rf"'(?P<name>{names})'",
             f"{{name}} comes from the module {module}.",
             f"Write `from {module} import {{name}}` at the top of the program, and take {{name}} out of any other "
             "import. In a notebook, run the cell with the imports.",

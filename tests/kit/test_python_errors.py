@@ -25,6 +25,7 @@ SAID = {
     "AssertionError: The 'data' field must be an integer in [-128, 127]": "too small for it: it takes [-128, 127]",
     "SystemError: <built-in method publish of x> returned a result with an exception set": "or a number that is too",
     "TypeError: Talker is not a Node: write class Talker(Node)": "so the class is the node: write class Talker(Node):",
+    "AttributeError: module 'rclpy' has no attribute 'Node'": "`from rclpy.node import Node`",
     "LookupError: nothing": "Read the traceback from the bottom",
     "AttributeError: 'Talker' object has no attribute 'create_timr'": "Compare the spelling: create_publisher",
     "NameError: name 'count' is not defined. Did you mean: 'self.count'?": "To use it, write self.count",
