@@ -6,7 +6,7 @@ cause, and what to write here. The judge says it on a card, the notebook below a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -229,22 +229,13 @@ ROWS = (
 """Code of elsewhere, most exact first."""
 
 
-@dataclass(frozen=True)
-class Recognised:
-    """What a row says of one traceback; its attributes are those of the row, filled in."""
-
-    key: str
-    text: str
-    next_step: str
-
-
 def packages(names: Iterable[str]) -> str:
     """The packages with this course's types, for a sentence."""
     return " or ".join(sorted(set(names))) or "the package that the lab imports from"
 
 
-def recognised(traceback: str, here: str) -> Recognised | None:
-    """What is said of the exception at the end of a traceback, if it shows code of elsewhere; None otherwise.
+def recognised(traceback: str, here: str) -> Elsewhere | None:
+    """The row that a traceback shows, with both texts filled in; None if it shows no code of elsewhere.
 
     Args:
         traceback: The traceback.
@@ -254,7 +245,7 @@ def recognised(traceback: str, here: str) -> Recognised | None:
         found = _compiled(row.pattern).search(traceback)
         if found is not None:
             words = {"here": here} | {name: said or "" for name, said in found.groupdict().items()}
-            return Recognised(row.key, row.text.format(**words), row.next_step.format(**words))
+            return replace(row, text=row.text.format(**words), next_step=row.next_step.format(**words))
     return None
 
 
