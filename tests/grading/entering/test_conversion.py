@@ -101,7 +101,8 @@ def page_as_nbgrader_makes_it(path: Path, file: Path) -> str:
     notebook = nbformat.read(file, as_version=4)
     entry = read_entries(directory.gradebook_url)[names["student"], names["assignment"]]
     mark_waiting(notebook, entry.cells.get(file.stem, {}))
-    resources = {"nbgrader": {**names, "db_url": directory.gradebook_url, "why_late": entry.why_late(directory.time_zone)}}
+    why_late = entry.why_late(directory.time_zone)
+    resources = {"nbgrader": {**names, "db_url": directory.gradebook_url, "why_late": why_late}}
     page: str = exporter.from_notebook_node(make_harmless(notebook), resources)[0]
     return page
 
