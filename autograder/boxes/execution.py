@@ -68,6 +68,7 @@ class Ended(StrEnum):
     OUT_OF_CPU = "out_of_cpu"
     TOO_MANY_PROCESSES = "too_many_processes"
     TOO_MANY_FILES = "too_many_files"
+    TOO_MANY_LOCKS = "too_many_locks"
     TOO_MUCH_OUTPUT = "too_much_output"
     NOT_RUN = "not_run"
     """The kernel was gone, or the notebook's time was up, before the cell's turn."""

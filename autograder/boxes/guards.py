@@ -35,7 +35,9 @@ _SIZE = re2.compile(r"(?m)^(\w+):[ \t]+(\d+) kB$")
 _TICKS = os.sysconf("SC_CLK_TCK")
 _PAGES = re2.compile(r"(?m)^(?:TCP|UDP): .*\bmem (\d+)$")
 """What waits in the sockets of all networks, in pages; sockets of IPv6 and of UDP-Lite count there, too."""
-_PROTOCOLS = ("udp", "udp6", "udplite", "udplite6", "tcp", "tcp6")
+_PROTOCOLS = ("udp", "udp6", "tcp", "tcp6")
+_SOCKETS = re2.compile(r"(?m)^sockets: used (\d+)$")
+_PIECE = 1 << 16
 
 
 class BoxGuard:
@@ -137,9 +139,13 @@ class BoxGuard:
             return Ended.TOO_MANY_PROCESSES
         if use.files > self._limits.all_open_files:
             return Ended.TOO_MANY_FILES
-        most = self._limits.socket_bytes
-        if _waiting_in_sockets(self._first, most) > most:
+        network = _network_of(self._first, self._limits.socket_bytes)
+        if network.sockets > self._limits.all_open_files:
+            return Ended.TOO_MANY_FILES
+        if network.waiting > self._limits.socket_bytes:
             return Ended.OUT_OF_MEMORY
+        if _locks_of(self._first, self._limits.file_locks) > self._limits.file_locks:
+            return Ended.TOO_MANY_LOCKS
         if use.most_memory > self._limits.memory_now:
             return Ended.OUT_OF_MEMORY
         files = 0 if self._memory else _scratch_of(self._first)
@@ -211,28 +217,68 @@ def _files_of(process: str) -> int:
     return os.stat(folder).st_size or len(os.listdir(folder))  # noqa: PTH116, PTH208 (several times a second)
 
 
-def _waiting_in_sockets(first: int, most: int) -> int:
-    """Bytes that wait in the sockets of a box's network (proc_pid_net(5)); no process has them, and often no cgroup.
+@dataclass(frozen=True)
+class _Network:
+    """What a box's network has that belongs to no process (proc_pid_net(5)), and often to no cgroup.
+
+    Attributes:
+        sockets: Sockets, those included that no process has open: a connection waits without a descriptor until the
+            program that listens accepts it.
+        waiting: Bytes that wait in them.
+    """
+
+    sockets: int = 0
+    waiting: int = 0
+
+
+def _network_of(first: int, most: int) -> _Network:
+    """Count the sockets of a box's network and what waits in them.
 
     Args:
         first: The box's first process, as the host counts.
-        most: What may wait there. Where all networks of the machine have no more in UDP and TCP, nobody goes through
-            these tables: that takes ten milliseconds.
+        most: Bytes that may wait there. Going through the tables of UDP and TCP takes ten milliseconds: they are left
+            out if all networks of the machine together have no more than this.
     """
     net = Path(f"/proc/{first}/net")
-    waiting = 0
+    sockets = waiting = 0
     try:
         if Path(f"/proc/{first}/ns/net").stat().st_ino == Path("/proc/self/ns/net").stat().st_ino:
-            return 0  # it is on its way into the box
-        pages = sum(map(int, _PAGES.findall((net / "sockstat").read_text())))
+            return _Network()  # it is on its way into the box
+        summary = (net / "sockstat").read_text()
+        sockets = sum(map(int, _SOCKETS.findall(summary)))
+        pages = sum(map(int, _PAGES.findall(summary)))
         for protocol in _PROTOCOLS if pages * resource.getpagesize() > most else ():
             for fields in _rows(net / protocol):
                 sent, _, received = fields[4].partition(":")
                 waiting += int(sent, 16) + int(received, 16)
         waiting += sum(int(fields[4]) + int(fields[5]) for fields in _rows(net / "netlink"))
     except (OSError, ValueError, IndexError):
-        return waiting  # it has ended meanwhile
-    return waiting
+        pass  # it has ended meanwhile
+    return _Network(sockets, waiting)
+
+
+def _locks_of(first: int, most: int) -> int:
+    """Count the file locks of a box, and waiting ones: memory of the kernel that belongs to no process and no cgroup.
+
+    A box's own ``/proc/locks`` has those of its own processes, and with -1 for a process those that belong to an open
+    file of whoever it is, which nobody in a box may make (:mod:`autograder.boxes.seccomp_filter`).
+
+    Args:
+        first: The box's first process, as the host counts.
+        most: Where there are more, reading ends: it takes the kernel the square of their number.
+    """
+    locks, rest = 0, b""
+    try:
+        own = Path(f"/proc/{first}/root/proc")
+        if own.stat().st_dev == Path("/proc").stat().st_dev:
+            return 0  # it is on its way into the box
+        with (own / "locks").open("rb", buffering=0) as table:
+            while locks <= most and (piece := table.read(_PIECE)):
+                *rows, rest = (rest + piece).split(b"\n")
+                locks += sum(b" -1 " not in row for row in rows)
+    except OSError:
+        pass  # it has ended meanwhile
+    return locks
 
 
 def _rows(table: Path) -> list[list[str]]:

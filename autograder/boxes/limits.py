@@ -39,7 +39,8 @@ class Limits:
             ends there.
         processes: Processes and threads of a box together.
         open_files: Files, sockets and pipes that one process may have open.
-        all_open_files: What all processes of a box may have open together.
+        all_open_files: What all processes of a box may have open together, and the number of sockets in its network.
+        file_locks: Parts of files that all processes of a box may have locked together; a database locks five.
         socket_bytes: What may wait in the sockets of a box's network. The machine has one limit for those of all boxes;
             where that is used up, nobody's messages arrive any more.
         scratch_bytes: What a box's files may have together.
@@ -65,6 +66,7 @@ class Limits:
     processes: int = 500
     open_files: int = 1024
     all_open_files: int = 6000
+    file_locks: int = 1000
     socket_bytes: int = 100_000_000
     scratch_bytes: int = 1_000_000_000
     scratch_files: int = 100_000

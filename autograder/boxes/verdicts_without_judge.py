@@ -38,8 +38,12 @@ LIMITS = {
         "Look for a loop, or for a callback, that starts a thread, an executor or a program each time.",
     ),
     Ended.TOO_MANY_FILES: (
-        "had more files open at once than its programs may have together",
+        "had more files and connections open at once than its programs may have together",
         "Close what you open: `with open(…) as file:` does it by itself.",
+    ),
+    Ended.TOO_MANY_LOCKS: (
+        "locked more parts of files at once than its programs may lock together",
+        "Look for a loop that locks without unlocking, or lock a whole file instead of many parts of it.",
     ),
     Ended.TOO_MUCH_OUTPUT: (
         "printed far more than anyone can read",
@@ -108,14 +112,6 @@ def without_verdict(
     match run.ended:
         case Ended.NOT_RUN | Ended.KERNEL_DIED:
             return _kernel_gone(check, run, before)
-        case (
-            Ended.OUT_OF_MEMORY
-            | Ended.OUT_OF_CPU
-            | Ended.TOO_MANY_PROCESSES
-            | Ended.TOO_MANY_FILES
-            | Ended.TOO_MUCH_OUTPUT
-        ):
-            return _limit_exceeded(check, run.ended, "this check cell")
         case Ended.TIMED_OUT if hung is not None:
             return zero_points(
                 check,
@@ -140,6 +136,8 @@ def without_verdict(
                 "The check cell ran, but the check that belongs to it was never made.",
                 "Make sure that no cell of yours redefines `check`.",
             )
+        case limit_exceeded:
+            return _limit_exceeded(check, limit_exceeded, "this check cell")
 
 
 def _kernel_gone(check: Check, run: CellRun, before: list[tuple[str, CellRun]]) -> Verdict:

@@ -123,6 +123,35 @@ time.sleep(4)
     assert (execution.cells[0].ended, key(execution)) == (Ended.OUT_OF_MEMORY, "out_of_memory")
 
 
+def test_locks_of_files_are_memory_that_no_cgroup_counts(run: Run) -> None:
+    lock = """
+import fcntl, struct, time
+file = open("locked", "w+")
+for part in range(400):
+    fcntl.fcntl(file, fcntl.F_SETLK, struct.pack("hhqqi4x", fcntl.F_WRLCK, 0, 2 * part, 1, 0))
+time.sleep(4)
+"""
+    execution = run(lock, file_locks=300)
+    assert (execution.cells[0].ended, key(execution)) == (Ended.TOO_MANY_LOCKS, "too_many_locks")
+    assert "locked more parts of files" in execution.verdicts[1].diagnosis.text  # type: ignore[union-attr]
+    assert run(lock, file_locks=500).cells[0].ended is Ended.DONE
+
+
+def test_connections_that_nobody_accepts_have_no_descriptor(run: Run) -> None:
+    connect = """
+import socket, time
+held = [socket.socket() for _ in range(4)]
+for end in held:
+    end.bind(("127.0.0.1", 0))
+    end.listen(500)
+    for _ in range(200):
+        socket.create_connection(end.getsockname()).close()
+time.sleep(4)
+"""
+    execution = run(connect, all_open_files=500)
+    assert (execution.cells[0].ended, key(execution)) == (Ended.TOO_MANY_FILES, "too_many_files")
+
+
 def test_memory_that_many_processes_take_together(run: Run) -> None:
     fork = (
         "import os, time\nfor _ in range(5):\n    if os.fork() == 0:\n"
