@@ -6,9 +6,18 @@ had their holes: tracing other processes, mounting, namespaces in namespaces, ke
 look now and then instead where they cannot. Semaphores and messages of System V are among it because the kernel gives
 some thousand calls gigabytes that no process is seen to have, and asynchronous input and output (``io_setup``) because
 all programs of the machine share one number of requests. A lease (``fcntl``) makes everybody else who opens a file wait
-for up to 45 seconds, also where the file is read-only here: Python's own modules are the same files in every box. A
-call that is refused fails with EPERM, as it does for any user without the right to it; ``clone3`` does not exist
-(ENOSYS), because its flags are in memory that a filter cannot read, and libraries then use ``clone``.
+for up to 45 seconds, also where the file is read-only here: Python's own modules are the same files in every box.
+
+The filter also refuses what makes the kernel keep memory that it charges to no cgroup and that no guard can count:
+attributes of files (access control lists), memory policies (``mbind``; the policy of a file in memory outlives its
+mapping), filters of sockets and of system calls (each is compiled, and all boxes share the room for that), and the two
+kinds of file locks that ``/proc/locks`` shows of no box: those of an open file description, and those of a process that
+shares its table of open files and has ended. The guard counts all other locks (:mod:`autograder.boxes.guards`). Of the
+networks' protocols, a box has those whose waiting data the guard counts: UDP, TCP, and netlink to list the interfaces.
+
+A call that is refused fails with EPERM, as it does for any user without the right to it. Attributes of files fail with
+EOPNOTSUPP, as on a file system without them, which ``cp -p`` expects. ``clone3`` does not exist (ENOSYS), because its
+flags are in memory that a filter cannot read, and libraries then use ``clone``.
 
 Numbers are those of the kernel's own tables (asm/unistd_64.h, asm-generic/unistd.h), which no kernel ever changes.
 """
@@ -29,45 +38,59 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 _X86_64: Mapping[str, int] = {
-    "ioctl": 16, "shmget": 29, "socket": 41, "socketpair": 53, "clone": 56, "semget": 64,
+    "ioctl": 16, "shmget": 29, "socket": 41, "socketpair": 53, "setsockopt": 54, "clone": 56, "semget": 64,
     "msgget": 68, "fcntl": 72, "ptrace": 101, "syslog": 103,
-    "uselib": 134, "vhangup": 153, "modify_ldt": 154, "pivot_root": 155, "chroot": 161, "acct": 163,
+    "uselib": 134, "vhangup": 153, "modify_ldt": 154, "pivot_root": 155, "prctl": 157, "chroot": 161, "acct": 163,
     "settimeofday": 164, "mount": 165, "umount2": 166, "swapon": 167, "swapoff": 168, "reboot": 169,
     "sethostname": 170, "setdomainname": 171, "iopl": 172, "ioperm": 173, "init_module": 175,
-    "delete_module": 176, "quotactl": 179, "io_setup": 206, "lookup_dcookie": 212, "clock_settime": 227,
-    "kexec_load": 246, "add_key": 248, "request_key": 249, "keyctl": 250, "inotify_init": 253, "unshare": 272,
-    "inotify_init1": 294,
+    "delete_module": 176, "quotactl": 179, "setxattr": 188, "lsetxattr": 189, "fsetxattr": 190, "io_setup": 206,
+    "lookup_dcookie": 212, "clock_settime": 227, "mbind": 237, "kexec_load": 246, "add_key": 248, "request_key": 249,
+    "keyctl": 250, "inotify_init": 253, "unshare": 272, "inotify_init1": 294,
     "perf_event_open": 298, "fanotify_init": 300, "name_to_handle_at": 303, "open_by_handle_at": 304, "setns": 308,
-    "process_vm_readv": 310, "process_vm_writev": 311, "kcmp": 312, "finit_module": 313, "memfd_create": 319,
+    "process_vm_readv": 310, "process_vm_writev": 311, "kcmp": 312, "finit_module": 313, "seccomp": 317,
+    "memfd_create": 319,
     "kexec_file_load": 320, "bpf": 321, "userfaultfd": 323,
 }  # fmt: skip
 _AARCH64: Mapping[str, int] = {
-    "io_setup": 0, "lookup_dcookie": 18, "fcntl": 25, "inotify_init1": 26, "ioctl": 29, "umount2": 39, "mount": 40,
+    "io_setup": 0, "setxattr": 5, "lsetxattr": 6, "fsetxattr": 7,
+    "lookup_dcookie": 18, "fcntl": 25, "inotify_init1": 26, "ioctl": 29, "umount2": 39, "mount": 40,
     "pivot_root": 41, "chroot": 51, "vhangup": 58,
     "quotactl": 60, "acct": 89, "unshare": 97, "kexec_load": 104, "init_module": 105, "delete_module": 106,
     "clock_settime": 112, "syslog": 116, "ptrace": 117, "reboot": 142, "sethostname": 161,
-    "setdomainname": 162, "settimeofday": 170, "msgget": 186, "semget": 190, "shmget": 194, "socket": 198,
-    "socketpair": 199, "add_key": 217, "request_key": 218, "keyctl": 219, "clone": 220, "swapon": 224, "swapoff": 225,
-    "perf_event_open": 241, "fanotify_init": 262, "name_to_handle_at": 264, "open_by_handle_at": 265,
+    "setdomainname": 162, "prctl": 167, "settimeofday": 170, "msgget": 186, "semget": 190, "shmget": 194, "socket": 198,
+    "socketpair": 199, "setsockopt": 208, "add_key": 217, "request_key": 218, "keyctl": 219, "clone": 220,
+    "swapon": 224, "swapoff": 225,
+    "mbind": 235, "perf_event_open": 241, "fanotify_init": 262, "name_to_handle_at": 264, "open_by_handle_at": 265,
     "setns": 268, "process_vm_readv": 270, "process_vm_writev": 271, "kcmp": 272, "finit_module": 273,
-    "memfd_create": 279, "bpf": 280, "userfaultfd": 282, "kexec_file_load": 294,
+    "seccomp": 277, "memfd_create": 279, "bpf": 280, "userfaultfd": 282, "kexec_file_load": 294,
 }  # fmt: skip
 _EVERYWHERE: Mapping[str, int] = {
     "io_uring_setup": 425, "io_uring_enter": 426, "io_uring_register": 427, "open_tree": 428,
     "move_mount": 429, "fsopen": 430, "fsconfig": 431, "fsmount": 432, "fspick": 433, "clone3": 435,
     "pidfd_getfd": 438, "mount_setattr": 442, "quotactl_fd": 443, "memfd_secret": 447,
+    "setxattrat": 463,
 }  # fmt: skip
-_BY_ARGUMENT = {"clone", "clone3", "socket", "socketpair", "ioctl", "fcntl"}
+_BY_ARGUMENT = {"clone", "clone3", "socket", "socketpair", "setsockopt", "ioctl", "fcntl", "prctl"}
+_ATTRIBUTES = {"setxattr", "lsetxattr", "fsetxattr", "setxattrat"}
 _HIDDEN_MEMORY = {"memfd_create", "shmget"}
 """Memory that no process is seen to have: refused where it is watched process by process, without a cgroup."""
 
-_FAMILIES = (socket.AF_UNIX, socket.AF_INET, socket.AF_INET6, 16)
-"""16 is AF_NETLINK, with which programs list the network interfaces. AF_VSOCK above all is not here: it talks to
-the host of a virtual machine, past every network namespace."""
+_NETLINK, _ROUTE = 16, 0
+"""AF_NETLINK, and its protocol with which programs list the network interfaces (linux/netlink.h)."""
+_COUNTED = (0, socket.IPPROTO_TCP, socket.IPPROTO_UDP)
+"""The protocols whose waiting data a guard finds in tables of ``/proc``; 0 is the usual one of a kind of socket. MPTCP,
+SCTP and SMC have none."""
+_PROTOCOLS = {socket.AF_INET: _COUNTED, socket.AF_INET6: _COUNTED, _NETLINK: (_ROUTE,)}
+"""By family. AF_UNIX has none. AF_VSOCK above all is not here: it talks to the host of a virtual machine, past every
+network namespace."""
+_SOL_SOCKET, _SOCKET_FILTERS = 1, (26, 50, 51, 52)
+"""SO_ATTACH_FILTER, SO_ATTACH_BPF and those of SO_REUSEPORT (asm-generic/socket.h)."""
 _TERMINAL_TRICKS = (0x5412, 0x541C)
 """TIOCSTI types into a terminal, TIOCLINUX pastes into a console (asm-generic/ioctls.h)."""
-_LEASES = (fcntl.F_SETLEASE, fcntl.F_NOTIFY, 1040)
+_OTHERS_WAIT = (fcntl.F_SETLEASE, fcntl.F_NOTIFY, 1040)
 """Leases, signals when a folder changes, and what is both (F_SETDELEG, Linux 6.19; linux/fcntl.h)."""
+_LOCKS_OF_NOBODY = (37, 38)
+"""F_OFD_SETLK and F_OFD_SETLKW: locks of an open file description, not of a process (asm-generic/fcntl.h)."""
 _NAMESPACES = (
     syscalls.CLONE_NEWNS | syscalls.CLONE_NEWCGROUP | syscalls.CLONE_NEWUTS | syscalls.CLONE_NEWIPC
     | syscalls.CLONE_NEWUSER | syscalls.CLONE_NEWPID | syscalls.CLONE_NEWNET
@@ -123,15 +146,19 @@ def filter_for_boxes(*, hidden_memory: bool = True, machine: str = "") -> bytes:
     ]
     if known.x32:
         program += [(_JUMP_AT_LEAST, 0, 1, 0x40000000), _fail(errno.ENOSYS)]
+    attributes = {known.calls[name] for name in _ATTRIBUTES}
     for number in refused:
-        program += [(_JUMP_EQUAL, 0, 1, number), _fail(errno.EPERM)]
+        why = errno.EOPNOTSUPP if number in attributes else errno.EPERM
+        program += [(_JUMP_EQUAL, 0, 1, number), _fail(why)]
     calls = known.calls
     program += [(_JUMP_EQUAL, 0, 1, calls["clone3"]), _fail(errno.ENOSYS)]
-    program += _where(calls["clone"], 0, [(_JUMP_BITS, 0, 1, _NAMESPACES), _fail(errno.EPERM)])
-    program += _where(calls["ioctl"], 1, _refuse_any(_TERMINAL_TRICKS))
-    program += _where(calls["fcntl"], 1, _refuse_any(_LEASES))
-    program += _where(calls["socket"], 0, _refuse_others(_FAMILIES))
-    program += _where(calls["socketpair"], 0, _refuse_others((socket.AF_UNIX,)))
+    program += _where(calls["clone"], _decide_on_clone())
+    program += _where(calls["ioctl"], _refuse_any(1, _TERMINAL_TRICKS))
+    program += _where(calls["fcntl"], _refuse_any(1, (*_OTHERS_WAIT, *_LOCKS_OF_NOBODY)))
+    program += _where(calls["prctl"], _refuse_any(0, (syscalls.PR_SET_SECCOMP,)))
+    program += _where(calls["setsockopt"], [*_only_if(1, _SOL_SOCKET), *_refuse_any(2, _SOCKET_FILTERS)])
+    program += _where(calls["socket"], _decide_on_socket())
+    program += _where(calls["socketpair"], _refuse_others(0, (socket.AF_UNIX,), errno.EAFNOSUPPORT))
     program.append((_RETURN, 0, 0, _ALLOW))
     return b"".join(struct.pack("=HBBI", *instruction) for instruction in program)
 
@@ -143,19 +170,49 @@ def _fail(number: int) -> _Instruction:
     return (_RETURN, 0, 0, _ERRNO | number)
 
 
-def _where(call: int, argument: int, decide: Sequence[_Instruction]) -> list[_Instruction]:
-    """For one call, decide by the low half of an argument; what is not decided is allowed.
-
-    The kernel, too, takes no more than the low half of a flag, a family or a command.
-    """
-    body = [(_LOAD, 0, 0, _ARGUMENTS + 8 * argument), *decide, (_RETURN, 0, 0, _ALLOW)]
+def _where(call: int, decide: Sequence[_Instruction]) -> list[_Instruction]:
+    """For one call, decide by its arguments; what is not decided is allowed."""
+    body = [*decide, (_RETURN, 0, 0, _ALLOW)]
     return [(_JUMP_EQUAL, 0, len(body), call), *body]
 
 
-def _refuse_any(values: Sequence[int]) -> list[_Instruction]:
-    return [step for value in values for step in ((_JUMP_EQUAL, 0, 1, value), _fail(errno.EPERM))]
+def _load(argument: int) -> _Instruction:
+    """The low half of an argument: the kernel, too, takes no more of a flag, a family or a command."""
+    return (_LOAD, 0, 0, _ARGUMENTS + 8 * argument)
 
 
-def _refuse_others(values: Sequence[int]) -> list[_Instruction]:
+def _only_if(argument: int, value: int) -> list[_Instruction]:
+    """Allow the call if an argument has any other value."""
+    return [_load(argument), (_JUMP_EQUAL, 1, 0, value), (_RETURN, 0, 0, _ALLOW)]
+
+
+def _refuse_any(argument: int, values: Sequence[int]) -> list[_Instruction]:
+    return [
+        _load(argument),
+        *(step for value in values for step in ((_JUMP_EQUAL, 0, 1, value), _fail(errno.EPERM))),
+    ]
+
+
+def _refuse_others(argument: int, values: Sequence[int], why: int) -> list[_Instruction]:
     allowed = [step for value in values for step in ((_JUMP_EQUAL, 0, 1, value), (_RETURN, 0, 0, _ALLOW))]
-    return [*allowed, _fail(errno.EAFNOSUPPORT)]
+    return [_load(argument), *allowed, _fail(why)]
+
+
+def _decide_on_clone() -> list[_Instruction]:
+    """Refuse namespaces, and processes other than threads that share a table of open files."""
+    return [
+        _load(0),
+        (_JUMP_BITS, 0, 1, _NAMESPACES),
+        _fail(errno.EPERM),
+        (_JUMP_BITS, 0, 2, syscalls.CLONE_FILES),
+        (_JUMP_BITS, 1, 0, syscalls.CLONE_THREAD),
+        _fail(errno.EPERM),
+    ]
+
+
+def _decide_on_socket() -> list[_Instruction]:
+    program = [_load(0), (_JUMP_EQUAL, 0, 1, socket.AF_UNIX), (_RETURN, 0, 0, _ALLOW)]
+    for family, protocols in _PROTOCOLS.items():
+        body = _refuse_others(2, protocols, errno.EPROTONOSUPPORT)
+        program += [(_JUMP_EQUAL, 0, len(body), family), *body]
+    return [*program, _fail(errno.EAFNOSUPPORT)]

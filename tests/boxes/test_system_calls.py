@@ -12,7 +12,13 @@ from pathlib import Path
 import pytest
 
 from autograder.boxes.seccomp_filter import ARCHITECTURES, filter_for_boxes
-from autograder.boxes.syscalls import CLONE_NEWNET, CLONE_NEWUSER
+from autograder.boxes.syscalls import (
+    CLONE_FILES,
+    CLONE_NEWNET,
+    CLONE_NEWUSER,
+    PR_SET_DUMPABLE,
+    PR_SET_SECCOMP,
+)
 
 ALLOW, KILL, ERRNO = 0x7FFF0000, 0x80000000, 0x00050000
 HEADERS = {
@@ -67,8 +73,16 @@ def test_what_needs_no_answer_is_refused(machine: str) -> None:
         "kexec_load",
         "semget",
         "msgget",
+        "mbind",
+        "seccomp",
     ):
         assert decide(machine, name) == ERRNO | errno.EPERM, name
+
+
+@machines
+def test_files_have_no_attributes(machine: str) -> None:
+    for name in ("setxattr", "lsetxattr", "fsetxattr", "setxattrat"):
+        assert decide(machine, name) == ERRNO | errno.EOPNOTSUPP, name
 
 
 @machines
@@ -82,6 +96,7 @@ def test_everything_else_is_allowed(machine: str) -> None:
 def test_clone_makes_threads_and_processes_and_no_namespaces(machine: str) -> None:
     thread, process = 0x3D0F00, 17
     assert decide(machine, "clone", thread) == decide(machine, "clone", process) == ALLOW
+    assert decide(machine, "clone", process | CLONE_FILES) == ERRNO | errno.EPERM
     for flag in (CLONE_NEWUSER, CLONE_NEWNET):
         assert decide(machine, "clone", process | flag) == ERRNO | errno.EPERM
     assert decide(machine, "clone3") == ERRNO | errno.ENOSYS
@@ -93,9 +108,26 @@ def test_sockets_of_the_network_and_of_unix_only(machine: str) -> None:
         assert decide(machine, "socket", family) == ALLOW
     for family in (17, 38, 40):
         assert decide(machine, "socket", family) == ERRNO | errno.EAFNOSUPPORT
+    for family in (socket.AF_INET, socket.AF_INET6):
+        for protocol in (0, socket.IPPROTO_TCP, socket.IPPROTO_UDP):
+            assert decide(machine, "socket", family, 1, protocol) == ALLOW
+        for protocol in (socket.IPPROTO_UDPLITE, 132, 256, 262):  # SCTP, SMC and MPTCP
+            assert decide(machine, "socket", family, 1, protocol) == ERRNO | errno.EPROTONOSUPPORT
+    for protocol in range(1, 24):
+        assert decide(machine, "socket", 16, 3, protocol) == ERRNO | errno.EPROTONOSUPPORT
     assert decide(machine, "socketpair", socket.AF_UNIX) == ALLOW
     assert decide(machine, "ioctl", 0, 0x5412) == ERRNO | errno.EPERM
     assert decide(machine, "ioctl", 0, 0x5413) == ALLOW
+
+
+@machines
+def test_no_program_for_the_kernel_is_made(machine: str) -> None:
+    for option in (26, 50, 51, 52):  # SO_ATTACH_FILTER, SO_ATTACH_BPF, and those of SO_REUSEPORT
+        assert decide(machine, "setsockopt", 3, socket.SOL_SOCKET, option) == ERRNO | errno.EPERM
+    assert decide(machine, "setsockopt", 3, socket.IPPROTO_IPV6, socket.IPV6_V6ONLY) == ALLOW  # which is 26
+    assert decide(machine, "setsockopt", 3, socket.SOL_SOCKET, socket.SO_REUSEPORT) == ALLOW
+    assert decide(machine, "prctl", PR_SET_SECCOMP) == ERRNO | errno.EPERM
+    assert decide(machine, "prctl", PR_SET_DUMPABLE) == ALLOW
 
 
 @machines
@@ -103,8 +135,12 @@ def test_descriptors_are_arranged_and_files_locked_and_nobody_is_made_to_wait_fo
     machine: str,
 ) -> None:
     for command in range(1100):
-        makes_wait = command in (fcntl.F_SETLEASE, fcntl.F_NOTIFY, 1040)  # F_SETDELEG, since Linux 6.19
-        assert decide(machine, "fcntl", 3, command) == (ERRNO | errno.EPERM if makes_wait else ALLOW), command
+        refused = command in (fcntl.F_SETLEASE, fcntl.F_NOTIFY, 1040)  # F_SETDELEG, since Linux 6.19
+        refused = refused or command in (
+            37,
+            38,
+        )  # F_OFD_SETLK and F_OFD_SETLKW: no box's /proc/locks shows whose
+        assert decide(machine, "fcntl", 3, command) == (ERRNO | errno.EPERM if refused else ALLOW), command
     # The kernel takes the command as 32 bits, whatever stands above them.
     assert decide(machine, "fcntl", 3, 1 << 32 | fcntl.F_SETLEASE) == ERRNO | errno.EPERM
     assert decide(machine, "fcntl", 3, fcntl.F_SETLEASE << 32 | fcntl.F_GETFD) == ALLOW
