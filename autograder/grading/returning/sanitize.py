@@ -23,6 +23,8 @@ from autograder.boxes.outputs import IMAGES
 from autograder.grading.rebuilding import nodes
 from autograder.grading.rebuilding.rebuild import is_check, is_the_masters
 from autograder.grading.rebuilding.submission import HARMLESS_LENGTH
+from autograder.grading.returning.pictures import Pictures, is_shown
+from autograder.grading.returning.tables import places_in_tables
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
@@ -31,6 +33,8 @@ if TYPE_CHECKING:
 
 LONGEST_MARKDOWN = 50_000
 """Characters of a text cell that are rendered; a longer one is shown as it was typed."""
+_MOST_PLACES = 50_000
+"""Places in the tables of a text, rows times columns: a browser keeps the borders of each, filled or not."""
 SHOWN = (*IMAGES, "text/plain")
 """The types of output that a cell of a submission may show; none can carry code."""
 
@@ -62,7 +66,7 @@ _TAG = re2.compile(r"""<([a-zA-Z][^\s/>]*)[^<>"']*["']?""")
 _CONTROL = dict.fromkeys((*range(1, 9), 11, 12, *range(14, 32)), "?")
 # Only what opens a page when it is clicked. No "//" at the beginning: it would be another host.
 _LINK = re2.compile(r"https?://\S+|mailto:[^\s:]+|#\S*|(/|/?[\w%.-][\w%./-]*)(#\S*)?")
-_PICTURE = re2.compile(r"data:image/(png|jpeg|gif|webp);base64,[A-Za-z0-9+/=\s]*")
+_PICTURE = re2.compile(r"data:image/(?:png|jpeg|gif|webp);base64,([A-Za-z0-9+/=\s]*)")
 _ATTACHED = "attachment:"
 _ATTACHMENT = re2.compile(rf"{_ATTACHED}[\w.%+-]+")
 # Those that Pygments gives to pieces of code, and mistune to a block of it: others could dress a text up as a
@@ -98,6 +102,7 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
         The same notebook.
     """
     longest = _longest_shown([len(cell.source) for n, cell in enumerate(notebook.cells) if n in as_they_are])
+    pictures = Pictures()
     for place, cell in enumerate(notebook.cells):
         if not is_the_masters(cell):
             cell.source = visible(cell.source)
@@ -108,13 +113,32 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
                     cell.source = as_typed(cell.source)
                 else:
                     cell.source = harmless_markdown(cell.source, _figures(cell))
+                    if not pictures.fit(_pictures_of(cell)):
+                        cell.pop("attachments", None)
+                        cell.source = as_typed(_PICTURE.sub("picture left out: too large", cell.source))
             elif cell.cell_type == CellType.RAW:
                 cell.update(nodes.cell(CellType.MARKDOWN, as_typed(cell.source)) | {"id": cell.id})
             elif place in as_they_are:
                 cell.metadata["magics_language"] = "text"  # what nbconvert then takes the code for
         if cell.cell_type == CellType.CODE and not (is_check(cell) and is_the_masters(cell)):
-            cell.outputs = [harmless_output(output) for output in cell.outputs]
+            cell.outputs = [_with_pictures_that_fit(harmless_output(o), pictures) for o in cell.outputs]
     return notebook
+
+
+def _pictures_of(cell: NotebookNode) -> list[str]:
+    """The pictures of a text cell, in base64: each once, however often the text shows it."""
+    attached = [data for kinds in cell.get("attachments", {}).values() for data in kinds.values()]
+    return [*attached, *{found[1] for found in _PICTURE.finditer(cell.source)}]
+
+
+def _with_pictures_that_fit(output: NotebookNode, pictures: Pictures) -> NotebookNode:
+    """An output in which a sentence stands for each picture that a page may not show; it is changed."""
+    for kind in IMAGES:
+        encoded = output.get("data", {}).get(kind)
+        if encoded is not None and not (is_shown(text := "".join(encoded)) and pictures.fit([text])):
+            del output.data[kind]
+            output.data["text/plain"] = "[picture left out: it is too large, or damaged]"
+    return output
 
 
 # Most text cells of a class are the ones that were handed out: looked at once, not once a student.
@@ -157,7 +181,7 @@ def _figures(cell: Any) -> tuple[str, ...]:
         name: {kind: data}
         for name, kinds in attached.items()
         for kind, data in kinds.items()
-        if kind in IMAGES and _PICTURE.fullmatch(f"data:{kind};base64,{data}")
+        if kind in IMAGES and _is_picture(f"data:{kind};base64,{data}")
     }
     if bitmaps:
         cell["attachments"] = bitmaps
@@ -193,7 +217,8 @@ def clean(page: str) -> str:
     """
     if _may_open(page) > _MOST_OPENED:
         return f"<pre>{escape(page)}</pre>"
-    return _CLEANER.clean(_MARKUP.sub(_shown_or_kept, page).translate(_CONTROL))
+    cleaned = _CLEANER.clean(_MARKUP.sub(_shown_or_kept, page).translate(_CONTROL))
+    return cleaned if places_in_tables(cleaned) <= _MOST_PLACES else f"<pre>{escape(page)}</pre>"
 
 
 def _may_open(page: str) -> int:
@@ -215,16 +240,26 @@ def _shown_or_kept(markup: Any) -> str:
     return markup[0] if stays else markup[0].replace("<", "&lt;")
 
 
+def _is_picture(address: str) -> bool:
+    """True if an address is itself a picture that a page may show."""
+    found = _PICTURE.fullmatch(address)
+    return found is not None and is_shown(found[1])
+
+
 def _value_that_may_stay(tag: str, name: str, value: str) -> str | None:
     match tag, name:
         case _, "class":
             stays = all(word in _CLASSES or _LANGUAGE.fullmatch(word) for word in value.split())
         case "input", "type":
             stays = value == "checkbox"
+        case _, "colspan" | "rowspan":
+            stays = re2.fullmatch("[0-9]{1,5}", value) is not None
+        case "img", "height" | "width":
+            stays = re2.fullmatch("[0-9]{1,4}(px|%)?", value) is not None
         case "a", "href":
             stays = _LINK.fullmatch(value) is not None
         case "img", "src":
-            stays = (_PICTURE.fullmatch(value) or _ATTACHMENT.fullmatch(value)) is not None
+            stays = _is_picture(value) or _ATTACHMENT.fullmatch(value) is not None
         case _:
             stays = True
     return value if stays else None
@@ -283,7 +318,7 @@ class _Looking(Renderer):
         if (name := url.removeprefix(_ATTACHED)) != url and name in self._left:
             self._left.remove(name)
             return super().image(text, url, title)
-        if not _PICTURE.fullmatch(url):
+        if not _is_picture(url):
             self.is_plain = False
             return f"<em>[picture left out: {escape(text)}]</em>"
         return super().image(text, url, title)

@@ -1,0 +1,135 @@
+"""The points of a picture that a browser has to hold, read from the picture's header: nothing is decoded here.
+
+A PNG of 30 kB may have 16,000 x 16,000 points, which take a gigabyte in a browser. Of an animated picture, each frame
+counts. Sources: PNG specification (W3C, third edition), 11.2 and 11.3.6; GIF89a, 18 to 26; ITU-T T.81, B.2.2; RFC 9649.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import struct
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+MOST_POINTS = 100_000_000
+"""Points of all pictures of a notebook that a page may have: 400 MB in a browser, or a dozen screenshots of 4K."""
+_PNG = b"\x89PNG\r\n\x1a\n"
+_NO_SIZE = {0xC4, 0xC8, 0xCC}
+"""Markers of JPEG between those of a frame that begin none: tables, a reserved one, conditioning."""
+_ALONE = {0x01, *range(0xD0, 0xD8)}
+"""Markers of JPEG without a segment."""
+
+
+class Pictures:
+    """The points that the pictures of a notebook may still have."""
+
+    def __init__(self) -> None:
+        self._left = MOST_POINTS
+
+    def fit(self, encoded: Iterable[str]) -> bool:
+        """Return whether there is room for all of these pictures, in base64, which take it then."""
+        wanted = sum(points_of(picture) or 0 for picture in encoded)
+        if wanted > self._left:
+            return False
+        self._left -= wanted
+        return True
+
+
+def is_shown(encoded: str) -> bool:
+    """Return whether a page may show a picture in base64: a browser can show it, and it is not too large by itself."""
+    points = points_of(encoded)
+    return points is not None and points <= MOST_POINTS
+
+
+def points_of(encoded: str) -> int | None:
+    """Return the points of a picture in base64, all frames together; None if it is no PNG, JPEG, GIF or WebP.
+
+    A browser goes by the content of a picture, not by the type that a text claims, and so does this.
+    """
+    try:
+        data = base64.b64decode(encoded)
+        if data.startswith(_PNG):
+            return _points_of_png(data)
+        if data.startswith((b"GIF87a", b"GIF89a")):
+            return _points_of_gif(data)
+        if data.startswith(b"\xff\xd8"):
+            return _points_of_jpeg(data)
+        if data[:4] == b"RIFF" and data[8:12] == b"WEBP":
+            return _points_of_webp(data)
+    except (binascii.Error, ValueError, struct.error, IndexError):
+        pass  # cut off, or no picture
+    return None
+
+
+def _points_of_png(data: bytes) -> int | None:
+    width, height = struct.unpack_from(">4x4sII", data, 8)[1:] if data[12:16] == b"IHDR" else (0, 0)
+    frames, place = 1, 8
+    while data[place + 4 : place + 8] not in (b"", b"IDAT"):
+        if data[place + 4 : place + 8] == b"acTL":
+            (frames,) = struct.unpack_from(">I", data, place + 8)
+        place += 12 + int.from_bytes(data[place : place + 4])
+    return width * height * max(1, frames) or None
+
+
+def _points_of_gif(data: bytes) -> int | None:
+    width, height, flags = struct.unpack_from("<HHB", data, 6)
+    place, frames = 13 + _colors(flags), 0
+    while place < len(data) and data[place] != 0x3B:
+        if data[place] == 0x2C:
+            left, top, wide, high, flags = struct.unpack_from("<HHHHB", data, place + 1)
+            # A browser widens the screen to a frame that reaches beyond it.
+            width, height, frames = max(width, left + wide), max(height, top + high), frames + 1
+            place += 11 + _colors(flags)
+        else:
+            place += 2
+        while place < len(data) and data[place]:
+            place += 1 + data[place]
+        place += 1
+    return width * height * frames or None
+
+
+def _colors(flags: int) -> int:
+    """The bytes of a table of colors."""
+    return 3 << (flags & 7) + 1 if flags & 0x80 else 0
+
+
+def _points_of_jpeg(data: bytes) -> int | None:
+    place = 2
+    while place < len(data):
+        kind = data[place + 1] if data[place] == 0xFF else 0xFF
+        if kind == 0xFF or kind in _ALONE:
+            place += 1 if kind == 0xFF else 2
+        elif 0xC0 <= kind <= 0xCF and kind not in _NO_SIZE:
+            height, width = struct.unpack_from(">HH", data, place + 5)
+            return height * width or None
+        else:
+            place += 2 + max(2, int.from_bytes(data[place + 2 : place + 4]))
+    return None
+
+
+def _points_of_webp(data: bytes) -> int | None:
+    points, frames = 0, 0
+    for kind, at in _chunks(data):
+        if kind == b"VP8X":
+            wide, high = (int.from_bytes(data[at + n : at + n + 3], "little") + 1 for n in (4, 7))
+            points = max(points, wide * high)
+        elif kind == b"VP8L":
+            bits = int.from_bytes(data[at + 1 : at + 5], "little")
+            points = max(points, ((bits & 0x3FFF) + 1) * ((bits >> 14 & 0x3FFF) + 1))
+        elif kind == b"VP8 ":
+            wide, high = struct.unpack_from("<HH", data, at + 6)
+            points = max(points, (wide & 0x3FFF) * (high & 0x3FFF))
+        frames += kind == b"ANMF"
+    return points * max(1, frames) or None
+
+
+def _chunks(data: bytes) -> Iterator[tuple[bytes, int]]:
+    """The kinds of a WebP's chunks, and where their contents begin."""
+    place = 12
+    while place + 8 <= len(data):
+        yield data[place : place + 4], place + 8
+        size = int.from_bytes(data[place + 4 : place + 8], "little")
+        place += 8 + size + size % 2

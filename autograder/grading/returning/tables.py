@@ -1,0 +1,65 @@
+"""The places of the tables of a page: rows times columns.
+
+A browser keeps the borders of each place, whether a cell fills it or not. A cell of twenty characters may span 1,000
+columns, so 46 kB of text can make a table that no browser opens.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import re2
+
+# As nh3 writes tags, always with quotation marks, and with none between these.
+_OF_TABLES = re2.compile(r"""<(/?table|tr|td|th)\b((?: [a-z]+="[^"]*")*)>""")
+_SPAN = re2.compile(r' (colspan|rowspan)="([0-9]+)"')
+
+
+def places_in_tables(page: str) -> int:
+    """Return an upper limit of the rows times the columns of each table, of all tables together.
+
+    Args:
+        page: HTML that nh3 has cleaned.
+    """
+    places = 0
+    tables: list[_Table] = []
+    for name, attributes in ((found[1], found[2]) for found in _OF_TABLES.finditer(page)):
+        if name == "table":
+            tables.append(_Table())
+        elif name == "/table" and tables:
+            places += tables.pop().places
+        elif tables:
+            spans = {span[1]: int(span[2]) for span in _SPAN.finditer(attributes)}
+            tables[-1].add(name, spans.get("colspan", 1), spans.get("rowspan", 1))
+    return places
+
+
+@dataclass
+class _Table:
+    """A table while it is read.
+
+    Attributes:
+        rows: Its rows until now.
+        width: Columns that the cells of this row take.
+        widest: The most of these.
+        reaching: Columns of all cells that reach into later rows, where they move other cells aside.
+    """
+
+    rows: int = 0
+    width: int = 0
+    widest: int = 0
+    reaching: int = 0
+
+    def add(self, name: str, columns: int, rows: int) -> None:
+        """Take the beginning of a row, or a cell, into account."""
+        if name == "tr":
+            self.rows, self.width = self.rows + 1, 0
+            return
+        self.width += columns
+        self.widest = max(self.widest, self.width)
+        self.reaching += columns if rows != 1 else 0
+
+    @property
+    def places(self) -> int:
+        """Rows times columns."""
+        return self.rows * (self.widest + self.reaching)

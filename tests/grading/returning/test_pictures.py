@@ -1,0 +1,143 @@
+"""The points of pictures, as their headers say them, and what a page does with too many of them."""
+
+from __future__ import annotations
+
+import base64
+import struct
+
+import nbformat
+import pytest
+
+from autograder.grading.returning.pictures import MOST_POINTS, points_of
+from autograder.grading.returning.sanitize import harmless_markdown, make_harmless
+
+WIDTH, HEIGHT = 640, 480
+
+
+def chunk(kind: bytes, data: bytes) -> bytes:
+    return struct.pack(">I", len(data)) + kind + data + bytes(4)
+
+
+def png(width: int = WIDTH, height: int = HEIGHT, frames: int = 1) -> bytes:
+    animated = chunk(b"acTL", struct.pack(">II", frames, 0)) if frames > 1 else b""
+    header = chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 1, 0, 0, 0, 0))
+    return b"\x89PNG\r\n\x1a\n" + header + chunk(b"tEXt", b"a\0b") + animated + chunk(b"IDAT", b"")
+
+
+def gif(width: int = WIDTH, height: int = HEIGHT, frames: int = 1, screen: tuple[int, int] = (1, 1)) -> bytes:
+    frame = b"\x21\xf9\x04" + bytes(5) + b"\x2c" + struct.pack("<HHHHB", 0, 0, width, height, 0x80)
+    frame += bytes(6) + b"\x02\x01\x2c\x00"  # two colors, and data that looks like another frame
+    return b"GIF89a" + struct.pack("<HHBBB", *screen, 0x81, 0, 0) + bytes(12) + frame * frames + b"\x3b"
+
+
+def jpeg(width: int = WIDTH, height: int = HEIGHT, kind: int = 0xC0) -> bytes:
+    thumbnail = b"\xff\xc0" + bytes(60)
+    before = b"\xff\xe1" + struct.pack(">H", len(thumbnail) + 2) + thumbnail + b"\xff\xff\xc4\x00\x03\x00"
+    return b"\xff\xd8" + before + bytes((0xFF, kind)) + struct.pack(">HBHHB", 17, 8, height, width, 3)
+
+
+def webp(kind: bytes, data: bytes, frames: int = 0) -> bytes:
+    body = b"WEBP" + kind + struct.pack("<I", len(data)) + data + bytes(len(data) % 2)
+    return b"RIFF" + struct.pack("<I", len(body)) + body + (b"ANMF" + bytes(4)) * frames
+
+
+def of_24_bits(number: int) -> bytes:
+    return struct.pack("<I", number - 1)[:3]
+
+
+def encoded(picture: bytes) -> str:
+    return base64.b64encode(picture).decode()
+
+
+@pytest.mark.parametrize(
+    "picture",
+    [
+        png(),
+        gif(),
+        gif(100, 100, screen=(WIDTH, HEIGHT)),
+        *(jpeg(kind=kind) for kind in (0xC0, 0xC1, 0xC2)),
+        webp(b"VP8 ", b"\0\0\0\x9d\x01\x2a" + struct.pack("<HH", WIDTH, HEIGHT | 0x4000)),
+        webp(b"VP8L", b"\x2f" + struct.pack("<I", WIDTH - 1 | (HEIGHT - 1) << 14)),
+        webp(b"VP8X", bytes(4) + of_24_bits(WIDTH) + of_24_bits(HEIGHT)),
+    ],
+)
+def test_the_size_is_that_of_the_header(picture: bytes) -> None:
+    assert points_of(encoded(picture)) == WIDTH * HEIGHT
+
+
+@pytest.mark.parametrize(
+    "picture",
+    [
+        png(frames=7),
+        gif(frames=7),
+        webp(b"VP8X", bytes(4) + of_24_bits(WIDTH) + of_24_bits(HEIGHT), frames=7),
+    ],
+)
+def test_each_frame_of_an_animated_picture_counts(picture: bytes) -> None:
+    assert points_of(encoded(picture)) == 7 * WIDTH * HEIGHT
+
+
+@pytest.mark.parametrize(
+    "picture", [png(), gif(), jpeg(), b"", b"BM" + bytes(60), b"a picture", b"\xff\xd8" * 9]
+)
+def test_what_is_cut_off_or_of_another_kind_has_no_size(picture: bytes) -> None:
+    for length in range(min(len(picture), 20)):
+        assert points_of(encoded(picture[:length])) is None
+    assert points_of("no base64") is None
+
+
+def outputs_of(*pictures: bytes) -> list[str]:
+    """What is shown of pictures that cells have shown: the types of the first output of each."""
+    notebook = nbformat.v4.new_notebook()
+    for picture in pictures:
+        data = {"image/png": encoded(picture), "text/plain": "<Figure>"}
+        notebook.cells.append(
+            nbformat.v4.new_code_cell("x", outputs=[nbformat.v4.new_output("display_data", data)])
+        )
+    for _ in range(2):  # once before it is written, once more when the page is made
+        notebook = make_harmless(notebook)
+    return [",".join(sorted(cell.outputs[0].data)) for cell in notebook.cells]
+
+
+def test_a_picture_of_sixteen_thousand_points_a_side_is_left_out() -> None:
+    large, usual = png(16_000, 16_000), png(1920, 1080)
+    assert (
+        outputs_of(large, usual, gif(16_000, 16_000), usual)
+        == [
+            "text/plain",
+            "image/png,text/plain",
+        ]
+        * 2
+    )
+    for name in ("![a graph]({})", '<div><img src="{}" alt="a graph"></div>'):
+        shown = harmless_markdown(name.format("data:image/png;base64," + encoded(large)))
+        assert "base64" not in shown
+        assert "a graph" in shown
+        assert "base64" in harmless_markdown(name.format("data:image/png;base64," + encoded(usual)))
+
+
+def test_many_pictures_have_one_budget() -> None:
+    of_4k = png(3840, 2160)
+    shown = outputs_of(*[of_4k] * 20)
+    assert shown.count("image/png,text/plain") == MOST_POINTS // (3840 * 2160)
+    texts = [f"![{n}](data:image/png;base64,{encoded(png(3840, 2160 + n))})" for n in range(20)]
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_markdown_cell(text) for text in texts])
+    for _ in range(2):
+        notebook = make_harmless(notebook)
+    kept = [cell.source for cell in notebook.cells if "base64" in cell.source]
+    assert kept == texts[: len(kept)]
+    assert 10 <= len(kept) <= 12
+    assert "picture left out: too large" in notebook.cells[-1].source
+
+
+def test_a_picture_is_not_stretched_over_kilometers() -> None:
+    address = "data:image/png;base64," + encoded(png())
+    shown = harmless_markdown(f'<div><img src="{address}" height=99999999 width=300></div>')
+    assert "99999999" not in shown
+    assert 'width="300"' in shown
+
+
+def test_what_a_browser_would_show_in_place_of_a_png_is_left_out() -> None:
+    bitmap = b"BM" + bytes(16) + struct.pack("<II", 16_000, 16_000) + bytes(40)
+    assert outputs_of(bitmap) == ["text/plain"]
+    assert "base64" not in harmless_markdown(f"![a](data:image/png;base64,{encoded(bitmap)})")
