@@ -159,13 +159,11 @@ class BuildDone(Message, frozen=True, tag="built"):
         pieces: How many messages the archive has.
         install: The path of the install folder that is in its files.
         seconds: Wall time that it took.
-        reused: Whether the same sources had been built before.
     """
 
     pieces: int
     install: str
     seconds: float
-    reused: bool
 
 
 class Piece(Message, frozen=True):

@@ -159,8 +159,9 @@ class Builds:
             ),
         )
 
-    def _entry(self, found: Build, order: BuildOrder) -> Build:
-        with cache.entry(order.key, self._folder, order.cancelled) as entry:
+    def _entry(self, found: Build, order: BuildOrder, folder: Path | None = None) -> Build:
+        """The build from a cache, or made in it; the cache of these builds if none is named."""
+        with cache.entry(order.key, folder or self._folder, order.cancelled) as entry:
             install = entry.folder / "install"
             if entry.complete:
                 return replace(found, ok=True, install=install, reused=True)

@@ -33,8 +33,6 @@ LIMIT = 1_000_000_000
 """Bytes that all entries may take together; one interface package takes two million."""
 IN_USE = 900.0
 """Seconds after its last use in which an entry is not removed: its programs may still run, as long as a check lasts."""
-MET_FOR = 30 * 86_400.0
-"""Seconds for which it is remembered that a package of some meaning has been built once (``graded_builds``)."""
 ASK_EVERY = 0.1
 """Seconds between two looks whether an entry is free, for those who may give up."""
 _MARKER = "complete"
@@ -75,7 +73,7 @@ def root() -> Path:
 
 
 def graders_root() -> Path:
-    """The folder of the builds that grades rest on: made in boxes, and seen by a box only as far as it needs it."""
+    """The folder of the builds of the course's own packages: made in boxes, and seen by a box only as far as needed."""
     return _own(platformdirs.user_cache_path(_NAME) / "graded-builds")
 
 
@@ -222,10 +220,6 @@ def make_room(base: Path, limit: int = LIMIT, in_use: float = IN_USE) -> list[st
     for lock in base.glob("*.lock"):
         if _last_use(folder := lock.with_suffix("")) is None:
             _remove(base, folder, None)
-    for met in base.glob("*.met"):
-        with contextlib.suppress(FileNotFoundError):  # another worker has removed it
-            if time.time() - met.stat().st_mtime > MET_FOR:
-                met.unlink()
     return removed
 
 

@@ -1,9 +1,9 @@
-"""A build that a grade may rest on: made in a box of its own from the sources alone, taken over as data.
+"""Builds that a grade may rest on: made in a box of their own from the sources alone, taken over as data.
 
-It may be used again for the same sources, whoever hands them in. No box can write to the cache.
-
-Packages that hold interfaces and nothing else are often the same but for comments and spaces. Of the second one with
-the same meaning a normalised copy without comments is built, so that equal definitions are built once.
+A submission shares no build with any other, nor with itself when it is executed again: otherwise the time that a build
+takes would tell a notebook what classmates have handed in, or that it runs for the second time. Only what the course
+itself publishes or makes is built ahead, once for all (:mod:`autograder.workspaces.built_ahead`). No box can write to
+either folder.
 """
 
 from __future__ import annotations
@@ -30,42 +30,38 @@ ROOM = 32_000_000
 
 
 class GradedBuilds(Builds):
-    """Builds that one submission's workspaces need, from the cache or made.
+    """Builds that one execution of a submission needs.
+
+    Packages that hold interfaces and nothing else are often the same but for comments and spaces: of these, a build
+    ahead is found if it means the same.
 
     Args:
-        folder: The cache. It belongs to the grader alone.
+        folder: The builds of this execution. It belongs to the grader alone.
         jobs: Run colcon, and what was built.
+        ahead: The folder of what was built ahead; None where nothing is shared.
         room: Bytes that all builds used here may take, whoever made them.
     """
 
-    def __init__(self, folder: Path, jobs: Jobs, room: int = ROOM) -> None:
+    def __init__(self, folder: Path, jobs: Jobs, ahead: Path | None = None, room: int = ROOM) -> None:
         super().__init__(folder, jobs, room)
+        self._ahead = ahead
         self._paid: set[str] = set()
 
     def _find_or_make(self, found: Build, chosen: Sequence[Package], order: BuildOrder) -> Build:
         hidden = _hidden_from(chosen)
         others = [f"{path} {state(str(path))}" for path in course_interfaces() if path not in hidden]
         order = self._keyed(replace(order, hidden=hidden), *others)
-        if not all(map(holds_only_interfaces, chosen)):
-            return self._entry(found, order)
-        return self._shared(found, order, self._keyed(replace(order, tree=simplified(order.tree)), *others))
+        wanted = [order]
+        if all(map(holds_only_interfaces, chosen)):
+            wanted.append(self._keyed(replace(order, tree=simplified(order.tree)), *others))
+        for one in wanted:
+            if self._ahead and cache.is_complete(one.key, self._ahead):
+                return self._entry(found, one, self._ahead)
+        return self._entry(found, order)
 
-    def _shared(self, found: Build, order: BuildOrder, shared: BuildOrder) -> Build:
-        """The build itself, or one that means the same, in nobody's words."""
-        for one in (order, shared):
-            if cache.is_complete(one.key, self._folder):  # else it may just be made, and is not waited for
-                return self._entry(found, one)
-        met = self._folder / f"{shared.key}.met"
-        if met.exists() and (made := self._entry(found, shared)).ok:
-            return made
-        made = self._entry(found, order)
-        if made.ok:
-            met.touch()
-        return made
-
-    def _entry(self, found: Build, order: BuildOrder) -> Build:
+    def _entry(self, found: Build, order: BuildOrder, folder: Path | None = None) -> Build:
         """The build, where there is room for it: who finds it made needs as much as who had it made."""
-        made = super()._entry(found, order)
+        made = super()._entry(found, order, folder)
         if made.install is None or order.key in self._paid:
             return made
         try:

@@ -1,8 +1,8 @@
 """Builds of a workspace of one's own: in a notebook or a terminal, as the student, on the student's own computer.
 
 In a graded notebook the grader is asked for them instead. What ``colcon build`` makes depends on the sources alone, so
-it need not be made a second time for the check, nor for another student with the same sources. The box gets it as an
-archive and sees nothing of the cache that it comes from.
+it need not be made a second time for the check. The box gets it as an archive and sees nothing of the folder that it
+comes from.
 """
 
 from __future__ import annotations
@@ -102,5 +102,5 @@ def _ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) ->
             archive = b"".join(lines.hear(messages.Piece).data for _ in range(answer.pieces))
             artefacts.unpack(archive, install)
             rename_paths(install, answer.install, str(install))
-            return replace(found, ok=True, install=install, seconds=answer.seconds, reused=answer.reused)
+            return replace(found, ok=True, install=install, seconds=answer.seconds)
     return None

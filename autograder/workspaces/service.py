@@ -62,15 +62,22 @@ class WorkspaceService:
     Args:
         sockets: Sockets to be made; their folders are there.
         jobs: Builds and runs.
-        builds: The cache of builds; see :func:`autograder.workspaces.cache.graders_root`.
+        builds: The folder for builds; nobody else may use it.
         variables: What programs have in their environment besides, such as how ROS is to behave.
         folder: Ours alone, for sources.
+        ahead: The folder of what was built ahead, if there is one.
     """
 
     def __init__(
-        self, sockets: ServiceSockets, jobs: Jobs, builds: Path, variables: Mapping[str, str], folder: Path
+        self,
+        sockets: ServiceSockets,
+        jobs: Jobs,
+        builds: Path,
+        variables: Mapping[str, str],
+        folder: Path,
+        ahead: Path | None = None,
     ) -> None:
-        self._builds = GradedBuilds(builds, jobs)
+        self._builds = GradedBuilds(builds, jobs, ahead)
         self._variables = variables
         self._folder = fresh_folder("sources-", folder)
         self._left = threading.Semaphore(MAX_BUILDS)
@@ -169,6 +176,6 @@ class WorkspaceService:
         archive = pack(install)
         pieces = [archive[at : at + PIECE] for at in range(0, len(archive), PIECE)]
         place = self._builds.jobs.place(WORKSPACE, install.parent) / "install"
-        lines.say(messages.BuildDone(len(pieces), str(place), made.seconds, made.reused))
+        lines.say(messages.BuildDone(len(pieces), str(place), made.seconds))
         for piece in pieces:
             lines.say(messages.Piece(piece))

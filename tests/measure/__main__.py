@@ -15,6 +15,7 @@ PROGRAMS = {
     "rates": "all of that, published in docs/fairness.md",
     "history": "name what the evidence of earlier days says otherwise of the bank; nothing is run",
     "compare": "name what two commits say otherwise of the bank",
+    "built_ahead": "record the packages that the course's own notebooks build, so that classes find them built",
     "run_all": "Restart and Run All in one student's folder, again and again",
 }
 """What can be asked for; each is the module of that name."""

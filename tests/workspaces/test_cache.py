@@ -9,7 +9,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
 
 import pytest
@@ -210,12 +209,3 @@ def test_the_folder_in_the_place_of_a_cache_goes_with_its_process(empty_cache: P
     folder = Path(done.stdout.strip())
     assert folder != empty_cache
     assert not folder.exists()
-
-
-def test_a_meaning_that_was_met_long_ago_is_forgotten(empty_cache: Path) -> None:
-    folder = cache.root()
-    for name, ago in (("old.met", cache.MET_FOR + 9), ("new.met", 9)):
-        (folder / name).touch()
-        os.utime(folder / name, (time.time() - ago,) * 2)
-    cache.make_room(folder)
-    assert [path.name for path in folder.iterdir()] == ["new.met"]

@@ -605,38 +605,6 @@ def test_endless_output_is_cut_and_ends_with_the_run(
     assert size <= 10_000
 
 
-def test_interfaces_that_mean_the_same_are_built_in_nobody_s_words(
-    sockets: ServiceSockets, jobs: FakeJobs, tmp_path: Path
-) -> None:
-    generated = "my_robot_interfaces/lib/python3/site-packages/my_robot_interfaces/srv/_add_two_ints.py"
-    jobs.built = Built(0, b"", _packed(generated, "my_robot_interfaces/share/x"))
-    for name in ("ada", "ben", "cid"):
-        interface_package(tmp_path / name / "src" / "my_robot_interfaces", f"# by {name}\n")
-        judge = FakeJudge(sockets)
-        judge.check(tmp_path / name, "lab_1_3.interface")
-        told = reports(judge.run())[-1]
-        assert told["built"], told
-        assert told["packages"][0]["interfaces"][0]["text"] == "int64 a\nint64 b\n---\nint64 sum"
-        judge.lines.close()
-    assert len(jobs.sources) == 2
-    assert "# by ada" in jobs.sources[0]
-    assert "by" not in jobs.sources[1]
-
-
-def test_what_fails_in_nobody_s_words_is_told_in_the_student_s(
-    sockets: ServiceSockets, jobs: FakeJobs, tmp_path: Path
-) -> None:
-    good = jobs.built = Built(0, b"", _packed("my_robot_interfaces/share/x"))
-    for name, built in (("ada", good), ("ben", Built(1, b"error: no\n"))):
-        jobs.built = built
-        interface_package(tmp_path / name / "src" / "my_robot_interfaces", f"# by {name}\n")
-        judge = FakeJudge(sockets)
-        judge.check(tmp_path / name, "lab_1_3.interface")
-        judge.run()
-        judge.lines.close()
-    assert ["by" in text for text in jobs.sources] == [True, False, True]
-
-
 def test_a_build_that_takes_too_long_says_nothing_about_the_sources(
     sockets: ServiceSockets, jobs: FakeJobs, lab: Path
 ) -> None:

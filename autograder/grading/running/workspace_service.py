@@ -13,6 +13,7 @@ from autograder.boxes.place import SHARED_FOLDER, BoxedPlace
 from autograder.judge.settings import boxed_ros_environment, ros_environment
 from autograder.workspaces import cache, own_builds
 from autograder.workspaces.boxed_jobs import BoxedJobs
+from autograder.workspaces.built_ahead import build_ahead
 from autograder.workspaces.plain_jobs import PlainJobs
 from autograder.workspaces.service import ServiceSockets, WorkspaceService
 from environment.python_child import python_child
@@ -89,10 +90,15 @@ def served(
     folder = arrangement.folder / "work-of-jobs"
     folder.mkdir()
     jobs: BoxedJobs | PlainJobs
+    builds, ahead = cache.graders_root(), None
     if isinstance(place, BoxedPlace):
         jobs = BoxedJobs(addresses.supervisors, place.programs, folder, addresses.programs)
         ros = boxed_ros_environment()
         _furnish(place.shared)
+        if arrangement.runners:
+            build_ahead(builds, jobs)
+        builds, ahead = folder / "builds", builds
+        builds.mkdir(mode=0o700)
         sockets = ServiceSockets(arrangement.judges_socket, place.shared / _BUILDS)
     else:
         jobs = PlainJobs(kernel_environment(folder / "home", {}), handed_in=True)
@@ -100,7 +106,7 @@ def served(
         sockets = ServiceSockets(arrangement.judges_socket, None)
     # Programs that hang can be asked where, and what they say comes at once.
     variables = {**ros, "PYTHONUNBUFFERED": "1", "PYTHONFAULTHANDLER": "1"}
-    return WorkspaceService(sockets, jobs, cache.graders_root(), variables, folder)
+    return WorkspaceService(sockets, jobs, builds, variables, folder, ahead)
 
 
 def _furnish(shared: Path) -> None:

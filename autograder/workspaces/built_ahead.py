@@ -1,0 +1,83 @@
+"""The builds that all submissions share: packages of the course itself, built before any notebook asks for them.
+
+``solutions/ros2_ws`` contains the course's own programs. ``solutions/*/built_ahead.json`` contains the packages that
+the labs' own texts and solutions make; ``python -m tests.measure built_ahead`` writes these files. A package that is
+missing there, or has changed since, costs time and nothing else: each submission builds it for itself.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import os
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder import course
+from autograder.messages.workspaces import Source
+from autograder.workspaces.builds import BuildTookTooLong
+from autograder.workspaces.colcon import look
+from autograder.workspaces.graded_builds import GradedBuilds
+from autograder.workspaces.interface_packages import holds_only_interfaces, simplified
+from autograder.workspaces.plans import reference_workspace
+from autograder.workspaces.preparing import COURSE
+from autograder.workspaces.sources import Tree
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.workspaces.colcon import Build
+    from autograder.workspaces.jobs import Jobs
+
+FILE = "built_ahead.json"
+Files = dict[str, str | None]
+"""Packages that are built together: texts of files, and None for a folder, by paths relative to ``src``."""
+_ROOM = 1_000_000_000
+_done: set[Path] = set()
+
+
+def recorded(root: Path) -> list[Files]:
+    """Read what the chapters of a course have recorded."""
+    found: list[Files] = []
+    for file in sorted((root / "solutions").glob(f"*/{FILE}")):
+        found += msgspec.json.decode(file.read_bytes(), type=list[Files])
+    return found
+
+
+def build_ahead(folder: Path, jobs: Jobs) -> None:
+    """Build everything that is shared, as far as it is not there yet; once in the life of this process.
+
+    Args:
+        folder: See :func:`autograder.workspaces.cache.graders_root`.
+        jobs: Run colcon.
+    """
+    if folder in _done:
+        return
+    builds = GradedBuilds(folder, jobs, room=_ROOM)
+    every: list[Callable[[], object]] = [
+        functools.partial(_build, builds, files) for files in recorded(course.root())
+    ]
+    if (own := reference_workspace()).is_dir():
+        every.append(lambda: builds.build(look(own), None, name=COURSE))
+    first = os.getpid() % max(1, len(every))  # workers that start together begin with different ones
+    for build in (*every[first:], *every[:first]):
+        with contextlib.suppress(BuildTookTooLong):  # each submission with this package builds it for itself
+            build()
+    _done.add(folder)
+
+
+def _build(builds: GradedBuilds, files: Files) -> object:
+    tree = Tree(tuple(Source(path, None if text is None else text.encode()) for path, text in files.items()))
+    with tempfile.TemporaryDirectory(prefix="built-ahead-") as name:
+        found = _written(tree, Path(name, "as-recorded"))
+        if all(map(holds_only_interfaces, found.packages)):
+            found = _written(simplified(tree), Path(name, "simplified"))
+        return builds.build(found, None)
+
+
+def _written(tree: Tree, workspace: Path) -> Build:
+    tree.write(workspace / "src")
+    return look(workspace)

@@ -1,0 +1,113 @@
+"""Record the packages that the course's own notebooks build, so that they are built ahead of a class.
+
+Each notebook with a check of a workspace is executed in boxes as a student's is, with the solutions of its master. The
+packages that it wants to have built are written into ``solutions/<chapter>/built_ahead.json``.
+"""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from unittest import mock
+
+from autograder import course, exercises
+from autograder.boxes.fork_server import ForkServers
+from autograder.grading.classes.sample_class import _without_markers
+from autograder.grading.rebuilding.task_making import cells_of
+from autograder.grading.running import worker, workspace_service
+from autograder.grading.task import Task
+from autograder.judge.serving import attached
+from autograder.judge.serving.process import JudgeProcess
+from autograder.judge.settings import boxed_ros_environment
+from autograder.masters.layout import lab_name, masters
+from autograder.masters.source import source_notebook
+from autograder.process_trees import adopt_orphans
+from autograder.workspaces.built_ahead import FILE, Files
+from autograder.workspaces.graded_builds import GradedBuilds
+from autograder.workspaces.packages import WORKSPACE
+
+if TYPE_CHECKING:
+    import argparse
+
+    from autograder.boxes.fork_server import Addresses
+    from autograder.workspaces.colcon import Build
+    from autograder.workspaces.jobs import BuildOrder
+    from autograder.workspaces.sources import Tree
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """There are none."""
+    del parser
+
+
+def main(options: argparse.Namespace) -> int:
+    """Write the files; 1 if a notebook's packages could not be built."""
+    del options
+    root = course.root()
+    found: dict[Path, list[Files]] = {}
+    with (
+        ForkServers(
+            attached.__name__,
+            boxed=True,
+            environment=boxed_ros_environment(),
+            of_judges=course.variables(),
+            interfaces=course.interface_modules(),
+        ) as warm,
+        # A worker ends every process below its own, so it must not be the one that has started the fork servers.
+        ProcessPoolExecutor(1, mp_context=get_context("fork")) as workers,
+    ):
+        for master in masters(root):
+            task = _task(master)
+            if task is None:
+                continue
+            built = workers.submit(_built, task, warm.addresses).result()
+            print(f"{task.notebook}: {len(built)} builds", flush=True)
+            packages = found.setdefault(master.parents[1], [])
+            packages += [files for files in built if files not in packages]
+    for chapter, packages in found.items():
+        text = json.dumps(packages, ensure_ascii=False, indent=1) + "\n"
+        (chapter / FILE).write_text(text, encoding="utf-8")
+    return 0
+
+
+def _task(master: Path) -> Task | None:
+    """The master as a student would hand it in; None if none of its checks builds anything."""
+    notebook = source_notebook(master)
+    for cell in notebook.cells:
+        cell.source = _without_markers(cell.source)  # as a student hands it in
+    cells = cells_of(notebook)
+    checks = [cell.check.exercise for cell in cells if cell.check and not cell.check.asserts]
+    if not any(exercises.get(name).runner for name in checks):
+        return None
+    return Task("reference", "built-ahead", lab_name(master), cells, seed="built ahead", course="")
+
+
+def _built(task: Task, addresses: Addresses) -> list[Files]:
+    """The packages that a notebook has had built for it."""
+    trees: dict[str, Tree] = {}
+    entry = GradedBuilds._entry
+
+    def remembering(self: GradedBuilds, found: Build, order: BuildOrder, *rest: Any) -> Build:
+        made = entry(self, found, order, *rest)
+        if made.ok and order.name == WORKSPACE:
+            trees[order.tree.digest] = order.tree
+        return made
+
+    adopt_orphans()
+    with (
+        tempfile.TemporaryDirectory(prefix="ahead-") as scratch,
+        mock.patch.object(GradedBuilds, "_entry", remembering),
+        mock.patch.object(workspace_service, "build_ahead"),
+    ):
+        execution = worker.execute(task, Path(scratch), JudgeProcess, addresses)
+    if execution.trouble:
+        raise RuntimeError(f"{task.notebook}: {execution.trouble}")
+    return [_files(tree) for tree in trees.values()]
+
+
+def _files(tree: Tree) -> Files:
+    return {source.path: None if source.data is None else source.data.decode() for source in tree.sources}

@@ -1,0 +1,105 @@
+"""The builds of a class: none is shared with another submission or an earlier execution, but for the course's own."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder import course
+from autograder.workspaces import built_ahead
+from autograder.workspaces.built_ahead import FILE, build_ahead, recorded
+from autograder.workspaces.colcon import look
+from autograder.workspaces.graded_builds import GradedBuilds
+
+sys.path.insert(0, str(Path(__file__).parent))
+from made_workspaces import interface_package, python_package
+from test_service import FakeJobs
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from autograder.workspaces.colcon import Build
+
+
+@pytest.fixture
+def ahead(tmp_path: Path) -> Path:
+    """An empty folder for what is built ahead."""
+    folder = tmp_path / "ahead"
+    folder.mkdir(mode=0o700)
+    return folder
+
+
+@pytest.fixture
+def execution(tmp_path: Path, ahead: Path) -> Callable[[], tuple[GradedBuilds, FakeJobs]]:
+    """Makes the builds of one more execution."""
+    folders = iter(tmp_path / f"execution-{number}" for number in range(10))
+
+    def begin() -> tuple[GradedBuilds, FakeJobs]:
+        folder = next(folders)
+        folder.mkdir(mode=0o700)
+        jobs = FakeJobs()
+        return GradedBuilds(folder, jobs, ahead), jobs
+
+    return begin
+
+
+def built(builds: GradedBuilds, workspace: Path) -> Build:
+    made = builds.build(look(workspace), None)
+    assert made.ok, made.log
+    return made
+
+
+@pytest.mark.parametrize("make", [python_package, interface_package])
+def test_the_same_sources_are_built_again_for_a_classmate_and_for_a_second_execution(
+    execution: Callable[[], tuple[GradedBuilds, FakeJobs]],
+    tmp_path: Path,
+    make: Callable[[Path], object],
+) -> None:
+    make(tmp_path / "ros2_ws" / "src" / "my_robot_interfaces")
+    for _ in range(3):
+        builds, jobs = execution()
+        assert not built(builds, tmp_path / "ros2_ws").reused
+        assert len(jobs.builds) == 1
+        built(builds, tmp_path / "ros2_ws")
+        assert len(jobs.builds) == 1  # the check after `colcon build` in the same notebook
+
+
+def test_a_package_of_the_course_is_built_ahead_whatever_its_comments_say(
+    execution: Callable[[], tuple[GradedBuilds, FakeJobs]],
+    ahead: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    interface_package(tmp_path / "course" / "my_robot_interfaces", comment="# the course's\n")
+    files: dict[str, str | None] = {}
+    for path in sorted((tmp_path / "course").rglob("*")):
+        files[str(path.relative_to(tmp_path / "course"))] = path.read_text() if path.is_file() else None
+    chapter = tmp_path / "solutions" / "01_chapter"
+    chapter.mkdir(parents=True)
+    (chapter / FILE).write_text(json.dumps([files]))
+    monkeypatch.setattr(course, "root", lambda: tmp_path)
+    monkeypatch.setattr(built_ahead, "_done", set())
+    jobs = FakeJobs()
+    build_ahead(ahead, jobs)
+    build_ahead(ahead, jobs)
+    assert jobs.builds == [["my_robot_interfaces"]]
+    assert "the course's" not in jobs.sources[0]
+
+    interface_package(tmp_path / "ros2_ws" / "src" / "my_robot_interfaces", comment="# a student's\n")
+    builds, jobs = execution()
+    assert built(builds, tmp_path / "ros2_ws").install is not None
+    assert not jobs.builds
+    other = interface_package(tmp_path / "other" / "src" / "my_robot_interfaces")
+    (other / "srv" / "AddTwoInts.srv").write_text("int32 a\n---\n")
+    built(builds, tmp_path / "other")
+    assert len(jobs.builds) == 1
+
+
+def test_the_chapter_has_recorded_its_interfaces() -> None:
+    alone = [files for files in recorded(course.root()) if "my_robot_pkg/package.xml" not in files]
+    definitions = [text for files in alone for path, text in files.items() if path.endswith(".srv")]
+    assert any("int64 sum" in (text or "") for text in definitions)
