@@ -268,11 +268,11 @@ NOTES = (
     "of them out alone.",
     "The floor runs the very cells that a grading run executes, and the judge's work, in processes that are warm "
     "already: no kernel, no box, no gradebook, no page. Notebooks that build a workspace are left out of the "
-    "comparison: the floor would build each of them, and a grading run builds each content once. It is measured with "
+    "comparison: the floor would build each of them, and a grading run has the course's own built. It is measured with "
     "many notebooks at once, as they are graded: a CPU second of a busy core does less than one of an idle core.",
-    "`autograder grade` takes a workspace that this machine has built before from its cache; stock nbgrader runs the "
-    "check as a student does, which builds. The students of this class hand in few different workspaces: in a class "
-    "where each one differs, a grading run builds each of them once.",
+    "`autograder grade` builds the packages of the course's own solutions once, ahead of all classes; stock nbgrader "
+    "runs the check as a student does, which builds. The students of this class hand in these packages: in a class "
+    "where each one differs, a grading run builds them for each notebook.",
 )
 
 
