@@ -149,7 +149,7 @@ def test_descriptors_are_arranged_and_files_locked_and_nobody_is_made_to_wait_fo
 
 @machines
 def test_hidden_memory_only_where_it_is_counted(machine: str) -> None:
-    for name in ("memfd_create", "shmget"):
+    for name in ("memfd_create", "shmget", "vmsplice"):
         assert decide(machine, name) == ALLOW
         assert decide(machine, name, hidden_memory=False) == ERRNO | errno.EPERM
 
