@@ -45,7 +45,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(options: argparse.Namespace) -> int:
-    """Write the files; 1 if a notebook's packages could not be built."""
+    """Write the files.
+
+    Raises:
+        RuntimeError: A notebook could not be executed.
+    """
     del options
     root = course.root()
     found: dict[Path, list[Files]] = {}
