@@ -10,7 +10,6 @@ from __future__ import annotations
 import contextlib
 import functools
 import os
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,6 +17,7 @@ import msgspec
 
 from autograder import course
 from autograder.messages.workspaces import Source
+from autograder.temporary_folders import HeldFolder
 from autograder.workspaces.builds import BuildTookTooLong
 from autograder.workspaces.colcon import look
 from autograder.workspaces.graded_builds import GradedBuilds
@@ -71,10 +71,10 @@ def build_ahead(folder: Path, jobs: Jobs) -> None:
 
 def _build(builds: GradedBuilds, files: Files) -> object:
     tree = Tree(tuple(Source(path, None if text is None else text.encode()) for path, text in files.items()))
-    with tempfile.TemporaryDirectory(prefix="built-ahead-") as name:
-        found = _written(tree, Path(name, "as-recorded"))
+    with HeldFolder("autograder-ahead-") as folder:
+        found = _written(tree, folder.path / "as-recorded")
         if all(map(holds_only_interfaces, found.packages)):
-            found = _written(simplified(tree), Path(name, "simplified"))
+            found = _written(simplified(tree), folder.path / "simplified")
         return builds.build(found, None)
 
 
