@@ -95,6 +95,25 @@ def _sent(event: Event) -> float:
     return sent if -ROUNDING <= arrived - sent <= ON_THE_WAY else arrived
 
 
+def burst_before(first: Event, unheard: int, wanted: float) -> str:
+    """What shows that a publisher sent messages in a burst before anybody could hear them, in words; else empty.
+
+    Those messages took a period each; more time than has passed since the publisher's program began they cannot take.
+
+    Args:
+        first: The first message that the judge heard.
+        unheard: The number of messages before it.
+        wanted: The reference's period, in seconds.
+    """
+    began = float(first.data.get("arrived", first.t)) - first.t
+    since = _sent(first) - began
+    # The jump to simulated time may have brought the first one that was heard forward.
+    periods = unheard - (first.sim is not None)
+    if periods * wanted * (1 - FASTER) <= since:
+        return ""
+    return f"{counted(unheard + 1, 'message')} in the first {since:.1f} s"
+
+
 def _exact(times: Sequence[float], wanted: float) -> Rate:
     gaps = [later - earlier for earlier, later in pairwise(times)]
     period = mean(gaps)

@@ -12,7 +12,7 @@ from autograder.kit.hangs import HANGS
 from autograder.kit.in_words import counted
 from autograder.kit.model import STEP, Advice, Bench, Finding, Mistake, Pace
 from autograder.kit.published_texts import Publisher
-from autograder.kit.rate import ROW, Rate, confirmed, rate_of, simulated
+from autograder.kit.rate import ROW, Rate, burst_before, confirmed, rate_of, simulated
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,6 +30,8 @@ SILENCE = {Pace.FAST: 3.0, Pace.REAL_TIME: 4.5}
 holds up all that follow it until its writer's next heartbeat, 3 s later (Fast DDS, ``heartbeatPeriod``)."""
 PERSISTENT = 13
 """Messages after which a publisher in real time is taken to go on: more than the ten that many a loop is made for."""
+LOST = 1
+"""Messages that a program may have sent before anybody can hear it, on a machine that is not busy."""
 PERSISTS = 1.0
 """Seconds in which a program must not end by itself once it was heard: simulated time may have gone by in a moment."""
 
@@ -76,6 +78,8 @@ class Hears:
     def _hear(self, bench: Bench, topic: str, period: float) -> None:
         enough = self._enough(bench.before) if bench.pace is Pace.REAL_TIME else self._messages
         _listen(bench, topic, enough, period)
+        if bench.wait_until(lambda evidence: _lost(evidence, topic) > LOST, 0.0):
+            bench.doubt()
         if bench.pace is Pace.FAST and bench.wait_until(self._is_simulated, 0.0):
             enough = self._long_run
             _listen(bench, topic, enough, period, LONG_STEP)
@@ -168,11 +172,21 @@ class Hears:
         if rate is None:
             return Finding(False, expected, f"{counted(len(messages), 'message')} in all")
         seen = f"one every {rate.period:.2g} s"
+        if burst := self._burst(evidence):
+            return Finding(False, expected, f"{seen}, but unevenly: {burst}")
         if not rate.even:
             seen += f", but unevenly: {_gaps(rate)} s apart"
         if before and confirmed(rate, before, wanted):
             return Finding(False, expected, seen)
         return Finding(rate.kept, expected, seen)
+
+    def _burst(self, evidence: Evidence) -> str:
+        """The burst in which it began to count before anybody could hear it, in words; empty for none."""
+        seen, expected = self.seen(evidence), self.expected(evidence)
+        if not seen.counters or not expected.counters:
+            return ""
+        unheard = min(seen.number_of_first - 1, seen.counters[0] - expected.counters[0])
+        return burst_before(seen.messages[seen.greetings], unheard, reference_period(evidence.reference))
 
     def _simulated_rate(self, evidence: Evidence | None) -> Rate | None:
         """The rate by the simulated clock; None where the messages do not follow that, or are too few."""
@@ -294,6 +308,12 @@ def _listen(bench: Bench, topic: str, enough: int, period: float, step: float = 
         quiet=SILENCE[bench.pace],
         step=step,
     )
+
+
+def _lost(evidence: Evidence, topic: str) -> int:
+    """The number of messages that were sent before the first that was heard."""
+    first = evidence.main.first("message", topic)
+    return int(first.data.get("number", 1)) - 1 if first is not None else 0
 
 
 def _gaps(rate: Rate) -> str:

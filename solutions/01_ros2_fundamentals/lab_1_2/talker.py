@@ -54,6 +54,8 @@ def counter(seen: Publisher, expected: Publisher) -> Finding:
     if steady and (more := uncounted(seen, expected)):
         found = f"{counted(more, 'message')} more before {found}"
     passed = steady and seen.went_on and starts_right(seen, expected)
+    if passed and (lost := seen.number_of_first - 1):
+        found += f" after {counted(lost, 'message')} before anybody could hear"
     return Finding(passed, row(expected.counters[:5]), found or "no whole number arrived")
 
 

@@ -27,6 +27,10 @@ SINGLE = 0
 """The order of a single number. A server may also answer it with both numbers that it begins with."""
 LAST_ORDER = 2
 """The order of the two goals after the bad ones, and of two equal ones that are sent at once."""
+NEXT_ORDER = 3
+"""The order of the goal that is sent as soon as the server has agreed to cancel the one before it."""
+OLDER_ORDER = 5
+"""The order of the goal beside which a younger one is canceled."""
 NO_TIME = 0.009
 """Seconds between two feedback messages that no pause makes: the shortest that a person would write is longer, and in a
 notebook none is made shorter than that. Two goals that never pause take turns of Python's 0.005 s."""
@@ -43,10 +47,10 @@ FIRST_TOO_LARGE = 47
 ALONE = 0
 TINY = range(1, 1 + len(SMALLEST))
 TWINS = range(TINY.stop, TINY.stop + 2)
-LONG, BESIDE, AGAIN, LONG_ALONE = range(TWINS.stop, TWINS.stop + 4)
+LONG, BESIDE, AGAIN, LONG_ALONE, NEXT, OLDER, YOUNGER = range(TWINS.stop, TWINS.stop + 7)
 """The goals of the first part by their numbers. In the second part the last two are good, those before them are bad."""
 LONG_ORDER = 46
-"""The order of the goal that is canceled: the largest that there is."""
+"""The order of the goals that are canceled: the largest that there is."""
 LONG_BEGINNING = 3
 """Numbers that the first feedback of a goal has at most: the two that it begins with, and a new one."""
 PACED = (ALONE, BESIDE, AGAIN)
@@ -73,6 +77,11 @@ class FibonacciGoal(Goal):
     def sequence(self) -> list[int]:
         """The numbers of the result."""
         return list(self.result.get("sequence", []))
+
+    @property
+    def grows(self) -> bool:
+        """True if each feedback message has one number more than the message before."""
+        return all(len(after) == len(before) + 1 for before, after in pairwise(self.partials))
 
     @property
     def told_before(self) -> int:
@@ -113,6 +122,12 @@ def to_be_canceled(evidence: Evidence) -> FibonacciGoal:
     """The goal that is canceled: beside a younger one, or alone where the server ended it for that one."""
     part = evidence.part(GOALS)
     return goal(part, LONG_ALONE if ended_by_a_younger(part) else LONG)
+
+
+def canceled_later(part: Part) -> list[FibonacciGoal]:
+    """The goals that were canceled after the first one: one to which a new goal came, and one beside an older goal."""
+    sent = [goal(part, number) for number in (LONG_ALONE, YOUNGER)]
+    return [] if ended_by_a_younger(part) else [seen for seen in sent if seen.order is not None]
 
 
 def takes_no_time(part: Part) -> bool:
@@ -224,9 +239,8 @@ def feedback_objection(evidence: Evidence, seen: FibonacciGoal) -> str:
 def feedback_slip(evidence: Evidence, seen: FibonacciGoal) -> str:
     """The fault in the feedback messages that came, in words, however many are missing before or after them."""
     wanted = expected_sequence(evidence, int(seen.order or 0))
-    grows = all(len(after) == len(before) + 1 for before, after in pairwise(seen.partials))
     right = all(partial == wanted[: len(partial)] for partial in seen.partials)
-    return "" if grows and right else f"order {seen.order}: {_first_messages(seen)}"
+    return "" if seen.grows and right else f"order {seen.order}: {_first_messages(seen)}"
 
 
 def _first_messages(seen: FibonacciGoal) -> str:

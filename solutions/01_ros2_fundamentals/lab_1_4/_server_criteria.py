@@ -13,11 +13,15 @@ from lab_1_4._goals import (
     FIRST_TOO_LARGE,
     GOALS,
     LAST_ORDER,
+    LONG,
+    NEXT,
+    OLDER,
     ORDERS,
     ROUNDS_LEFT,
     TWINS,
     FibonacciGoal,
     all_goals,
+    canceled_later,
     ended_by_a_younger,
     expected_sequence,
     feedback_objection,
@@ -40,7 +44,7 @@ from autograder.kit.model import Finding
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from autograder.kit.evidence import Evidence
+    from autograder.kit.evidence import Evidence, Part
 
 
 def of_one_server(judge: Callable[[Evidence], Finding]) -> Callable[[Evidence], Finding]:
@@ -104,7 +108,7 @@ def gives_feedback(evidence: Evidence) -> Finding:
     So does that of the large goal, if two at once do not disturb each other.
     """
     goals, beside = paced_goals_alone(evidence), goal(evidence.part(GOALS), BESIDE)
-    if beside.over and not _fault_beside_another(evidence, beside):
+    if beside.over and not fault_beside_another(evidence, beside):
         goals.append(beside)
     wrong = [_told(evidence, seen, text) for seen in goals if (text := feedback_objection(evidence, seen))]
     if tells_at_the_end(evidence.part(GOALS)):
@@ -114,12 +118,18 @@ def gives_feedback(evidence: Evidence) -> Finding:
 
 @of_one_server
 def serves_two_at_once(evidence: Evidence) -> Finding:
-    """Two equal goals at once are right, and one beside the goal that is canceled, with its feedback."""
+    """Two equal goals at once are right, and so are those beside a goal that is canceled, which ends as it should."""
     part = evidence.part(GOALS)
     twins, beside = [goal(part, number) for number in TWINS], goal(part, BESIDE)
     wrong = [text for one in twins if one.order is not None and (text := objection(evidence, one))]
-    if beside.order is not None and (text := _fault_beside_another(evidence, beside)):
-        wrong.append(text)
+    others = (beside, goal(part, NEXT), goal(part, OLDER))
+    wrong += [
+        text for one in others if one.order is not None and (text := fault_beside_another(evidence, one))
+    ]
+    wrong += [
+        f"order {one.order}, which was to be canceled: status {status_text(one.status)}"
+        for one in goes_on_beside_another(part)
+    ]
     if (older := ended_by_a_younger(part)) is not None:
         wrong.insert(0, f"the older goal ended as {status_text(older.status)} when the younger one came")
     asked = beside.order is not None
@@ -127,7 +137,17 @@ def serves_two_at_once(evidence: Evidence) -> Finding:
     return Finding(asked and not wrong, "each of two goals at once ends with its own sequence", seen)
 
 
-def _fault_beside_another(evidence: Evidence, seen: FibonacciGoal) -> str:
+def goes_on_beside_another(part: Part) -> list[FibonacciGoal]:
+    """The goals that the server agreed to cancel and went on with, although it can cancel a goal.
+
+    Of the first one that is known only if a goal that had the server to itself was canceled afterwards.
+    """
+    first, later = goal(part, LONG), canceled_later(part)
+    known = [first, *later] if any(one.status == CANCELED for one in (first, *later)) else []
+    return [one for one in known if one.cancel_accepted and one.status != CANCELED]
+
+
+def fault_beside_another(evidence: Evidence, seen: FibonacciGoal) -> str:
     return objection(evidence, seen) or feedback_slip(evidence, seen)
 
 
@@ -136,11 +156,19 @@ def lets_cancel(evidence: Evidence) -> Finding:
     """A cancel is accepted, ends the goal soon, and the part that was computed comes back."""
     long = to_be_canceled(evidence)
     expected = "the cancel is accepted, the goal ends as CANCELED with the numbers found so far"
-    seen = _cancel_objection(evidence, long)
+    seen = cancel_objection(evidence, long) or _refused_later(evidence)
     return Finding(not seen, expected, seen or f"CANCELED with {len(long.sequence)} numbers")
 
 
-def _cancel_objection(evidence: Evidence, long: FibonacciGoal) -> str:
+def _refused_later(evidence: Evidence) -> str:
+    refused = [one for one in canceled_later(evidence.part(GOALS)) if not one.cancel_accepted]
+    return (
+        f"a later cancel request was not accepted; status {status_text(refused[0].status)}" if refused else ""
+    )
+
+
+def cancel_objection(evidence: Evidence, long: FibonacciGoal) -> str:
+    """The fault in how a goal was canceled, in words; empty if there is none."""
     if long.order is None:
         return "not reached"
     if not long.accepted:

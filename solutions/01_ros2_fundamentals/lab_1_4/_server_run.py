@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from statistics import median
 from typing import TYPE_CHECKING
 
 from lab_1_4._goals import (
+    ALONE,
     BAD_ORDERS,
     BESIDE,
     FIRST_TOO_LARGE,
@@ -12,18 +14,23 @@ from lab_1_4._goals import (
     LARGE_ORDER,
     LAST_ORDER,
     LONG,
-    LONG_ALONE,
     LONG_ORDER,
+    NEXT_ORDER,
+    OLDER,
+    OLDER_ORDER,
     ORDERS,
     PACED,
+    ROUNDS_LEFT,
     SMALLEST,
     TWINS,
+    YOUNGER,
     FibonacciGoal,
     ended_by_a_younger,
     goal,
     is_told_at_the_end,
 )
 
+from autograder.kit.goals_seen import CANCELED
 from autograder.kit.model import Bench, Pace
 
 if TYPE_CHECKING:
@@ -93,12 +100,17 @@ def send_good_goals(bench: Bench, caller: ActionCaller) -> bool:
         return False
     caller.send_goal(order=LONG_ORDER)
     _await_feedback(bench, LONG, 1)
+    _wait_half_a_round(bench)
     caller.send_goal(order=LARGE_ORDER)
     _await_feedback(bench, LONG, CANCEL_AFTER)
     if bench.wait_until(lambda e: ended_by_a_younger(e.main) is not None, 0.0):
-        return ended(bench, BESIDE, quiet=SILENCE[bench.pace]) and _goals_alone(bench, caller, order)
+        if not ended(bench, BESIDE, quiet=SILENCE[bench.pace]) or not one_by_one(bench, caller, order):
+            return False
+        # A policy of one goal at a time must not cost the points for canceling.
+        _cancel_alone(bench, caller, after=CANCEL_AFTER)
+        return True
     caller.cancel(LONG)
-    honoured = _await_cancel(bench)
+    honoured = _await_cancel(bench, LONG)
     if goal(bench.seen(), BESIDE).accepted is None:
         return True  # one thread, and it is busy: the younger goal has not been read either
     if not ended(bench, BESIDE, quiet=SILENCE[bench.pace]) or not one_by_one(bench, caller, order):
@@ -107,19 +119,58 @@ def send_good_goals(bench: Bench, caller: ActionCaller) -> bool:
     bench.wait_until(lambda e: all(_tells_all(goal(e.main, n)) for n in PACED), GOAL_LIMIT, quiet=AFTERMATH)
     if not honoured:
         # Where two threads work on two goals, nobody reads the cancel before one of them is done.
-        _await_cancel(bench)
-    return True
+        _await_cancel(bench, LONG)
+    return _cancel_more(bench, caller)
 
 
-def _goals_alone(bench: Bench, caller: ActionCaller, order: int) -> bool:
-    """The goals that are left to send to a server that serves one at a time: that policy must not cost other points."""
-    if not one_by_one(bench, caller, order):
-        return False
+def _cancel_more(bench: Bench, caller: ActionCaller) -> bool:
+    """Cancel a goal to which a new one comes, and the younger one of two; False if a goal does not end.
+
+    A server that agreed to cancel the first goal and went on with it is sent one more to cancel, alone.
+    """
+    first, beside = (goal(bench.seen(), number) for number in (LONG, BESIDE))
+    if first.cancel_accepted and first.status != CANCELED and ended(bench, LONG):
+        _cancel_alone(bench, caller, after=1)
+    in_time = first.status == CANCELED and first.sent_after(first.cancel_answered_at) <= ROUNDS_LEFT
+    if not (in_time and beside.accepted):
+        return True
+    if not _cancel_alone(bench, caller, after=1, then=NEXT_ORDER):
+        return True
+    caller.send_goal(order=OLDER_ORDER)
+    _await_feedback(bench, OLDER, 1)
+    _wait_half_a_round(bench)
     caller.send_goal(order=LONG_ORDER)
-    _await_feedback(bench, LONG_ALONE, CANCEL_AFTER)
-    caller.cancel(LONG_ALONE)
-    _await_cancel(bench, LONG_ALONE)
+    _await_feedback(bench, YOUNGER, 1)
+    caller.cancel(YOUNGER)
+    if not ended(bench, OLDER):
+        return False
+    _await_cancel(bench, YOUNGER)
     return True
+
+
+def _cancel_alone(bench: Bench, caller: ActionCaller, *, after: int, then: int | None = None) -> bool:
+    """Cancel a goal that has the server to itself; whether it was canceled.
+
+    Args:
+        bench: Where it happens.
+        caller: The judge's client.
+        after: Feedback messages after which the cancel is asked for.
+        then: The order of a goal that is sent as soon as the server has agreed, before it looks at the request.
+    """
+    number = caller.send_goal(order=LONG_ORDER)
+    _await_feedback(bench, number, after)
+    caller.cancel(number)
+    if then is not None:
+        bench.wait_until(lambda e: goal(e.main, number).cancel_accepted is not None, QUIET[bench.pace])
+        if not ended(bench, caller.send_goal(order=then)):
+            return False
+    return _await_cancel(bench, number) and goal(bench.seen(), number).status == CANCELED
+
+
+def _wait_half_a_round(bench: Bench) -> None:
+    """Wait for half of the time that a number takes: then two goals are looked after in turn, and not by chance."""
+    pauses = goal(bench.seen(), ALONE).pauses
+    bench.wait_until(lambda _: False, median(pauses) / 2 if pauses else 0.0)
 
 
 def one_by_one(bench: Bench, caller: ActionCaller, *orders: int) -> bool:
@@ -145,7 +196,7 @@ def _tells_all(seen: FibonacciGoal) -> bool:
     return len(seen.feedback) >= int(seen.order or 0) - 2
 
 
-def _await_cancel(bench: Bench, number: int = LONG) -> bool:
+def _await_cancel(bench: Bench, number: int) -> bool:
     """Wait until the cancel was honoured or refused, but not for ever; whether it was."""
     if bench.wait_until(lambda e: _cancel_is_over(goal(e.main, number)), CANCEL_LIMIT[bench.pace]):
         return True

@@ -1,8 +1,10 @@
 """Lab 1.4: an action server that counts Fibonacci numbers, with feedback, cancel and refusal.
 
 The judge is the client. In one run of the server it sends a goal alone, many that take no time, and the largest one,
-which it cancels while a younger goal goes on beside it; then the first goal again. Where the server ends the older goal
-for the younger one, the largest is sent and canceled once more, alone. In another run it sends orders that must be
+which it cancels while a younger goal goes on beside it; then the first goal again. A server that has canceled rightly
+is asked to cancel twice more: a goal to which a new one comes as soon as the server has agreed, and the younger one of
+two. If the server ends the older goal for the younger one, or agrees to cancel it and goes on, the largest is sent and
+canceled once more, alone. In another run it sends orders that must be
 refused, and two good goals to see that the node is still alive. A server may pace its work as it likes, so orders are
 small where nothing else is going on.
 """
@@ -20,10 +22,15 @@ from lab_1_4._goals import (
     FIRST_TOO_LARGE,
     GOALS,
     LAST_ORDER,
+    LONG_ALONE,
     LONG_BEGINNING,
+    NEXT,
+    OLDER,
     ROUNDS_LEFT,
     TWINS,
+    YOUNGER,
     all_goals,
+    canceled_later,
     ended_by_a_younger,
     expected_sequence,
     feedback_objection,
@@ -72,7 +79,7 @@ def only_bad_orders(seen: Evidence, _: Evidence) -> bool | Advice | None:
 def goal_rejected(seen: Evidence, _: Evidence) -> Advice | None:
     """A good goal is refused."""
     last = [one for one in all_goals(seen.part(BAD_ORDERS)) if one.order == LAST_ORDER]
-    beside = [goal(seen.part(GOALS), number) for number in (*TWINS, BESIDE)]
+    beside = [goal(seen.part(GOALS), number) for number in (*TWINS, BESIDE, LONG_ALONE, NEXT, OLDER, YOUNGER)]
     good = (*good_goals(seen), to_be_canceled(seen), *beside, *last)
     refused = [one for one in good if one.accepted is False]
     if not refused or traceback_of(seen):
@@ -122,14 +129,16 @@ server.knows(
 @server.mistake("goals_mixed_up")
 def goals_mixed_up(seen: Evidence, _: Evidence) -> Advice | None:
     """Alone it is right, two at once are not."""
-    alone, beside, again = (goal(seen.part(GOALS), number) for number in (ALONE, BESIDE, AGAIN))
+    part = seen.part(GOALS)
+    alone, beside, again, *later = (goal(part, number) for number in (ALONE, BESIDE, AGAIN, NEXT, OLDER))
     if objection(seen, alone) or feedback_objection(seen, alone):
         return None
-    ended = [one for one in (beside, again) if one.status is not None]
-    slips = [text for one in ended if (text := feedback_slip(seen, one))]
-    wrong = slips or [text for one in ended if (text := objection(seen, one))]
-    # Where the numbers of two goals get into one list, they grow too large, and that is an exception, too.
-    if not wrong or (traceback_of(seen) and not slips):
+    ended = [one for one in (beside, again, *later) if one.status is not None]
+    slips = [(one, text) for one in ended if (text := feedback_slip(seen, one))]
+    wrong = slips or [(one, text) for one in ended if (text := objection(seen, one))]
+    astray = criteria.goes_on_beside_another(part)
+    # If the numbers of two goals get into one list, they grow too large, and that is an exception, too.
+    if not (wrong or astray) or (traceback_of(seen) and not (slips or astray)):
         return None
     if far := next((one for one in ended if one.partials and len(one.partials[0]) > LONG_BEGINNING), None):
         return Advice(
@@ -137,21 +146,46 @@ def goals_mixed_up(seen: Evidence, _: Evidence) -> Advice | None:
             "Make the list anew in each call of the execute callback, with [0, 1] in it. What is stored in self lives "
             "on after each goal.",
         )
-    again_right = again in ended and not (objection(seen, again) or feedback_slip(seen, again))
-    if again_right and beside.status == SUCCEEDED:
+    if (
+        not astray
+        and [one for one, _ in wrong] == [beside]
+        and again in ended
+        and beside.status == SUCCEEDED
+        and beside.grows
+    ):
         return None  # two at once are right, and large numbers are not
+    words = (
+        wrong[0][1] if wrong else f"order {astray[0].order}: it goes on, although your server agreed to stop"
+    )
     canceled_at = to_be_canceled(seen).cancel_answered_at
-    if to_be_canceled(seen).cancel_accepted and beside.sent_after(canceled_at) <= ROUNDS_LEFT:
+    stopped_too = to_be_canceled(seen).cancel_accepted and beside.sent_after(canceled_at) <= ROUNDS_LEFT
+    if astray or wrong[0][0] != beside or (stopped_too and not slips):
         return Advice(
-            f"When one goal was canceled, another one went wrong ({wrong[0]}).",
+            f"When one goal was canceled, a goal went wrong ({words}).",
             "Ask the goal handle of each goal: its is_cancel_requested is True only for the goal that is to stop. A "
-            "flag or a list in self belongs to all goals, and keeps its value for later ones.",
+            "flag, a goal handle or a list in self belongs to all goals, and keeps its value for later ones.",
         )
     return Advice(
-        f"One goal alone is right, but of two at once one is not ({wrong[0]}): they disturb each other.",
+        f"One goal alone is right, but of two at once one is not ({words}): they disturb each other.",
         "Keep the sequence in a variable of the execute callback. What is stored in self is shared by all goals, and "
         "lives on after each.",
     )
+
+
+server.knows(
+    "cancel_not_accepted",
+    lambda seen, _: next(
+        (
+            one
+            for one in canceled_later(seen.part(GOALS))
+            if one.cancel_accepted is False and one.status is None
+        ),
+        None,
+    ),
+    "Your server agreed to cancel one goal, and refused to cancel a later one, of order {.order}.",
+    "Let the cancel_callback return CancelResponse.ACCEPT each time that it is called, whatever happened before.",
+    certain=True,
+)
 
 
 @server.mistake("wrong_sequence", certain=True, before="cancel_not_accepted")
