@@ -54,6 +54,8 @@ from autograder.kit.recipes.action_server import SendsGoals, is_quick
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence
 
+CANCELED_UNASKED = "with event CANCELED"
+"""In what rclpy raises if canceled() is called for a goal that no client has asked to cancel."""
 server = Draft(
     "lab_1_4.server",
     "Lab 1.4 · An action server that counts",
@@ -137,8 +139,9 @@ def goals_mixed_up(seen: Evidence, _: Evidence) -> Advice | None:
     slips = [(one, text) for one in ended if (text := feedback_slip(seen, one))]
     wrong = slips or [(one, text) for one in ended if (text := objection(seen, one))]
     astray = criteria.goes_on_beside_another(part)
+    unasked = CANCELED_UNASKED in traceback_of(seen)
     # If the numbers of two goals get into one list, they grow too large, and that is an exception, too.
-    if not (wrong or astray) or (traceback_of(seen) and not (slips or astray)):
+    if not (wrong or astray or unasked) or (traceback_of(seen) and not (slips or astray or unasked)):
         return None
     if far := next((one for one in ended if one.partials and len(one.partials[0]) > LONG_BEGINNING), None):
         return Advice(
@@ -146,27 +149,22 @@ def goals_mixed_up(seen: Evidence, _: Evidence) -> Advice | None:
             "Make the list anew in each call of the execute callback, with [0, 1] in it. What is stored in self lives "
             "on after each goal.",
         )
-    if (
-        not astray
-        and [one for one, _ in wrong] == [beside]
-        and again in ended
-        and beside.status == SUCCEEDED
-        and beside.grows
-    ):
+    only_beside = [one for one, _ in wrong] == [beside] and again in ended
+    if only_beside and not (astray or unasked) and beside.status == SUCCEEDED and beside.grows:
         return None  # two at once are right, and large numbers are not
-    words = (
-        wrong[0][1] if wrong else f"order {astray[0].order}: it goes on, although your server agreed to stop"
-    )
+    words = [text for _, text in wrong]
+    words += [f"order {one.order}: it goes on, although your server agreed to stop" for one in astray]
+    words.append("canceled() was called for a goal that nobody had asked to cancel")
     canceled_at = to_be_canceled(seen).cancel_answered_at
     stopped_too = to_be_canceled(seen).cancel_accepted and beside.sent_after(canceled_at) <= ROUNDS_LEFT
-    if astray or wrong[0][0] != beside or (stopped_too and not slips):
+    if astray or unasked or wrong[0][0] != beside or (stopped_too and not slips):
         return Advice(
-            f"When one goal was canceled, a goal went wrong ({words}).",
+            f"When one goal was canceled, a goal went wrong ({words[0]}).",
             "Ask the goal handle of each goal: its is_cancel_requested is True only for the goal that is to stop. A "
             "flag, a goal handle or a list in self belongs to all goals, and keeps its value for later ones.",
         )
     return Advice(
-        f"One goal alone is right, but of two at once one is not ({words}): they disturb each other.",
+        f"One goal alone is right, but of two at once one is not ({words[0]}): they disturb each other.",
         "Keep the sequence in a variable of the execute callback. What is stored in self is shared by all goals, and "
         "lives on after each.",
     )
