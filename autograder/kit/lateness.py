@@ -15,6 +15,7 @@ from autograder.kit.model import mistake
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from autograder.kit.counterparts import ActionCounterpart
     from autograder.kit.evidence import Event, Evidence, Part
     from autograder.kit.model import Bench, Mistake
 
@@ -100,6 +101,25 @@ def _waited_since(part: Part, beginning: Event | None, seconds: float) -> bool:
     # A process may take its time to end; what it says of its end comes before that.
     last = next((event for event in reversed(part.events) if event.kind in ("output", "log")), part.ending)
     return last.t - beginning.t + spared(part) >= seconds
+
+
+def await_goal(bench: Bench, server: ActionCounterpart, within: float) -> bool:
+    """Wait for the subject's goal, and ask the subject's node something else while the answer is held back.
+
+    Any node on the graph may do so: a client that takes the first event for the answer is right only by chance.
+
+    Args:
+        bench: Where it happens.
+        server: The judge's server.
+        within: Seconds that the goal may take.
+
+    Returns:
+        Whether the goal came and was answered.
+    """
+    came = bench.wait_until(lambda evidence: bool(evidence.main.of("goal")), within)
+    if came:
+        bench.settle()
+    return server.await_goal(within if came else 0.0)
 
 
 def hold_back(bench: Bench, kind: str) -> None:

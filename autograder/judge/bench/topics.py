@@ -47,7 +47,7 @@ class RecordedEndpoint:
     def _match(self, info: Any) -> None:
         self.matched = info.current_count
         # All that it ever met: who comes and goes at once is told of once, and nobody is there any more.
-        self._recorder.record("matched", self._topic, count=info.total_count)
+        self._recorder.record("matched", self._topic, count=info.total_count, now=info.current_count)
 
     def _mismatch(self, info: Any) -> None:
         policy = str(qos_policy_name_from_kind(info.last_policy_kind)).lower()

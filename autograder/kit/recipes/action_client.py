@@ -21,6 +21,7 @@ from autograder.kit.lateness import (
     ANSWERS_SOON,
     SOON,
     again_while,
+    await_goal,
     called_before_server,
     called_too_early,
     hold_back,
@@ -168,7 +169,7 @@ def works_on_a_goal(
     result = bench.random.sample(range(10**9, 2 * 10**9), length - 1)
     # Neither the first number nor the last: who leaves out either of these cannot make up for it.
     result.insert(-1, result[1])
-    done = server.await_goal(GOAL_LIMIT)
+    done = await_goal(bench, server, GOAL_LIMIT)
     if done:
         # The first feedback must not come together with the goal's answer: what a client that takes in one event and
         # ends has then would be chance. Who goes on asks for the result next.

@@ -29,6 +29,8 @@ PATIENCE = {Pace.FAST: 1.0, Pace.REAL_TIME: 3.0}
 """Seconds of wall time in which a text that was sent must have been said."""
 BEFORE = 1.0
 """Seconds (simulated where it follows the clock) before the first text, in which nothing can have been heard."""
+REPLACED = 2
+"""Subscriptions that were replaced by another one which show that it is made again for each text."""
 AFTERMATH = 2.5
 """Seconds (likewise) after the last text, in which nothing may be made up or said again."""
 
@@ -127,6 +129,7 @@ class Speaks:
             *common.OTHER_CRASHES,
             OWN,
             Mistake("ended_too_early", common.ended_too_early),
+            Mistake("not_logged", _subscribes_again, certain=True),
             *HANGS,
             common.never_spun("subscription"),
             common.went_deaf("subscription"),
@@ -227,6 +230,17 @@ def _missing(evidence: Evidence) -> list[Event]:
     return [event for event in silent if event not in at_pace]
 
 
+def _replaced(evidence: Evidence) -> int:
+    """The number of its subscriptions that another one has replaced since the first text was sent."""
+    sent, part = _sent(evidence), evidence.main
+    if not sent:
+        return 0
+    met = [event.data for event in part.of("matched", sent[0].name) if _is_before(part, sent[0], event)]
+    gone = [data["count"] - data.get("now", data["count"]) for data in met]
+    # One that went away at the end of the program is followed by none.
+    return max((gone[i] for i in range(len(met) - 1) if met[-1]["count"] > met[i]["count"]), default=0)
+
+
 def _expected_texts(evidence: Evidence) -> int:
     """Texts that are sent to a listener that says all of them."""
     return SIMULATED if _is_simulated(evidence) else 1 + AT_PACE + SINGLY
@@ -241,6 +255,8 @@ def says_every_text(evidence: Evidence) -> Finding:
     if missing:
         seen += f"; not “{_text(missing[0])}”"
     complete = len(sent) >= _expected_texts(evidence) and not missing
+    if complete and (replaced := _replaced(evidence)) >= REPLACED:
+        return Finding(False, "one subscription, which hears every string", f"{replaced + 1} one after another")
     if sent and not missing and not complete:
         seen += ", and then it no longer answered the judge"
     return Finding(complete, "every string in its log", seen)
@@ -316,6 +332,18 @@ def _changed_text(evidence: Evidence) -> Advice | None:
                 "Log the field data of the message as it is, without strip, replace, slices or other changes.",
             )
     return None
+
+
+def _subscribes_again(evidence: Evidence) -> Advice | None:
+    """It makes a new subscription for each text: what is sent between two of them is lost."""
+    if not _replaced(evidence):
+        return None
+    return Advice(
+        "Your program takes its subscription away and makes a new one after a string has come. A string that is sent "
+        "in between is lost, so how many it logs is chance.",
+        "Call create_subscription once, before you spin, and log in its callback. wait_for_message makes a "
+        "subscription of its own each time that you call it.",
+    )
 
 
 def _not_logged(evidence: Evidence) -> Advice | None:

@@ -30,6 +30,7 @@ from autograder.kit.lateness import (
     ANSWERS_SOON,
     SOON,
     again_while,
+    await_goal,
     hold_back,
     meets_late_action,
     meets_present,
@@ -175,7 +176,7 @@ def serve_goal(bench: Bench, name: str, *, accept: bool, pause: float, late: flo
     server = bench.serve_action(
         action, type_name, accept_cancel=accept, goal_answer_takes=held, cancel_answer_takes=held
     )
-    if not server.await_goal(GOAL_LIMIT):
+    if not await_goal(bench, server, GOAL_LIMIT):
         return
     sequence = [0, 1]
     cancelled = send_feedback_until_cancelled(bench, server, sequence, pause)
