@@ -417,13 +417,34 @@ def _surely_without_node(evidence: Evidence) -> str:
     return "" if evidence.main.returned is not None else _without_node(evidence)
 
 
+def _never_constructed(part: Part) -> bool:
+    """True if the constructor of a notebook's class never came to its end."""
+    return part.first("subject", "never_constructed") is not None
+
+
+def _works(part: Part) -> bool:
+    return _worked(part, "subscription")
+
+
 NEVER_CONSTRUCTED = mistake(
     "never_ended",
-    lambda evidence: any(part.first("subject", "never_constructed") for part in evidence),
+    lambda evidence: any(_never_constructed(part) and not _works(part) for part in evidence),
     "Your node is never finished: its __init__ has a loop without an end, or waits for something.",
     "Let __init__ only make what the node needs, and leave the work to callbacks: no loop and no wait in it.",
     certain=True,
 )
+
+
+def constructor_remark(evidence: Evidence) -> str:
+    """A word on a class that does its work in its constructor, which is right as a program; else empty."""
+    if not any(_never_constructed(part) and _works(part) for part in evidence):
+        return ""
+    return (
+        "Your node works inside its __init__, which never comes to its end: the line that makes the node never comes "
+        "to its end either. Let __init__ only make what the node needs, and leave the work to callbacks."
+    )
+
+
 NOT_BEGUN = Mistake("not_written", _returned_at_once, certain=True)
 """A function as it was handed out: to be asked before anything is said of how it asks, waits or gives up."""
 NOTHING_THERE = (

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
+from autograder.kit.common_mistakes import constructor_remark
 from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Mistake
 
 if TYPE_CHECKING:
@@ -194,6 +195,7 @@ class Draft(Generic[View]):
             criteria=tuple(self._criteria),
             mistakes=tuple(mistakes),
             roles=self._recipe.roles,
+            remarks=(*more.pop("remarks", ()), constructor_remark),
             **more,
         )
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from autograder.kit.evidence import REPORTS, Part
@@ -54,6 +53,22 @@ def _parsed(text: str) -> Process | None:
 
 
 def remappings(argv: Sequence[str]) -> list[tuple[str, str]]:
-    """The rules ``from:=to`` that a command line hands to its node with ``-r`` or ``--remap``."""
-    rules = [rule for flag, rule in pairwise(argv) if flag in ("-r", "--remap")]
-    return [(old, new) for old, found, new in (rule.partition(":=") for rule in rules) if found]
+    """The rules ``from:=to`` that a command line hands to its node."""
+    return [(old, new) for _, old, new in placed_remappings(argv)]
+
+
+def placed_remappings(argv: Sequence[str]) -> list[tuple[range, str, str]]:
+    """The rules ``from:=to`` of a command line, each with the places of its words.
+
+    Behind ``--ros-args`` a rule follows ``-r`` or ``--remap``. Elsewhere a word alone is one: rcl calls that form
+    deprecated, and obeys it (rcl/arguments.h).
+    """
+    found, of_ros = [], False
+    for place, word in enumerate(argv):
+        if word in ("--ros-args", "--"):
+            of_ros = word == "--ros-args"
+        flagged = place > 0 and argv[place - 1] in ("-r", "--remap")
+        old, is_rule, new = word.partition(":=")
+        if is_rule and (flagged or not of_ros):
+            found.append((range(place - flagged, place + 1), old, new))
+    return found

@@ -108,6 +108,16 @@ PATH = "/home/student/ros2_ws/install/my_robot_pkg/lib/my_robot_pkg"
             ("python3", f"{PATH}/talker", *RULES, "--remap", "mood:=chatter", "--remap", f"~/chatter:={NEW}"),
             ("my_robot_pkg", "talker", "--ros-args", "--remap", "mood:=chatter"),
         ),
+        (
+            (f"{PATH}/talker", f"chatter:={NEW}", "7", "--ros-args"),
+            ("my_robot_pkg", "talker", "7", "--ros-args"),
+        ),
+        (
+            (f"{PATH}/talker", "--ros-args", "--", f"/chatter:={NEW}"),
+            ("my_robot_pkg", "talker", "--ros-args", "--"),
+        ),
+        # Given no rule, or none that is obeyed: what else is in its arguments is left out.
+        ((f"{PATH}/talker", "7", "--ros-args", f"chatter:={NEW}"), ("my_robot_pkg", "talker")),
     ],
 )
 def test_a_program_without_its_rules_keeps_its_other_arguments(
@@ -122,10 +132,9 @@ def test_a_program_without_its_rules_keeps_its_other_arguments(
         ("python3", "talker.py", *RULES),
         ("python3", "-m", "my_robot_pkg.talker", *RULES),
         ("python3", f"{PATH}/--prefix", *RULES),
-        ("python3", f"{PATH}/talker", "--ros-args"),
     ],
 )
-def test_what_is_no_packages_program_or_has_no_rule_is_not_started_again(argv: tuple[str, ...]) -> None:
+def test_what_is_no_packages_program_is_not_started_again(argv: tuple[str, ...]) -> None:
     assert _launched(argv).without_rules == []
 
 

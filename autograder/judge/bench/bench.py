@@ -12,7 +12,7 @@ from autograder.judge.bench.announcements import Announcements, process_of
 from autograder.judge.bench.decoy_nodes import DecoyNodes
 from autograder.judge.bench.interfaces import expected_hashes, served_hashes, service_fields
 from autograder.judge.bench.presence import GRAPH_POLL, MATCH, Presence
-from autograder.judge.bench.recorder import Recorder, usable
+from autograder.judge.bench.recorder import Recorder
 from autograder.judge.bench.services import Answer, RecordedCaller, RecordedServer
 from autograder.judge.bench.subject_time import SubjectTime, answers
 from autograder.judge.bench.topics import LogReader, RecordedPublisher, RecordedSubscription
@@ -138,7 +138,7 @@ class TestBench:
         self._presence.note_short_life()
         # What Ctrl-C has ended may be on the graph for a while; a new participant never hears of it.
         self._clean = self._subject.ended and not self._recorder.part().of("subject", INTERRUPTED)
-        self.parts.append(usable(self._recorder.part()))
+        self.parts.append(self._recorder.part())
         self._subject.stop()
         self._open.close()
         self._gone, self._there = self._gone | self._there, set()

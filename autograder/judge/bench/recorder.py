@@ -180,14 +180,6 @@ class Recorder:
                     self._changed.wait(min(left, poll))
 
 
-def usable(part: Part) -> Part:
-    """The part; of a node whose constructor never ended only its endpoints count: nobody could use it."""
-    if part.first("subject", "never_constructed") is None:
-        return part
-    kept = ("subject", "stack", "interface")
-    return Part(part.name, part.inputs, [event for event in part.events if event.kind in kept])
-
-
 def _is_speech(event: Event) -> bool:
     """True if it is something that a subject said; what a runner reports of a build or a launch is not."""
     return event.kind in _SPEECH and not str(event.data.get("text", "")).startswith(REPORTS)

@@ -33,7 +33,7 @@ MAX_STACK = 50_000
 MAX_SECONDS = 3600.0
 """The longest time, in seconds, that is believed when the notebook tells one; nothing of the course takes as long."""
 CONSTRUCT_LIMIT = 10.0
-"""Seconds of wall time in which a node's constructor must have come to its end."""
+"""Seconds of wall time after which a node whose constructor has not come to its end is no longer waited for."""
 NEWS_LIMIT = 20.0
 """Seconds that a notebook's participant may take in all runs of a check to know what the judge has put up; it takes
 milliseconds."""
@@ -51,7 +51,7 @@ class RemoteSubject:
 
         Args:
             lines: The notebook's end.
-            is_class: The subject is a class, whose constructor must come to its end before anything else.
+            is_class: The subject is a class, whose constructor comes to its end before anything else, if it does.
         """
         # Drawn for each check, so that nobody who writes a node can have its name in it.
         self.keeper = f"_check_keeper_{secrets.token_hex(8)}"
@@ -113,9 +113,8 @@ class RemoteSubject:
         if self._is_class and not recorder.wait(
             lambda: self._marker is not None or self.ended, CONSTRUCT_LIMIT
         ):
-            recorder.record("stack", "subject", text=self.stack())
+            # It is looked at as a program is, which may do all of its work in there.
             recorder.record("subject", "never_constructed")
-            self._ended = True
 
     def interrupt(self) -> None:
         """Let the notebook press Ctrl-C at the process of a path; what runs in the kernel goes on."""

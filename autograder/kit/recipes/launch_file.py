@@ -1,15 +1,14 @@
 """A launch file that starts two programs, one that publishes and one that says what it hears, and moves their topic.
 
 The judge hears the one and talks to the other under the new name. The programs stay as they are: what the launch tells
-of its processes shows which of them were given a rule. Each of these is then started once more without it, as a program
-in whose code the topic has the new name is there all the same.
+of its processes shows which of them were given a rule. Each program is then started once more without its rule: one in
+whose code the topic has the new name is there all the same.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import re2
@@ -18,7 +17,7 @@ from autograder.kit import common_mistakes as common
 from autograder.kit import workspace_mistakes as workspace
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.evidence import Evidence
-from autograder.kit.launch_report import Process, processes, remappings
+from autograder.kit.launch_report import Process, placed_remappings, processes, remappings
 from autograder.kit.model import Advice, Bench, Mistake, Pace
 from autograder.kit.runners import ALONE
 from autograder.kit.workspace_report import BUILDING, report_of
@@ -108,11 +107,18 @@ class Launched:
 
     @property
     def without_rules(self) -> list[tuple[str, ...]]:
-        """The programs under the new name that were given a rule, without it: package, program and arguments."""
+        """The programs under the new name as they are started without rules: package, program and arguments.
+
+        One that was given no rule for the topic is started without arguments: a rule of another form may be in them.
+        """
         ends = self._sides[0] | self._sides[1]
-        given = [process for process in processes(self._part) if self._has_a_rule(process.argv)]
-        there = [self._without_rule(process.argv) for process in given if {0, _lower(process.pid)} & ends]
-        return list({words[:2]: words for words in there if words}.values())[:MOST]
+        there = [one for one in processes(self._part) if {0, _lower(one.pid)} & ends]
+        words = [
+            self._without_rule(one.argv)[: None if self._has_a_rule(one.argv) else 2]
+            for one in there
+            if self._has_a_rule(one.argv) or _lower(one.pid) in self._own
+        ]
+        return list({one[:2]: one for one in words if one}.values())[:MOST]
 
     @property
     def talkers(self) -> int:
@@ -212,9 +218,12 @@ class Launched:
         own = argv[: argv.index("--ros-args")] if "--ros-args" in argv else argv
         for place, word in enumerate(own, 1):
             if found := _OF_A_PACKAGE.search(word) or _OF_A_PACKAGE.search(self._program(word)):
-                pairs = enumerate(pairwise(argv))
-                gone = {at for at, pair in pairs if pair[0] == "--params-file" or self._has_a_rule(pair)}
-                rest = [one for at, one in enumerate(argv) if at >= place and not {at, at - 1} & gone]
+                rules = [at for at, *rule in placed_remappings(argv) if self._leads_there(*rule)]
+                gone = {at for places in rules for at in places}
+                gone |= {
+                    at + more for at, word in enumerate(argv) if word == "--params-file" for more in (0, 1)
+                }
+                rest = [one for at, one in enumerate(argv) if at >= place and at not in gone]
                 return (found[1], found[2], *rest)
         return ()
 
@@ -235,11 +244,12 @@ class Launched:
         ]
 
     def _has_a_rule(self, argv: Sequence[str]) -> bool:
-        return any(self._begins(old) and _leads_to(self.topic, new) for old, new in remappings(argv))
+        return any(self._leads_there(old, new) for old, new in remappings(argv))
 
-    def _begins(self, name: str) -> bool:
-        """True if a rule is one for the name in the code; a node's name may be before it, and a namespace."""
-        return name.rpartition(":")[2].rpartition("/")[2] == self._old_name
+    def _leads_there(self, old: str, new: str) -> bool:
+        """True if a rule leads from the name in the code, with a node's name or a namespace before it, to the topic."""
+        begins = old.rpartition(":")[2].rpartition("/")[2] == self._old_name
+        return begins and _leads_to(self.topic, new)
 
 
 class LaunchFile:
@@ -302,7 +312,7 @@ class LaunchFile:
             bench.watch_graph(lambda evidence: self.seen(evidence).is_settled, PAUSE[bench.pace])
         seen = self.seen(Evidence([bench.seen()], bench.reference))
         bench.stop()
-        for words in seen.without_rules if seen.moved_by_rules else ():
+        for words in seen.without_rules if topic in seen.publishers & seen.subscriptions else ():
             self._run_alone(bench, words)
 
     def _run_alone(self, bench: Bench, words: Sequence[str]) -> None:

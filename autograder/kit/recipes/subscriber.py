@@ -256,7 +256,9 @@ def says_every_text(evidence: Evidence) -> Finding:
         seen += f"; not “{_text(missing[0])}”"
     complete = len(sent) >= _expected_texts(evidence) and not missing
     if complete and (replaced := _replaced(evidence)) >= REPLACED:
-        return Finding(False, "one subscription, which hears every string", f"{replaced + 1} one after another")
+        return Finding(
+            False, "one subscription, which hears every string", f"{replaced + 1} one after another"
+        )
     if sent and not missing and not complete:
         seen += ", and then it no longer answered the judge"
     return Finding(complete, "every string in its log", seen)

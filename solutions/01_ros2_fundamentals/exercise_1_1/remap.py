@@ -134,7 +134,7 @@ remap.knows(
 
 remap.knows(
     "renamed_in_code",
-    lambda seen, _: " and ".join(seen.not_moved),
+    lambda seen, _: seen.moved_by_rules and " and ".join(seen.not_moved),
     "Without the rule of the launch file, {seen.topic} was still the topic of your {}: the new name is in the code, so "
     "the rule moves nothing.",
     f"Put the old name, {OLD_NAME}, back into the code of your {{}}, and build. The rule in the launch file then moves "
@@ -145,12 +145,22 @@ remap.knows(
 
 remap.knows(
     "renamed_in_code",
+    lambda seen, _: not seen.moved_by_rules and seen.says_what_it_hears and " and ".join(seen.not_moved),
+    "Both nodes are on {seen.topic}, but not by the launch file: started without it, your {} is there, too. The name "
+    "was changed in the code.",
+    "Leave the programs as they are, with chatter in them, and remap the topic for each node in the launch file.",
+    certain=True,
+)
+
+
+remap.knows(
+    "not_remapped",
     lambda seen, expected: (
         seen.heard
         and seen.says_what_it_hears
         and not (by_the_launch(seen, expected).passed or _missing(seen))
     ),
-    "Both nodes are on {seen.topic}, but not by the launch file: the name was changed in the code of a program.",
+    "Both nodes are on {seen.topic}, but the launch file does not give each of them a remapping of chatter to it.",
     "Leave the programs as they are, with chatter in them, and remap the topic for each node in the launch file.",
 )
 

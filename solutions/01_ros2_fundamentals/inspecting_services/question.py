@@ -2,7 +2,7 @@
 
 The judge serves. The names are drawn anew each time, and so are the types that are asked for and the order of the runs.
 Only the type tells the right one from the others: one of these has a tempting name, one comes as late as the one that
-comes late, and once there is none of the type.
+comes late, some have a type of the same name in another package, and once there is none of the type.
 """
 
 from __future__ import annotations
@@ -36,6 +36,10 @@ TEMPTING = {
 }
 """The types that are asked for, each with a name that sounds like it and is given to a service of another type."""
 
+TWIN = {"std_srvs/srv/Trigger": "small_robot_interfaces/srv/Trigger"}
+"""A type that is asked for, and the type of another package that is called like it."""
+TWINS = ("alcove", "zenith")
+"""Words for services of that type: their names come before and after those of all others."""
 NAMES = (4, 5, 6)
 """How many services there may be beside the tempting one."""
 HIDDEN = "_parameters"
@@ -71,6 +75,8 @@ def scenario(bench: Bench) -> None:
         right, misleading = named_services(random, another, hidden=name == OTHER)
         # Of the lab's own type in each run, so that who always looks for that one is wrong in each.
         misleading[TEMPTING[type_name]] = ADDER
+        if type_name in TWIN:
+            misleading |= {f"/{word}/{_number(random)}": TWIN[type_name] for word in TWINS}
         if name == ABSENT:
             unserved(bench, type_name, {**misleading, right: another})
         else:
@@ -151,7 +157,11 @@ def _serve(bench: Bench, services: Mapping[str, str]) -> None:
 
 
 def _name(random: Random) -> str:
-    return f"/{random.choice(_WORDS)}/s{random.randrange(10**5, 10**6)}"
+    return f"/{random.choice(_WORDS)}/{_number(random)}"
+
+
+def _number(random: Random) -> str:
+    return f"s{random.randrange(10**5, 10**6)}"
 
 
 # --- questions to the evidence -----------------------------------------------------------------------------
@@ -330,8 +340,8 @@ def wrong_service(seen: Evidence, _: Evidence) -> Advice | None:
             return Advice(
                 f"You were asked for a service of the type {part.inputs['type']}. Your answer, {others[0]}, is of "
                 f"the type {part.inputs['others'][others[0]]}.",
-                "Compare each service's type with the type_name that you are given. The name of a service says nothing "
-                "about its type.",
+                "Compare each service's whole type, package included, with the type_name that you are given. The name "
+                "of a service says nothing about its type.",
             )
     return None
 
