@@ -1,7 +1,8 @@
-"""Classes and functions that are not what their cell says, because its last run ended with an error.
+"""Classes and functions that are not what their cell says: its last run ended with an error, or defines another name.
 
 After a ``SyntaxError`` the class of the run before is still there under its name, or none at all. A check of it would
-repeat the advice on old code, and a ``NameError`` would blame the check's own cell.
+repeat the advice on old code, and a ``NameError`` would blame the check's own cell. A class that was given another name
+is there under both, and a check of the earlier name would pass on code that is in no cell any more.
 """
 
 from __future__ import annotations
@@ -43,6 +44,8 @@ class FailedCells:
         self._before: dict[str, Any] = {}
         self._names_of: dict[str, set[str]] = {}
         self._failures: dict[str, _Failure] = {}
+        self._made: dict[str, tuple[str, Any]] = {}
+        self._dropped: dict[str, tuple[Any, list[str]]] = {}
         shell.events.register("pre_run_cell", self._cell_begins)
         shell.events.register("post_run_cell", self._cell_ended)
         shell.set_custom_exc(
@@ -50,11 +53,14 @@ class FailedCells:
         )
 
     def why_missing(self, name: str) -> str:
-        """The reason why the newest code of a class or function did not run, with the error; empty where it did."""
-        failure = self._failures.get(name)
-        if failure is None:
+        """The reason why a class or function is not what the cells say now; empty if it is."""
+        if failure := self._failures.get(name):
+            return f"Your cell that defines {name} stopped before {name} was defined: {failure.error}"
+        left, now = self._dropped.get(name, (None, []))
+        if left is None or left is not self._shell.user_ns.get(name):
             return ""
-        return f"Your cell that defines {name} stopped before {name} was defined: {failure.error}"
+        instead = f", it defines {' and '.join(now)}" if now else ""
+        return f"Your cell does not define {name} any more{instead}. If another cell defines {name} now, run that one."
 
     def _cell_begins(self, info: Any) -> None:
         self._source = info.raw_cell or ""
@@ -68,12 +74,20 @@ class FailedCells:
         self._before = {}
         self._failures = {name: one for name, one in self._failures.items() if one.cell != cell}
         error = result.error_before_exec or result.error_in_exec
+        known, there = self._names_of.get(cell, set()), self._shell.user_ns
         names = self._names_of[cell] = set(before) if error else _defined(result.info.raw_cell or "")
         for name in names:
-            if error is None or self._shell.user_ns.get(name) is not before[name]:
+            if there.get(name) is not before.get(name):
+                self._made[name] = (cell, there.get(name))
+            if error is None or there.get(name) is not before.get(name):
                 self._failures.pop(name, None)
             else:
                 self._failures[name] = _Failure(cell, " ".join(filter(None, (_named(error), _here(error)))))
+        for name in known - names:
+            # What another cell has made under that name since, or an import or assignment, is as good as ever.
+            maker, made = self._made.get(name, ("", None))
+            if maker == cell and made is there.get(name):
+                self._dropped[name] = (made, sorted(names))
 
     def _show_error(self, shell: Any, kind: type, error: Exception, trace: Any, tb_offset: Any) -> None:
         del kind, tb_offset

@@ -1,0 +1,88 @@
+"""A class that was given another name in its cell: a check of the earlier name does not judge what no cell defines."""
+
+from __future__ import annotations
+
+from itertools import count
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from ..conftest import CellOutput, Notebook
+
+# A judge that is reached has said enough: the check has 0.0 points then.
+JUDGE = """
+import importlib
+from autograder.notebook import check
+checking = importlib.import_module("autograder.notebook.checking.check")
+
+class Link:
+    def __init__(self):
+        raise checking.JudgeUnreachable("the judge was asked")
+
+checking.JudgeLink = Link
+"""
+_numbers = count()
+
+
+def checked(notebook: Notebook, *cells: tuple[str, str]) -> CellOutput:
+    """Run cells, each with its id, and then check a Talker, whose name each test has for itself."""
+    name = f"Talker{next(_numbers)}"
+    notebook.run(JUDGE)
+    for cell, source in cells:
+        notebook.run(source.replace("Talker", name), f"{cell} of {name}")
+    return notebook.run(f"check('lab', {name})", f"check of {name}")
+
+
+OLD, NEW = "class Talker: ...", "class Speaker: ..."
+
+
+@pytest.mark.parametrize(
+    "cells",
+    [
+        [("a", OLD), ("a", NEW)],
+        [("a", OLD), ("a", NEW), ("a", NEW), ("b", "1 + 1")],
+        [("a", "def Talker(): ..."), ("a", "def Speaker(): ...")],
+        [("a", OLD), ("b", OLD), ("b", NEW)],
+        [("a", OLD), ("a", "# class Talker: ...")],
+    ],
+)
+def test_a_name_that_its_cell_does_not_define_any_more_is_not_judged(
+    notebook: Notebook, cells: list[tuple[str, str]]
+) -> None:
+    shown = checked(notebook, *cells)
+    assert shown.error is not None
+    assert "does not define Talker" in shown.error
+    assert "Correct that cell and run it" in shown.error
+
+
+def test_what_the_checked_function_uses_must_be_in_a_cell_too(notebook: Notebook) -> None:
+    for cell, source in (
+        ("h", "class Help: ..."),
+        ("m", "def make(): return Help()"),
+        ("h", "class Helper: ..."),
+    ):
+        notebook.run(source, cell)
+    notebook.run(JUDGE)
+    shown = notebook.run("check('lab', make)")
+    assert "does not define Help any more, it defines Helper" in str(shown.error)
+
+
+@pytest.mark.parametrize(
+    "cells",
+    [
+        [("a", OLD), ("a", NEW), ("a", OLD)],
+        [("a", OLD), ("b", OLD), ("a", NEW)],
+        [("a", OLD), ("a", NEW), ("b", OLD)],
+        [("a", OLD), ("a", NEW), ("b", "Talker = Speaker")],
+        [("a", OLD), ("a", f"{NEW}\nTalker = Speaker")],
+        [("a", OLD), ("a", "from fractions import Fraction as Talker")],
+        [("a", OLD), ("a", "if True:\n    class Talker: ...")],
+        [("a", OLD), ("b", "class Talker(Talker): ..."), ("a", NEW)],
+        [("a", "Talker = type('Talker', (), {})"), ("a", NEW)],
+        [("a", f"{OLD}\n{NEW}"), ("a", OLD)],
+    ],
+)
+def test_a_name_that_is_defined_elsewhere_is_judged(notebook: Notebook, cells: list[tuple[str, str]]) -> None:
+    shown = checked(notebook, *cells)
+    assert (shown.error, shown.value) == (None, "0.0")
