@@ -30,6 +30,8 @@ SIMULATED_JITTER = 0.1
 """Simulated seconds by which one interval may differ: two steps of the judge's clock, or a long one."""
 SLOWER, FASTER = 0.18, 0.1
 """The parts of the reference's interval by which the median real one may differ: load makes a talker slower only."""
+AT_ONCE = 0.1
+"""The part of the period within which one message follows the other in a burst."""
 UNEVEN = 0.3
 """The part of the period by which an interval in real time is too long or too short."""
 ON_THE_WAY = 0.3
@@ -95,23 +97,30 @@ def _sent(event: Event) -> float:
     return sent if -ROUNDING <= arrived - sent <= ON_THE_WAY else arrived
 
 
-def burst_before(first: Event, unheard: int, wanted: float) -> str:
-    """What shows that a publisher sent messages in a burst before anybody could hear them, in words; else empty.
-
-    Those messages took a period each; more time than has passed since the publisher's program began they cannot take.
+def burst_at_the_start(messages: Sequence[Event], unheard: int, wanted: float) -> str:
+    """What shows that a publisher began with a burst of messages, in words; else empty.
 
     Args:
-        first: The first message that the judge heard.
-        unheard: The number of messages before it.
+        messages: As the judge heard them, from the first that counts on.
+        unheard: The number of messages before these that nobody could hear. They took a period each; more time than has
+            passed since the publisher's program began they cannot take.
         wanted: The reference's period, in seconds.
     """
-    began = float(first.data.get("arrived", first.t)) - first.t
-    since = _sent(first) - began
-    # The jump to simulated time may have brought the first one that was heard forward.
-    periods = unheard - (first.sim is not None)
-    if periods * wanted * (1 - FASTER) <= since:
+    if not messages:
         return ""
-    return f"{counted(unheard + 1, 'message')} in the first {since:.1f} s"
+    first = messages[0]
+    arrived = float(first.data.get("arrived", first.t))
+    # By the publisher's clock alone: what was held up while the two ends met arrives at once, and rightly so.
+    in_real_time = (one for one in messages if one.sim is None or one is first)
+    sent = [float(one.data.get("sent", one.data.get("arrived", one.t))) for one in in_real_time]
+    since = sent[0] - (arrived - first.t)
+    # The jump to simulated time may have brought the first one that was heard forward.
+    if (unheard - (first.sim is not None)) * wanted * (1 - FASTER) > since:
+        return f"{counted(unheard + 1, 'message')} in the first {since:.1f} s"
+    gaps = [after - before for before, after in pairwise(sent)]
+    if not unheard and len(gaps) > 1 and max(gaps[:2]) < AT_ONCE * wanted:
+        return "the first three messages came at once"
+    return ""
 
 
 def _exact(times: Sequence[float], wanted: float) -> Rate:

@@ -82,6 +82,51 @@ def test_a_counter_that_starts_at_one_is_not(heard: int, number: int) -> None:
     )
 
 
+def _started_at(seconds: float, messages: list[Event]) -> list[Event]:
+    """The same messages, the first so many seconds after the program's start."""
+    late = seconds - messages[0].t
+    return [replace(message, t=message.t + late) for message in messages]
+
+
+@pytest.mark.parametrize(
+    ("first", "after", "simulated", "right"),
+    [
+        (2, 0.8, False, True),
+        (4, 1.8, False, True),
+        (4, 1.0, False, False),
+        (4, 1.3, True, True),
+        (4, 0.8, True, False),
+        (20, 12.0, False, True),
+        (20, 6.0, False, False),
+    ],
+)
+def test_what_came_before_anybody_could_hear_needs_its_time(
+    first: int, after: float, simulated: bool, right: bool
+) -> None:
+    numbers = list(range(first - 1, first + 19))
+    heard = _started_at(after, _messages(numbers, 0.5, first=first, simulated=simulated))
+    evidence = _evidence(heard, real_time=not simulated)
+    assert judged("rate", evidence) is right
+    assert judged("counter", evidence)
+    assert ("messages in the first" in told("wrong_rate", evidence)) is not right
+
+
+def test_three_messages_at_once_are_no_beginning() -> None:
+    """A notebook's class is heard from its first message on, before there is a simulated clock."""
+    burst = [replace(one, sim=None) for one in _messages([0, 1, 2], 0.001)]
+    later = _started_at(0.4, _messages(list(range(3, 23)), 0.5, first=4))
+    assert not judged("rate", _evidence([*burst, *later]))
+    one = _messages(list(range(20)), 0.5)
+    assert judged("rate", _evidence([replace(one[0], sim=None), *one[1:]]))
+
+
+def test_messages_that_were_held_up_while_the_two_ends_met_are_no_burst() -> None:
+    talked = _messages(list(range(20)), 0.5, simulated=False)
+    arrived = {"arrived": talked[5].data["arrived"]}
+    held_up = [replace(one, t=talked[5].t, data={**one.data, **arrived}) for one in talked[:5]]
+    assert judged("rate", _evidence([*held_up, *talked[5:]], real_time=True))
+
+
 def points(evidence: Evidence) -> float:
     return sum(c.points for c in talker.EXERCISE.criteria if c.judge(evidence).passed)
 

@@ -12,7 +12,7 @@ from autograder.kit.hangs import HANGS
 from autograder.kit.in_words import counted
 from autograder.kit.model import STEP, Advice, Bench, Finding, Mistake, Pace
 from autograder.kit.published_texts import Publisher
-from autograder.kit.rate import ROW, Rate, burst_before, confirmed, rate_of, simulated
+from autograder.kit.rate import ROW, Rate, burst_at_the_start, confirmed, rate_of, simulated
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -181,12 +181,13 @@ class Hears:
         return Finding(rate.kept, expected, seen)
 
     def _burst(self, evidence: Evidence) -> str:
-        """The burst in which it began to count before anybody could hear it, in words; empty for none."""
+        """The burst in which it began to count, heard or not, in words; empty for none."""
         seen, expected = self.seen(evidence), self.expected(evidence)
         if not seen.counters or not expected.counters:
             return ""
         unheard = min(seen.number_of_first - 1, seen.counters[0] - expected.counters[0])
-        return burst_before(seen.messages[seen.greetings], unheard, reference_period(evidence.reference))
+        counting = seen.messages[seen.greetings :]
+        return burst_at_the_start(counting, unheard, reference_period(evidence.reference))
 
     def _simulated_rate(self, evidence: Evidence | None) -> Rate | None:
         """The rate by the simulated clock; None where the messages do not follow that, or are too few."""
