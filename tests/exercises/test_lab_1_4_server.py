@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from lab_1_4 import _server_criteria as criteria
 from lab_1_4 import server as lab_1_4_server
-from lab_1_4._goals import AGAIN, ALONE, BAD_ORDERS, BESIDE, GOALS, LONG, LONG_ALONE
+from lab_1_4._goals import AGAIN, ALONE, BAD_ORDERS, BESIDE, GOALS, LONG, LONG_ALONE, NEXT, OLDER, YOUNGER
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 
@@ -34,7 +34,8 @@ def goal(number: int, order: int, **changed: Any) -> list[Event]:
         for turn, partial in enumerate(feedback)
     ]
     if "cancel" in changed:
-        events += [event("cancel_sent"), event("cancel_answer", accepted=changed["cancel"])]
+        answer = {"accepted": changed["cancel"], "return_code": changed.get("return_code", 0)}
+        events += [event("cancel_sent"), event("cancel_answer", **answer)]
     events.append(event("result_heard", status=changed.get("status", 4), fields={"sequence": numbers}))
     return events
 
@@ -139,6 +140,51 @@ def test_a_policy_of_one_goal_at_a_time_costs_the_points_of_two_at_once_only() -
     ended = evidence([*alone, *older, *goal(BESIDE, 4), result, *again, *later])
     assert failed(ended) == {"two"}
     assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(ended)) == "older_goal_ended"
+
+
+def later(number: int, **changed: Any) -> list[Event]:
+    """A goal that is canceled after the first one was."""
+    changed = {"feedback": [[0, 1, 1]], "cancel": True, "status": 5, "sequence": [0, 1, 1], **changed}
+    return goal(number, 20, **changed)
+
+
+@pytest.mark.parametrize(
+    ("more", "lost", "key"),
+    [
+        ([*later(LONG_ALONE), *goal(NEXT, 3), *goal(OLDER, 5), *later(YOUNGER)], set(), ""),
+        # A busy judge may come too late for a quick server, and then asks for nothing more.
+        (later(LONG_ALONE, cancel=False, return_code=3, status=4), set(), ""),
+        ([*later(LONG_ALONE)[:-3], later(LONG_ALONE)[-1]], set(), ""),
+        (later(LONG_ALONE, cancel=False)[:-1], {"cancel"}, "cancel_not_accepted"),
+        (later(LONG_ALONE, accepted=False), {"two"}, "goal_rejected"),
+        ([*later(LONG_ALONE)[:-1], *goal(NEXT, 3, status=6, sequence=[])], {"two"}, "goals_mixed_up"),
+        (
+            [*later(LONG_ALONE), *goal(NEXT, 3), *goal(OLDER, 5), *later(YOUNGER)[:-1]],
+            {"two"},
+            "goals_mixed_up",
+        ),
+        (
+            [*later(LONG_ALONE), *goal(NEXT, 3), *goal(OLDER, 5, feedback=[[0, 1, 1], FIBONACCI])],
+            {"two"},
+            "goals_mixed_up",
+        ),
+    ],
+)
+def test_each_goal_is_canceled_for_itself(more: list[Event], lost: set[str], key: str) -> None:
+    seen = evidence([*RIGHT, *more])
+    assert failed(seen) == lost
+    if key:
+        told = [m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(seen)]
+        assert told[0] == key
+
+
+def test_a_goal_that_is_canceled_only_if_it_is_alone_is_mixed_up_and_not_ignored() -> None:
+    ignored = goal(LONG, 20, feedback=[[0, 1, 1], [0, 1, 1, 2]], cancel=True, sequence=FIBONACCI)
+    right = [*goal(ALONE, 5), *goal(BESIDE, 4), *goal(AGAIN, 3)]
+    alone = evidence([*right, *ignored, *later(LONG_ALONE)])
+    never = evidence([*right, *ignored, *later(LONG_ALONE, status=4)])
+    for seen, key in ((alone, "goals_mixed_up"), (never, "cancel_ignored")):
+        assert next(m.key for m in lab_1_4_server.EXERCISE.mistakes if m.recognise(seen)) == key
 
 
 def test_a_bad_order_that_is_taken_is_wrong_even_if_it_is_aborted_later() -> None:

@@ -79,7 +79,7 @@ class Hears:
         enough = self._enough(bench.before) if bench.pace is Pace.REAL_TIME else self._messages
         _listen(bench, topic, enough, period)
         if bench.wait_until(lambda evidence: _lost(evidence, topic) > LOST, 0.0):
-            bench.doubt()
+            bench.doubt()  # a burst is told from a slow start by times that a simulated clock leaves in doubt
         if bench.pace is Pace.FAST and bench.wait_until(self._is_simulated, 0.0):
             enough = self._long_run
             _listen(bench, topic, enough, period, LONG_STEP)

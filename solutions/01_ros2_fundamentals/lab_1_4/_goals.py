@@ -127,7 +127,7 @@ def to_be_canceled(evidence: Evidence) -> FibonacciGoal:
 def canceled_later(part: Part) -> list[FibonacciGoal]:
     """The goals that were canceled after the first one: one to which a new goal came, and one beside an older goal."""
     sent = [goal(part, number) for number in (LONG_ALONE, YOUNGER)]
-    return [] if ended_by_a_younger(part) else [seen for seen in sent if seen.order is not None]
+    return [] if ended_by_a_younger(part) else [seen for seen in sent if seen.accepted]
 
 
 def takes_no_time(part: Part) -> bool:

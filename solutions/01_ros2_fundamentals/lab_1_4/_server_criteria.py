@@ -14,11 +14,13 @@ from lab_1_4._goals import (
     GOALS,
     LAST_ORDER,
     LONG,
+    LONG_ALONE,
     NEXT,
     OLDER,
     ORDERS,
     ROUNDS_LEFT,
     TWINS,
+    YOUNGER,
     FibonacciGoal,
     all_goals,
     canceled_later,
@@ -127,6 +129,11 @@ def serves_two_at_once(evidence: Evidence) -> Finding:
         text for one in others if one.order is not None and (text := fault_beside_another(evidence, one))
     ]
     wrong += [
+        objection(evidence, one)
+        for one in (goal(part, LONG_ALONE), goal(part, YOUNGER))
+        if one.accepted is False
+    ]
+    wrong += [
         f"order {one.order}, which was to be canceled: status {status_text(one.status)}"
         for one in goes_on_beside_another(part)
     ]
@@ -161,10 +168,12 @@ def lets_cancel(evidence: Evidence) -> Finding:
 
 
 def _refused_later(evidence: Evidence) -> str:
-    refused = [one for one in canceled_later(evidence.part(GOALS)) if not one.cancel_accepted]
-    return (
-        f"a later cancel request was not accepted; status {status_text(refused[0].status)}" if refused else ""
-    )
+    # Of a quick server, a goal may be over when a busy judge asks to cancel it.
+    later = [one for one in canceled_later(evidence.part(GOALS)) if not one.cancelled_too_late]
+    if any(one.cancel_accepted is False for one in later):
+        return "a later cancel request was not accepted"
+    unanswered = any(one.cancel_accepted is None and one.status is None for one in later)
+    return "a later cancel request was not answered" if unanswered else ""
 
 
 def cancel_objection(evidence: Evidence, long: FibonacciGoal) -> str:

@@ -141,7 +141,8 @@ def _cancel_more(bench: Bench, caller: ActionCaller) -> bool:
     _wait_half_a_round(bench)
     caller.send_goal(order=LONG_ORDER)
     _await_feedback(bench, YOUNGER, 1)
-    caller.cancel(YOUNGER)
+    if not goal(bench.seen(), YOUNGER).over:
+        caller.cancel(YOUNGER)
     if not ended(bench, OLDER):
         return False
     _await_cancel(bench, YOUNGER)
@@ -159,6 +160,8 @@ def _cancel_alone(bench: Bench, caller: ActionCaller, *, after: int, then: int |
     """
     number = caller.send_goal(order=LONG_ORDER)
     _await_feedback(bench, number, after)
+    if goal(bench.seen(), number).over:
+        return False
     caller.cancel(number)
     if then is not None:
         bench.wait_until(lambda e: goal(e.main, number).cancel_accepted is not None, QUIET[bench.pace])
