@@ -30,7 +30,7 @@ from lab_1_4._goals import (
     is_told_at_the_end,
 )
 
-from autograder.kit.goals_seen import CANCELED
+from autograder.kit.goals_seen import ABORTED, CANCELED
 from autograder.kit.model import Bench, Pace
 
 if TYPE_CHECKING:
@@ -113,7 +113,12 @@ def send_good_goals(bench: Bench, caller: ActionCaller) -> bool:
     honoured = _await_cancel(bench, LONG)
     if goal(bench.seen(), BESIDE).accepted is None:
         return True  # one thread, and it is busy: the younger goal has not been read either
-    if not ended(bench, BESIDE, quiet=SILENCE[bench.pace]) or not one_by_one(bench, caller, order):
+    if not ended(bench, BESIDE, quiet=SILENCE[bench.pace]):
+        return False
+    # A notebook's node ends with the exception that has aborted a goal: no other goal must lose by that.
+    if goal(bench.seen(), BESIDE).status == ABORTED and bench.await_end(AFTERMATH):
+        return False
+    if not one_by_one(bench, caller, order):
         return False
     # Results may overtake feedback on their way to a busy judge.
     bench.wait_until(lambda e: all(_tells_all(goal(e.main, n)) for n in PACED), GOAL_LIMIT, quiet=AFTERMATH)
