@@ -23,9 +23,14 @@ if TYPE_CHECKING:
     from tiny_class import TinyClass
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
-GIVEN, SCHEME, SHOT, DRAWN = (
-    base64.b64encode(name.encode()).decode() for name in ("given", "scheme", "shot", "<svg>")
+POINT = base64.b64decode(
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNgAAAAAgABSK+kcQAAAABJRU5ErkJggg=="
 )
+"""A PNG of one point; a browser does not mind what is behind its end."""
+GIVEN, SCHEME, SHOT = (
+    base64.b64encode(POINT + name.encode()).decode() for name in ("given", "scheme", "shot")
+)
+DRAWN = base64.b64encode(b"<svg>").decode()
 QUESTION = """\
 Why is a topic many-to-many? ![graph](attachment:graph.png)
 
@@ -102,7 +107,7 @@ def test_another_picture_with_the_same_words_is_other_work(quiz: TinyClass) -> N
     release(ClassDirectory(quiz.path))
     hand_in(quiz, "ada", SHOT)
     quiz.grade(feedback=True)
-    other = base64.b64encode(b"a clearer one").decode()
+    other = base64.b64encode(POINT + b"a clearer one").decode()
     hand_in(quiz, "ada", other)
     quiz.grade(feedback=True)
     assert [(other in page, SHOT in page) for page in pages(quiz, "ada")] == [(True, False)] * 2
