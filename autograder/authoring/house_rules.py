@@ -21,6 +21,8 @@ HEAD, BEFORE_A_TASK, SOLUTION = 150, 400, 8
 _MINUTES = re.compile(r"^\*\d+ minutes · for ", re.MULTILINE)
 _PICTURE = re.compile(r"!\[[^\]]*\]\([^)]*\)")
 """The text alternative of a figure is for those who do not see it."""
+_FOLD = re.compile(r"<details>.*?</details>", re.DOTALL)
+"""Folded text does not delay the first task: students open it when they want it."""
 _SELF_CHECK = re.compile(
     r"\*\*Check yourself:\*\*.*?\n\n(?P<choices>(?:<details>.*?</details>\s*)*)", re.DOTALL
 )
@@ -99,4 +101,4 @@ def _is_text(one: NamedCell) -> bool:
 
 
 def _words(cells: Iterable[NamedCell]) -> int:
-    return len(_PICTURE.sub("", "\n".join(one.cell.source for one in cells)).split())
+    return len(_FOLD.sub("", _PICTURE.sub("", "\n".join(one.cell.source for one in cells))).split())

@@ -52,6 +52,13 @@ def test_an_example_keeps_every_rule(recipe: str, monkeypatch: pytest.MonkeyPatc
     assert [line for line in lines if not line.startswith(FOR_ITS_AUTHOR)] == []
 
 
+def test_folded_text_does_not_delay_the_first_task(lab: Path) -> None:
+    master = lab / "lab.md"
+    fold = f"<details>\n<summary>What counts</summary>\n\n{'Robots ' * 401}\n\n</details>\n\nRobots tell"
+    master.write_text(master.read_text().replace("Robots tell", fold, 1))
+    assert not [line for line in told() if line.startswith("lab.md")]
+
+
 @pytest.mark.parametrize(
     ("file", "old", "new", "rule"),
     [

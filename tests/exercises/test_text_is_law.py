@@ -1,6 +1,8 @@
-"""What the text of a task demands is judged, or says that it is not graded; and what is judged, the text demands.
+"""Every demand of a task is judged or listed as not graded; and every criterion has its words in the task.
 
-Each exercise has the table: the sentences of its notebook, and the criteria that judge them (``Exercise.text``).
+Each exercise has the table: the sentences of its notebook, and the criteria that judge them (``Exercise.text``). The
+list *What counts* below a task, which is folded, names the words of the task that are not graded, and what is accepted
+besides.
 """
 
 from __future__ import annotations
@@ -20,7 +22,12 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 NOT_GRADED = "not graded"
-"""The words with which a text says that the judge does not look at what the sentence, or the one before, asks for."""
+"""The words with which an item of the list below a task says that the judge does not look at the words in bold."""
+_FOLD = re.compile(r"<details>\n<summary>What counts</summary>\n\n(.*?)\n\n</details>", re.DOTALL)
+_ANY_FOLD = re.compile(r"<details>.*?</details>", re.DOTALL)
+_BOLD = re.compile(r"\*\*(.+?)\*\*")
+_BELONGS_BELOW = re.compile(r"(?i)\b(?:not graded|accepted (?:as well|, too)|are accepted|may also)\b")
+"""What is no requirement: it belongs into the list."""
 LABS = sorted({exercises.path(one).parent for one in exercises.all_ids()})
 
 _HEADING, _ITEM = re.compile(r"#+ "), re.compile(r"\d+\. ")
@@ -60,9 +67,20 @@ def tasks(lab: Path) -> Iterator[str]:
             section = []
 
 
+def asked(task: str) -> str:
+    """A task without what is folded."""
+    return _ANY_FOLD.sub("", task)
+
+
+def not_graded(task: str) -> list[str]:
+    """The words of a task that the list below it calls not graded."""
+    items = [plain(item) for fold in _FOLD.findall(task) for item in re.split(r"(?m)^- ", fold)]
+    return [words for item in items if NOT_GRADED in item for words in _BOLD.findall(item)]
+
+
 def sentences(task: str) -> Iterator[str]:
     """The sentences of a task that demand something: those of numbered items, and those in the words of a demand."""
-    for block in re.split(r"\n\s*\n|\n(?=\d+\. |- )", re.sub(r"(?s)<details>.*?</details>", "", task)):
+    for block in re.split(r"\n\s*\n|\n(?=\d+\. |- )", asked(task)):
         if block.lstrip().startswith(_NO_DEMAND):
             continue
         line = plain(block)
@@ -81,11 +99,14 @@ def demands(sentence: str) -> bool:
 
 
 def uncovered(task: str, quoted: list[str]) -> list[str]:
-    """The demands of a task that no criterion has, and that do not say that they are not graded."""
+    """The demands of a task that no criterion has, and that the list below it does not call not graded."""
+    free = [words.casefold() for words in not_graded(task)]
     return [
         sentence
         for sentence in sentences(task)
-        if NOT_GRADED not in sentence and not any(quote in sentence for quote in quoted)
+        if NOT_GRADED not in sentence
+        and not any(words in sentence.casefold() for words in free)
+        and not any(quote in sentence for quote in quoted)
     ]
 
 

@@ -17,7 +17,8 @@ EXERCISE = listener.exercise(
     limit=120.0,
     text={
         "The listener subscribes to the topic.": "topic",
-        "Let the method log each string that arrives, once, and no other string": "says honest",
+        "Log every message exactly once, even if its text equals the previous one": "says honest",
+        "Log no text that has not arrived.": "honest",
         "Logs every string that arrives on the topic chatter.": "says honest",
     },
 )
