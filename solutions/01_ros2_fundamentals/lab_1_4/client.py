@@ -34,11 +34,11 @@ EXERCISE = client.exercise(
         "it must say so and end within 12 seconds, or say at least every three seconds that it still waits.": "limit",
         "Your function must say how the goal ended": "refused aborted",
         "If the goal was not accepted, log that it was `REJECTED`, and return an empty list.": "refused",
-        "(Other words, or an exception that says so, are accepted as well.)": "refused",
+        "other words than `REJECTED`, or an exception that says so, are accepted as well.": "refused",
         "Log the name of the status.": "aborted",
         "You need not log the sequence of the result if you return it": "result",
         "The given `on_feedback` logs each feedback message.": "feedback",
         "Return the sequence as a list.": "result",
-        "(Any kind of sequence is accepted, such as a tuple.)": "result",
+        "Any kind of sequence is accepted, such as a tuple.": "result",
     },
 )
