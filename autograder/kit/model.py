@@ -347,7 +347,7 @@ class Exercise:
         criteria: What must hold, in the order of the card.
         mistakes: Known mistakes, most telling first.
         text: What the text of the task says, sentence by sentence -> the names of the criteria that judge it, with
-            blanks between them. A sentence that no criterion judges says in the notebook that it is not graded.
+            blanks between them. A demand that no criterion judges is called not graded in the list below the task.
         remarks: What is worth a word on the card and costs no points; each gives a sentence, or an empty text.
         roles: The endpoints that make up the subject's public face, such as ``("publisher",)``; `record` waits for one.
         limit: Seconds of wall time after which the judge gives up on a check, all looks together. A command, which may
