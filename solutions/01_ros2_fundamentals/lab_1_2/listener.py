@@ -18,7 +18,7 @@ EXERCISE = listener.exercise(
     text={
         "The listener subscribes to the topic.": "topic",
         "Log every message exactly once, even if its text equals the previous one": "says honest",
-        "Log no text that has not arrived.": "honest",
+        "Do not report a message that has not arrived.": "honest",
         "Logs every string that arrives on the topic chatter.": "says honest",
     },
 )
