@@ -152,8 +152,8 @@ cancel.asks("refused", 1, "Says when the goal is rejected", tells_of_refusal)
 EXERCISE = cancel.exercise(
     limit=120.0,
     text={
-        "After the **third** feedback message, ask to cancel the goal "
-        "(after the fourth or the fifth is accepted as well)": "cancel",
+        "After the **third** feedback message, ask to cancel the goal.": "cancel",
+        "A request after the fourth or the fifth message is accepted as well.": "cancel",
         "Ask only **once**, even if more feedback arrives or the server refuses to cancel": "once late_feedback",
         "Send a goal of order 20": "goal",
         "Send the goal: call `send_goal`": "goal",
@@ -163,8 +163,7 @@ EXERCISE = cancel.exercise(
         "While you wait, the client is spun": "cancel status",
         "report the status that you *really* got": "status",
         "Log or print the name of the final status": "status",
-        "(Its number is accepted as well.": "status",
-        "For a goal that succeeded or was aborted, other words about its end are accepted, too, "
-        "if they are not false.": "status",
+        "The number of the final status is accepted as well as its name.": "status",
+        "other words about its end are accepted, too, if they are not false.": "status",
     },
 )
