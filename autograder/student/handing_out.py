@@ -34,7 +34,14 @@ KEPT_BACK = (
     "autograder/masters",
 )
 """Parts that make notebooks, know their solutions or grade a class."""
-PAGES = ("students-guide.md", "mistakes.md", "fairness.md", "ros2-command.md", "robot.md")
+PAGES = (
+    "students-guide.md",
+    "learning-outcomes.md",
+    "mistakes.md",
+    "fairness.md",
+    "ros2-command.md",
+    "robot.md",
+)
 """Of ``docs/``."""
 _MADE = frozenset({"__pycache__", ".ipynb_checkpoints"})
 _MADE_BY_COLCON = frozenset({"build", "install", "log"})

@@ -43,13 +43,16 @@ def test_points_make_a_notebook_done_and_a_mark_one_that_is_only_read() -> None:
         full("lab_1_2.talker"),
         Entry("check", "lab_1_2.listener", 2, 99, 10),
         full("lab_1_2.programs"),
-        Entry("read", "summary", 3),
+        Entry("read", "inspecting_actions", 3),
     ]
     states = {one.name: one for one in after(*lines).chapters[0].notebooks}
     assert (states["lab_1_2"].state, states["lab_1_2"].points) == ("done", states["lab_1_2"].possible)
-    assert states["summary"].state == "done"
-    states = {one.name: one for one in after(lines[0], Entry("unread", "summary", 4)).chapters[0].notebooks}
-    assert (states["lab_1_2"].state, states["summary"].state) == ("begun", "new")
+    assert states["inspecting_actions"].state == "done"
+    states = {
+        one.name: one
+        for one in after(lines[0], Entry("unread", "inspecting_actions", 4)).chapters[0].notebooks
+    }
+    assert (states["lab_1_2"].state, states["inspecting_actions"].state) == ("begun", "new")
 
 
 def test_one_goes_on_where_one_has_worked_last() -> None:
@@ -64,7 +67,7 @@ def test_one_goes_on_where_one_has_worked_last() -> None:
     assert following(*done) == names[names.index("lab_1_2") + 1]
     assert following(*done, full("lab_1_4.client", 1)) == names[names.index("lab_1_2") + 1]
     assert following(*done, Entry("reset", "lab_1_1", 3)) == "lab_1_1"
-    assert following(*done, Entry("read", names[-1], 3)) == names[0]
+    assert following(*done, full("summary.patrol", 3)) == names[0]
     everything = [full(exercise) for exercise in exercises.all_ids()]
     read = [Entry("read", name, 2) for name in names]
     assert following(*everything, *read[1:]) == (None if exercises_of(names[0]) else names[0])

@@ -1,0 +1,115 @@
+"""Known mistakes on patrol, most telling first, and what to do about them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from summary._night import before_the_lamp, commands, goals, lamps, near_messages, published, too_soon
+
+from autograder.kit.common_mistakes import STEP_MISSING
+from autograder.kit.rate import another_rate
+
+if TYPE_CHECKING:
+    from autograder.kit.draft import Recognise
+    from autograder.kit.evidence import Part
+
+MISTAKES: tuple[tuple[str, Recognise[Part], str, str, dict[str, Any]], ...] = (
+    (
+        "wrong_movement",
+        lambda seen, expected: next((told for told in commands(seen) if told not in commands(expected)), ""),
+        "A command of yours says {}; the task asks for linear.x = 0.4, angular.z = 1.",
+        "Make a new Twist() for each command, and set command.linear.x and command.angular.z before you publish it.",
+        {"certain": True},
+    ),
+    (
+        "keeps_driving",
+        lambda seen, expected: (many := published(seen.of("message"))) > len(commands(expected)) and many,
+        "Your node published {} commands; a round has twelve. A robot that is told to drive gives up its walk.",
+        "Count the commands, and end the timer at the twelfth: self.timer.cancel().",
+        {"certain": True},
+    ),
+    (
+        "lamp_too_early",
+        lambda seen, expected: lamps(seen) and before_the_lamp(seen) < len(commands(expected)),
+        "Your node asked for the lamp before the round was over.",
+        "Count the commands in the callback of the timer, and call the service there, when the count is twelve.",
+        {},
+    ),
+    (
+        "lamp_switched_off",
+        lambda seen, _: lamps(seen) and not lamps(seen)[0],
+        "Your request says False, and that switches the lamp off.",
+        "Fields that are not set are False or 0: write SetBool.Request(data=True).",
+        {"certain": True},
+    ),
+    (
+        "lamp_not_awaited",
+        too_soon,
+        "Your node sent the goal before the lamp had answered.",
+        "Send the goal in a method of its own, and give that method to the add_done_callback(...) of the future that "
+        "call_async returns, without parentheses behind its name.",
+        {"certain": True},
+    ),
+    (
+        "wrong_goal",
+        lambda seen, expected: goals(seen) and goals(seen) != goals(expected),
+        "Your node sent another goal, or more than one; the task asks for x = 4.0, y = 2.0, once.",
+        "Write WalkTo.Goal(x=4.0, y=2.0), and send it in the callback that gets the lamp's answer.",
+        {"certain": True},
+    ),
+    (
+        "cancel_repeated",
+        lambda seen, _: len(seen.of("cancel")) > 1 and len(seen.of("cancel")),
+        "Your node asked {} times to cancel its walk: feedback goes on for a moment after the first request.",
+        "Remember that you have asked: set the goal handle to None after the request, and ask only if it is not None.",
+        {"certain": True},
+    ),
+    (
+        "cancel_too_early",
+        lambda seen, _: seen.of("cancel") and not near_messages(seen),
+        "Your node asked to cancel its walk when one metre or more was left.",
+        "Compare the distance that the feedback brings, and do not count messages: if distance < 1.0.",
+        {},
+    ),
+    (
+        "cancel_too_late",
+        lambda seen, _: seen.of("cancel") and near_messages(seen) > 1,
+        "Your node let a feedback message below one metre pass before it asked to cancel its walk.",
+        "Ask at the first such message: if distance < 1.0.",
+        {},
+    ),
+    (
+        "cancel_missing",
+        lambda seen, _: seen.of("result") and not seen.of("cancel"),
+        "Your node never asked to cancel its walk, although less than one metre was left.",
+        "Call goal_handle.cancel_goal_async(), with its parentheses, if distance < 1.0. If no feedback arrives, pass "
+        "feedback_callback=... to send_goal_async.",
+        {"late": True},
+    ),
+    (
+        "wrong_rate",
+        another_rate,
+        "Your commands come {}; the task asks for two a second.",
+        "Give create_timer the period in seconds, 0.5, and leave time.sleep out of the callback.",
+        {},
+    ),
+    (
+        "not_written",
+        lambda seen, _: (
+            commands(seen) and not goals(seen) and ("goal" if lamps(seen) else "call of the lamp")
+        ),
+        "Your node drives, and no {} came after that.",
+        STEP_MISSING,
+        {"late": True},
+    ),
+    (
+        "await_in_same_group",
+        lambda seen, _: seen.of("response") and seen.of("unanswered") and not goals(seen),
+        "The lamp answered, and your node never takes the answer: the callback that awaits it occupies the callback "
+        "group that the answer needs.",
+        "Go on in a method that you give to the add_done_callback(...) of the future, or give the client a callback "
+        "group of its own: create_client(..., callback_group=ReentrantCallbackGroup()).",
+        {"before": "never_spun"},
+    ),
+)
+"""The arguments of ``Draft.knows``."""
