@@ -21,6 +21,12 @@ HEAD, BEFORE_A_TASK, SOLUTION = 150, 400, 8
 _MINUTES = re.compile(r"^\*\d+ minutes · for ", re.MULTILINE)
 _PICTURE = re.compile(r"!\[[^\]]*\]\([^)]*\)")
 """The text alternative of a figure is for those who do not see it."""
+PREDICTION = "**Before you run it:**"
+"""The beginning of the question that students answer before they run commands that show something."""
+_PARAGRAPH = re.compile(r"\n\s*\n|\n(?=\d+\. |- )")
+_CODE = re.compile(r"`[^`]*`|\]\([^)]*\)")
+"""Code and links: their parentheses do not count."""
+_PARENTHESIS = re.compile(r"\([^)]*\)")
 _FOLD = re.compile(r"<details>.*?</details>", re.DOTALL)
 """Folded text does not delay the first task: students open it when they want it."""
 _SELF_CHECK = re.compile(
@@ -46,6 +52,8 @@ def broken_rules(master: Path) -> list[str]:
         *_beginning(cells),
         *_solutions(one for one in cells if one.cell.line not in copying),
         *_introductions(cells),
+        *_predictions(cells),
+        *_tasks(cells),
         *_self_checks(filter(_is_text, cells)),
         *_end(cells),
     ]
@@ -78,6 +86,27 @@ def _introductions(cells: list[NamedCell]) -> Iterator[str]:
         said = [line for line in before.cell.source.splitlines() if line.strip() and not line.startswith("#")]
         if not _is_text(one) and not (_is_text(before) and said):
             yield f"a cell of code is introduced: no word before line {one.cell.line}"
+
+
+def _predictions(cells: list[NamedCell]) -> Iterator[str]:
+    for before, one in itertools.pairwise(cells):
+        types_commands = one.cell.kind is CellRole.DEMONSTRATION and one.cell.source.startswith("%%bash")
+        if types_commands and PREDICTION not in before.cell.source:
+            yield (
+                f"commands are predicted: write '{PREDICTION} …?' before line {one.cell.line}, and the answer in a "
+                "<details>"
+            )
+
+
+def _tasks(cells: list[NamedCell]) -> Iterator[str]:
+    for before, one in itertools.pairwise(cells):
+        if one.cell.kind is CellRole.SOLUTION and _is_text(before):
+            for paragraph in _PARAGRAPH.split(_FOLD.sub("", before.cell.source)):
+                if len(_PARENTHESIS.findall(_CODE.sub("", paragraph))) > 1:
+                    yield (
+                        f"a task is plain: more than one parenthesis in a paragraph before line {one.cell.line}; write "
+                        "sentences, or a list 'What counts' below the task"
+                    )
 
 
 def _self_checks(texts: Iterable[NamedCell]) -> Iterator[str]:

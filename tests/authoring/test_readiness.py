@@ -68,6 +68,19 @@ def test_folded_text_does_not_delay_the_first_task(lab: Path) -> None:
         ("lab.md", "Robots tell", "Robots " * 401 + "tell", "lab.md: the first task comes soon: "),
         (
             "lab.md",
+            "Publish on `battery`",
+            "Look:\n\n```{code-cell} ipython3\n:tags: [demonstration]\n\n%%bash --no-raise-error\nls\n```\n\n"
+            "Publish on `battery`",
+            "lab.md: commands are predicted: ",
+        ),
+        (
+            "lab.md",
+            "Publish on `battery`",
+            "Publish (not often) on `battery` (a topic)",
+            "lab.md: a task is plain: ",
+        ),
+        (
+            "lab.md",
             "        self.charge -= 1\n",
             "        self.charge -= 1\n" * 9,
             "lab.md: a task is small: ",

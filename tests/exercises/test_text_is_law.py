@@ -26,8 +26,10 @@ NOT_GRADED = "not graded"
 _FOLD = re.compile(r"<details>\n<summary>What counts</summary>\n\n(.*?)\n\n</details>", re.DOTALL)
 _ANY_FOLD = re.compile(r"<details>.*?</details>", re.DOTALL)
 _BOLD = re.compile(r"\*\*(.+?)\*\*")
-_BELONGS_BELOW = re.compile(r"(?i)\b(?:not graded|accepted (?:as well|, too)|are accepted|may also)\b")
-"""What is no requirement: it belongs into the list."""
+_BELONGS_BELOW = re.compile(r"(?i)\b(?:not graded|accepted as well|accepted, too)\b")
+"""Words that are not part of a requirement: such a sentence belongs in the list."""
+ENOUGH_WORDS = 3
+"""A demand that is not graded is named in as many words at least: fewer would fit other demands, too."""
 LABS = sorted({exercises.path(one).parent for one in exercises.all_ids()})
 
 _HEADING, _ITEM = re.compile(r"#+ "), re.compile(r"\d+\. ")
@@ -104,8 +106,7 @@ def uncovered(task: str, quoted: list[str]) -> list[str]:
     return [
         sentence
         for sentence in sentences(task)
-        if NOT_GRADED not in sentence
-        and not any(words in sentence.casefold() for words in free)
+        if not any(words in sentence.casefold() for words in free)
         and not any(quote in sentence for quote in quoted)
     ]
 
@@ -128,6 +129,20 @@ def test_each_criterion_has_its_sentence_and_each_sentence_its_criterion_and_is_
 def test_each_demand_is_judged_or_says_that_it_is_not_graded(lab: Path) -> None:
     quoted = quoted_in(lab)
     assert [demand for task in tasks(lab) for demand in uncovered(task, quoted)] == []
+
+
+@pytest.mark.parametrize("lab", LABS, ids=lambda lab: lab.name)
+def test_a_task_is_the_requirement_and_nothing_else(lab: Path) -> None:
+    asked_for = [plain(part) for task in tasks(lab) for part in asked(task).split("\n\n")]
+    assert [part for part in asked_for if _BELONGS_BELOW.search(part)] == []
+
+
+@pytest.mark.parametrize("lab", LABS, ids=lambda lab: lab.name)
+def test_what_is_called_not_graded_is_in_the_task(lab: Path) -> None:
+    for task in tasks(lab):
+        for words in not_graded(task):
+            assert words.casefold() in plain(asked(task)).casefold()
+            assert len(words.split()) >= ENOUGH_WORDS, words
 
 
 @pytest.mark.parametrize(
