@@ -322,6 +322,7 @@ EXERCISE = server.exercise(
         "sleep for `PERIOD` seconds, instead of hard work.": "cancel",
         "After the loop say how the goal ended: call `canceled()` or `succeed()`.": "sequence cancel",
         "Each of two goals has to end with its own sequence": "two",
+        "a cancel request has to end only the goal that it is about": "cancel two",
         "Let your node offer the action `fibonacci`.": "action",
     },
 )
