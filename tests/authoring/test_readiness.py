@@ -11,6 +11,7 @@ from autograder import course, exercises
 from autograder.authoring.answers import answers
 from autograder.authoring.new_exercise import EXAMPLES, new_exercise, recipes
 from autograder.authoring.readiness import still_to_do
+from environment import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -134,5 +135,5 @@ def test_a_rule_that_is_broken_is_named(lab: Path, file: str, old: str, new: str
 
 
 def test_what_is_not_installed_is_told(lab: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys, "executable", str(lab / "python3"))
+    monkeypatch.setattr(python_child, "INTERPRETER", str(lab / "python3"))
     assert [line.partition(",")[0] for line in told()] == ["ruff: not installed", "mypy: not installed"]
