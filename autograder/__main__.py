@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import sys
+from importlib import metadata
 from pathlib import Path
 
+import re2
+
+from autograder import course
 from environment.python_child import SAFE_PATH
+
+PACKAGE = "ros2-course-autograder"
 
 TERMINATED = 143
 """A shell's exit code for a program that SIGTERM ended: 128 and the signal's number."""
@@ -26,16 +33,31 @@ def main() -> None:
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)
-    except ImportError as error:
-        # What students are handed has no grader in it.
-        if (error.name or "").partition(".")[0] != "autograder" or Path(__file__).with_name(
-            "grading"
-        ).is_dir():
-            raise
-        print(
-            "autograder: this is the students' part of the course: that command is not in it", file=sys.stderr
-        )
+    except course.NoCourse as error:
+        print(f"autograder: {error}", file=sys.stderr)
         sys.exit(2)
+    except ImportError as error:
+        missing = why_missing(error)
+        if not missing:
+            raise
+        print(f"autograder: {missing}", file=sys.stderr)
+        sys.exit(2)
+
+
+def why_missing(error: ImportError) -> str:
+    """Return what to type to get a module that an installation leaves out; empty for any other module."""
+    top = (error.name or "").partition(".")[0]
+    if top == "autograder" and not Path(__file__).with_name("grading").is_dir():
+        return "this is the students' part of the course: that command is not in it"
+    if top == "rclpy":
+        return f"there is no ROS 2 here: source a Jazzy, or type: pip install '{PACKAGE}[ros]'"
+    with contextlib.suppress(metadata.PackageNotFoundError):
+        for line in metadata.requires(PACKAGE) or ():
+            name, _, marker = line.partition(";")
+            extra = marker.partition("extra == ")[2].strip("\"' ")
+            if extra and re2.match(r"[\w.-]+", name)[0].replace("-", "_").lower() == top.lower():
+                return f"{top} is not installed, which this command needs: pip install '{PACKAGE}[{extra}]'"
+    return ""
 
 
 if __name__ == "__main__":

@@ -73,19 +73,40 @@ class Chapter:
 
 
 def root() -> Path:
-    """The top folder of the course: a clone of the repository.
+    """Return the top folder of the course.
 
-    The environment variable ``AUTOGRADER_COURSE`` overrides the place of the installed package.
+    It is the folder in the environment variable ``AUTOGRADER_COURSE``, or else the clone that this package is in.
 
     Raises:
-        NoCourse: There is no course there.
+        NoCourse: There is no course.
     """
-    folder = Path(os.environ.get(VARIABLE) or Path(__file__).resolve().parents[1]).absolute()
-    if not _written(folder).is_dir():
-        raise NoCourse(
-            f"{folder} holds no course: set {VARIABLE} to the folder with solutions/ and chapters/"
-        )
-    return folder
+    named = os.environ.get(VARIABLE)
+    folder = Path(named or Path(__file__).resolve().parents[1]).absolute()
+    if _written(folder).is_dir():
+        return folder
+    if named:
+        raise NoCourse(f"{VARIABLE} is {folder}, and there is no folder {SOLUTIONS} in it")
+    raise NoCourse(
+        f"there is no course here: go to a folder with {SOLUTIONS}/ in it, or set {VARIABLE} to such a folder"
+    )
+
+
+def use(folder: Path) -> None:
+    """Use a course from now on, in this process and its children, if none is named and this package is in none."""
+    if VARIABLE not in os.environ and not _written(Path(__file__).resolve().parents[1]).is_dir():
+        os.environ[VARIABLE] = str(folder)
+
+
+def use_the_one_around(folder: Path) -> None:
+    """Use the course that a folder is in, if it is in one.
+
+    For commands that run what their user wrote. A command for a class never looks around: a student's folder could
+    hold a course, too.
+    """
+    for candidate in (folder, *folder.parents):
+        if _written(candidate).is_dir():
+            use(candidate)
+            return
 
 
 def variables() -> dict[str, str]:

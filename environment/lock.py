@@ -3,7 +3,7 @@
 The lock files in ``requirements/`` are one resolution, cut into the parts that a set-up installs separately:
 
 * ``uv.lock``: uv, which installs the others, and resolves them here;
-* ``course.lock``: the dependencies of pyproject.toml and the build tools;
+* ``course.lock``: the dependencies of pyproject.toml, those of a class, and the build tools;
 * ``ros.lock``: the ROS wheels and what only they need, left out where a Jazzy is sourced;
 * ``dev.lock``: what ``./course test`` needs besides;
 * ``cluster.lock``, ``postgresql.lock``: what the extra of that name needs besides, installed where it is asked for.
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parent.parent
 REQUIREMENTS = ROOT / "environment" / "requirements"
 EXTRAS = ("cluster", "postgresql")
+COURSE = ("--extra", "class")
+"""The extras that the course itself is installed with: ROS is in a lock of its own."""
 LOCKS = ("uv", "course", "ros", "dev", *EXTRAS)
 
 # The oldest Python of the project; the resolution is universal, markers cover the newer ones.
@@ -130,11 +132,11 @@ def main(arguments: list[str] | None = None) -> int:
         locked = [REQUIREMENTS / f"{name}.lock" for name in LOCKS]
         everything.write_text("".join(path.read_text(encoding="utf-8") for path in locked if path.exists()))
         extras = [word for extra in ("dev", *EXTRAS) for word in ("--extra", extra)]
-        _resolve(uv, everything, [ros, tools, pyproject], "--generate-hashes", *extras, *upgrade)
+        _resolve(uv, everything, [ros, tools, pyproject], "--generate-hashes", *COURSE, *extras, *upgrade)
         same = ("--constraint", str(everything), "--no-annotate")
-        course = _resolve(uv, work / "course.txt", [tools, pyproject], *same)
+        course = _resolve(uv, work / "course.txt", [tools, pyproject], *COURSE, *same)
         wanted = {
-            extra: _resolve(uv, work / f"{extra}.txt", [tools, pyproject], "--extra", extra, *same)
+            extra: _resolve(uv, work / f"{extra}.txt", [tools, pyproject], *COURSE, "--extra", extra, *same)
             for extra in ("dev", *EXTRAS)
         }
         bodies = cut(

@@ -98,8 +98,9 @@ def test_every_link_leads_somewhere(path: Path) -> None:
     assert not [why for target in targets if (why := broken(path, target))]
 
 
-IN_A_NEW_SHELL = sorted({*DOCS, ROOT / "README.md"} - {ROOT / "docs" / "students-guide.md"})
-"""The student's guide has JupyterLab's own terminal, in which the programs are found."""
+OWN_SHELL = {ROOT / "docs" / f"{name}.md" for name in ("students-guide", "your-own-repository")}
+"""The student's guide has JupyterLab's own terminal, and a repository of one's own an environment that is activated."""
+IN_A_NEW_SHELL = sorted({*DOCS, ROOT / "README.md"} - OWN_SHELL)
 
 
 @pytest.mark.parametrize("path", IN_A_NEW_SHELL, ids=lambda path: path.name)

@@ -63,6 +63,7 @@ NIGHTLY = (
     "tests/authoring/test_new_exercise.py::test_a_judge_that_dies_of_the_exercise_is_a_surprise",
     "tests/authoring/test_new_exercise.py::test_what_is_expected_does_not_change_unasked",
     "tests/test_second_chapter.py",
+    "tests/test_wheel.py::test_an_exercise",
     "tests/test_adding_an_exercise.py",
     # A browser, but for the first minutes and for texts that nobody may trust.
     "tests/browser/test_accessibility.py",

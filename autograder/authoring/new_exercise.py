@@ -16,7 +16,7 @@ from autograder.temporary_folders import HeldFolder
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-EXAMPLES = Path(course.__file__).resolve().parents[1] / "docs" / "examples"
+EXAMPLES = Path(__file__).with_name("examples")
 """A course of examples: each of its labs is the example of the recipe that it is named after."""
 LEFT_OUT = shutil.ignore_patterns("__pycache__", f"*{exercises.REFERENCE}")
 """Files that are made anew for the copy."""

@@ -122,9 +122,14 @@ def box_arguments(scratch: Path, binds: Sequence[Bind | Link], *, scratch_visibl
 
 
 def _course_below_the_scratch() -> tuple[str, ...]:
-    """The course's folder where it is below ``/tmp``: Python searches it, and in the scratch one could write."""
+    """Return the folder of the clone if it is below ``/tmp``: Python searches it, and a box could write there.
+
+    The folder of an installed package is a part of Python's own, which the box sees read-only.
+    """
     folder = _PACKAGE.parent
-    return (str(folder),) if any(folder.is_relative_to(place) for place in (HOME, Path("/tmp"))) else ()
+    if folder.is_relative_to(sys.prefix) or not any(map(folder.is_relative_to, (HOME, Path("/tmp")))):
+        return ()
+    return (str(folder),)
 
 
 def _etc(scratch: Path) -> list[str]:

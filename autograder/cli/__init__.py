@@ -6,15 +6,26 @@ input, or trouble of the grader's own). Imports are inside the commands: ``check
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import click
 
+from autograder import course
 from autograder.cli import appeals, authors, instructors, students
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="ros2-course-autograder", prog_name="autograder")
-def cli() -> None:
+@click.pass_context
+def cli(context: click.Context) -> None:
     """Check ROS 2 exercises on the wire, build the notebooks, grade a class."""
+    if context.invoked_subcommand in IN_A_COURSE:
+        course.use_the_one_around(Path.cwd())
+
+
+IN_A_COURSE = {str(command.name) for command in (instructors.new_class, *authors.COMMANDS)}
+"""The commands that work on the course around the current folder, besides `check` of one's own program. Every other
+command for a class uses the course that `new-class` recorded: students' work could hold a course of their own."""
 
 
 for command in (*students.COMMANDS, *authors.COMMANDS, *instructors.COMMANDS, *appeals.COMMANDS):

@@ -55,8 +55,10 @@ def check(
 
     Exit code 0: passed; 1: not passed; 2: could not be checked.
     """  # noqa: D301 (to click, the backspace keeps the lines below it apart)
-    from autograder import exercises
+    from autograder import course, exercises
 
+    if not boxed:  # the folder of a program in a box is a student's
+        course.use_the_one_around(Path.cwd())
     if exercise is None:
         list_exercises()
         return
@@ -208,9 +210,6 @@ def _notebooks_and_journal(root: Path, folder: Path | None) -> tuple[Path, Path 
 @click.option("--json", "as_json", is_flag=True, help="Print the findings as JSON.")
 def doctor(as_json: bool) -> None:
     """Say what is there, what is missing and how to get it."""
-    from autograder import course
-
-    sys.path.insert(0, str(course.root()))
     from environment import doctor as probes
 
     sys.exit(probes.main(["--json"] if as_json else []))

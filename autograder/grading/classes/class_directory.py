@@ -7,11 +7,13 @@ import functools
 import hashlib
 import unicodedata
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 from zoneinfo import ZoneInfo
 
 from traitlets.config.loader import PyFileConfigLoader
 
+from autograder import course
 from autograder.grading.classes.class_lock import held
 from autograder.grading.classes.seeds import create_secret, read_secret
 from autograder.grading.errors import ClassIncomplete, NotAClass, clear_disk_errors
@@ -20,7 +22,6 @@ from autograder.regular_files import remove_unfinished
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
-    from pathlib import Path
 
     from nbformat import NotebookNode
     from traitlets.config import Config
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 
 CONFIG_NAME = "nbgrader_config.py"
 STATE_NAME = ".autograder"
+COURSE_NAME = "course"
+"""The file in the state with the top folder of the class's course: an installed package is in no course."""
 SUFFIX = ".ipynb"
 _LONGEST_NAME = 100
 _STUDENTS_FILES = ("submitted", "autograded", "feedback", "downloaded")
@@ -82,6 +85,8 @@ class ClassDirectory:
         if not (self.path / "source").is_dir():
             raise NotAClass(path, "there is no folder named source in it")
         refuse_students_folder(self.path)
+        with contextlib.suppress(OSError):
+            course.use(Path((self.state / COURSE_NAME).read_text(encoding="utf-8")))
 
     @property
     def state(self) -> Path:

@@ -21,6 +21,7 @@ from autograder.boxes.limits import Limits
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import (
     CONFIG_NAME,
+    COURSE_NAME,
     STATE_NAME,
     SUFFIX,
     ClassDirectory,
@@ -145,6 +146,7 @@ def new_class(
         with clear_disk_errors(path):
             path.mkdir(parents=True, exist_ok=True)
             _fill(path, sources, config)
+            (path / STATE_NAME / COURSE_NAME).write_text(str(course_root.resolve()), encoding="utf-8")
     except BaseException:
         # Half a class would only be in the way of the next try.
         for entry in path.iterdir() if path.is_dir() else ():

@@ -1,0 +1,121 @@
+"""The judge without the course: the wheel, in an empty environment, makes, tries and grades an exercise."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+UV = Path(sys.prefix) / "bin" / "uv"
+
+
+def run(*words: str | Path, cwd: Path, code: int = 0, **variables: str) -> str:
+    """Run a command that knows nothing of this environment, and return what it printed."""
+    activated = Path(words[0]).parent
+    bare = {"PATH": f"{activated}:/usr/bin:/bin", "HOME": str(cwd), **variables}
+    done = subprocess.run(
+        list(map(str, words)), cwd=cwd, env=bare, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == code, done.stdout + done.stderr
+    return done.stdout + done.stderr
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The wheel, built from a copy, so that nothing is left in the clone."""
+    copy = tmp_path_factory.mktemp("copy") / "course"
+    shutil.copytree(
+        ROOT, copy, ignore=shutil.ignore_patterns(".git", ".venv", "tests", "__pycache__", "*.egg-info")
+    )
+    command = [
+        UV,
+        "build",
+        "--wheel",
+        "--no-build-isolation",
+        "--python",
+        sys.executable,
+        "--out-dir",
+        copy / "dist",
+    ]
+    subprocess.run(list(map(str, command)), cwd=copy, check=True, capture_output=True)
+    return next((copy / "dist").glob("*.whl"))
+
+
+@pytest.fixture(scope="module")
+def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An environment with the wheel and ROS, and no notebooks."""
+    folder = tmp_path_factory.mktemp("empty")
+    subprocess.run([UV, "venv", "--python", sys.executable, folder / "venv"], check=True, capture_output=True)
+    add(folder, wheel, "ros")
+    return folder
+
+
+def add(folder: Path, wheel: Path, extra: str) -> None:
+    """Install the wheel with an extra, with the versions of the locks."""
+    locks = ROOT / "environment" / "requirements"
+    constraints = folder / "constraints.txt"
+    constraints.write_text(
+        "".join(
+            f"{line.removesuffix(chr(92)).strip()}\n"
+            for lock in ("course", "ros")
+            for line in (locks / f"{lock}.lock").read_text().splitlines()
+            if "==" in line and not line.startswith((" ", "#"))
+        )
+    )
+    command = [UV, "pip", "install", "--python", folder / "venv", "-c", constraints, f"{wheel}[{extra}]"]
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.ros
+def test_an_exercise_is_made_tried_checked_and_a_class_of_two_is_graded(installed: Path, wheel: Path) -> None:
+    autograder = installed / "venv" / "bin" / "autograder"
+    listed = run(UV, "pip", "list", "--python", installed / "venv", cwd=installed)
+    assert not {"jupyterlab", "nbgrader", "igraph"} & {line.split()[0] for line in listed.splitlines()}
+    mine = installed / "my-course"
+    assert "there is no course here" in run(autograder, "check", cwd=installed, code=2)
+    (mine / "solutions").mkdir(parents=True)
+    run(autograder, "new-exercise", "lab_1_1.battery", "--chapter", "01_first", cwd=mine)
+    assert "6 answers, none not as expected" in run(autograder, "try-exercise", "lab_1_1.battery", cwd=mine)
+    program = mine / "solutions/01_first/lab_1_1/battery.answers/right/usual.py"
+    inside = mine / "solutions" / "01_first"
+    judged = run(autograder, "check", "lab_1_1.battery", "--json", "--", "python3", program, cwd=inside)
+    assert json.loads(judged.splitlines()[-1])["score"] == 10
+    assert "pip install 'ros2-course-autograder[notebooks]'" in run(autograder, "build", cwd=mine, code=2)
+
+    add(installed, wheel, "class")
+    run(autograder, "build", cwd=mine)
+    class_ = installed / "class"
+    run(autograder, "new-class", class_, cwd=mine)
+    for student, folder in (("ada", class_ / "source" / "lab_1_1"), ("ben", mine / "chapters" / "01_first")):
+        shutil.copytree(folder, class_ / "submitted" / student / "lab_1_1")
+    graded = run(autograder, "grade", class_, "--json", cwd=installed)
+    points = {one["student"]: one["score"] for one in json.loads(graded.splitlines()[-1])["submissions"]}
+    assert points == {"ada": 10, "ben": 0}
+
+
+def test_a_folder_of_a_student_is_no_course_to_a_command_for_a_class(tmp_path: Path) -> None:
+    """Mallory hands in a folder with a course in it, and the instructor types `grade` there."""
+    evil = tmp_path / "submitted" / "mallory" / "solutions" / "01_x" / "lab_1" / "evil.py"
+    evil.parent.mkdir(parents=True)
+    evil.write_text("print('it ran')")
+    code = (
+        "import os; from autograder import course; from autograder.cli import cli, IN_A_COURSE\n"
+        "assert not IN_A_COURSE & {'grade', 'collect', 'report', 'export', 'similar', 'appeal', 'replay', 'compare'}\n"
+        "course.use_the_one_around.__globals__['use'] = lambda folder: print('used', folder)\n"
+        "cli(['grade', '.'])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=tmp_path / "submitted" / "mallory",
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, "used" in done.stdout, "it ran" in done.stdout) == (2, False, False), done.stderr
