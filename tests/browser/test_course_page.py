@@ -122,10 +122,10 @@ def test_page_notebook_check_tick_reset_end(page: Page, lab: str, chapters: Path
     assert (chapters / NOTEBOOK).read_bytes() == (ROOT / "chapters" / NOTEBOOK).read_bytes()
 
     # A notebook from the panel opens beside the others, in the same tab of the browser.
-    panel.locator("#read-summary").click()
-    expect(panel.locator("#read-summary")).to_have_attribute("aria-pressed", "true")
-    panel.locator("#open-summary").click()
-    expect(page.locator(".jp-NotebookPanel:not(.lm-mod-hidden)")).to_contain_text("The chapter in short")
+    panel.locator("#read-inspecting_actions").click()
+    expect(panel.locator("#read-inspecting_actions")).to_have_attribute("aria-pressed", "true")
+    panel.locator("#open-inspecting_actions").click()
+    expect(page.locator(".jp-NotebookPanel:not(.lm-mod-hidden)")).to_contain_text("Inspecting actions")
 
     expect(panel.locator(".certificate")).to_have_count(0)
     all_but("", chapters)
