@@ -205,3 +205,26 @@ def test_a_broken_link_is_found(text: str, wrong: bool) -> None:
     found = LINK.search(text)
     assert found is not None
     assert bool(broken(ROOT / "README.md", found["target"])) == wrong
+
+
+LISTED = re.compile(r"^\| \[[^\]]*\]\((chapters/[^)]*)\).* \| (\d+) \| (\d+|to read) \|$", re.MULTILINE)
+
+
+def test_the_readme_lists_each_notebook_with_its_minutes_and_points() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    true = {}
+    for path in NOTEBOOKS:
+        cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+        marks = [cell["metadata"].get("nbgrader", {}) for cell in cells]
+        points = sum(mark["points"] for mark in marks if mark.get("grade"))
+        minutes = re.search(r"\*(\d+) minutes ·", markdown(path))
+        assert minutes
+        true[str(path.relative_to(ROOT))] = (int(minutes[1]), points)
+    listed = {
+        file: (int(minutes), 0 if points == "to read" else int(points))
+        for file, minutes, points in LISTED.findall(readme)
+    }
+    assert listed == true
+    hours = round(sum(minutes for minutes, _ in true.values()) / 30) / 2
+    assert f"{len(true)} notebooks, about {hours:g} hours".replace(".5", "½") in readme
+    assert f"{sum(points for _, points in true.values())} points" in readme
