@@ -106,13 +106,10 @@ ROWS = (
         )
         for names, here in _HERE.items()
     ),
-    *(
-        Elsewhere(
-            rf"AttributeError: '\w+' object has no attribute '(?P<name>{names})'",
-            "{name} is ROS 1's, and this course uses ROS 2.",
-            _HERE[names],
-        )
-        for names in (_LOG, "get_param")  # are looked for in the node, too
+    Elsewhere(
+        rf"AttributeError: '\w+' object has no attribute '(?P<name>{_LOG})'",  # is looked for in the node, too
+        "{name} is ROS 1's, and this course uses ROS 2.",
+        _HERE[_LOG],
     ),
     Elsewhere(
         r"(?:ModuleNotFoundError: No module named|NameError: name) '(?P<name>rospy|roslib|actionlib|rospkg)\b",

@@ -49,7 +49,6 @@ SAYS = {
     "rclpy.Rate(2)": "self.create_timer(0.5, self.tick)",
     "node.loginfo('hello')": "self.get_logger().info",
     "node.get_logger().logerr('hello')": "self.get_logger().info",
-    "node.get_param('speed')": "self.declare_parameter",
     "node.create_publisher('chatter', String, queue_size=10)": "First the type, then the name, and the depth",
     "node.create_publisher(String, 'chatter', 10, latch=True)": "latch= is ROS 1's",
     "node.create_publisher('chatter', String, 10)": "create_publisher(String, 'chatter', 10)",
@@ -103,6 +102,7 @@ NOTHING = (
     "print(std)",
     "def f(x)->int return x",
     "rclpy.Anything()",
+    "node.get_param('speed')",  # Python itself names get_parameter, which the node has
     "1 + 1",
 )
 

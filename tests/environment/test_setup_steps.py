@@ -84,6 +84,7 @@ def test_the_interfaces_are_made_from_every_file_of_their_package() -> None:
     names = {path.name for path in steps()["interfaces"].inputs if isinstance(path, Path)}
     assert {
         "AddTwoInts.srv",
+        "Trigger.srv",
         "Fibonacci.action",
         "WalkTo.action",
         "interface_packages.py",
