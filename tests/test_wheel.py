@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -23,6 +24,11 @@ def run(*words: str | Path, cwd: Path, code: int = 0, **variables: str) -> str:
     )
     assert done.returncode == code, done.stdout + done.stderr
     return done.stdout + done.stderr
+
+
+def printed_json(text: str) -> Any:
+    """The JSON object among the lines of a command."""
+    return json.loads(next(line for line in text.splitlines() if line.startswith("{")))
 
 
 @pytest.fixture(scope="module")
@@ -86,7 +92,7 @@ def test_an_exercise_is_made_tried_checked_and_a_class_of_two_is_graded(installe
     program = mine / "solutions/01_first/lab_1_1/battery.answers/right/usual.py"
     inside = mine / "solutions" / "01_first"
     judged = run(autograder, "check", "lab_1_1.battery", "--json", "--", "python3", program, cwd=inside)
-    assert json.loads(judged.splitlines()[-1])["score"] == 10
+    assert printed_json(judged)["score"] == 10
     assert "pip install 'ros2-course-autograder[notebooks]'" in run(autograder, "build", cwd=mine, code=2)
 
     add(installed, wheel, "class")
@@ -96,7 +102,7 @@ def test_an_exercise_is_made_tried_checked_and_a_class_of_two_is_graded(installe
     for student, folder in (("ada", class_ / "source" / "lab_1_1"), ("ben", mine / "chapters" / "01_first")):
         shutil.copytree(folder, class_ / "submitted" / student / "lab_1_1")
     graded = run(autograder, "grade", class_, "--json", cwd=installed)
-    points = {one["student"]: one["score"] for one in json.loads(graded.splitlines()[-1])["submissions"]}
+    points = {one["student"]: one["score"] for one in printed_json(graded)["submissions"]}
     assert points == {"ada": 10, "ben": 0}
 
 
