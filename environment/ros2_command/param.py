@@ -86,10 +86,15 @@ def hidden_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
 
 
-def _parameter_arguments(parser: argparse.ArgumentParser) -> None:
+def node_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what every verb takes that asks one node: the options about the graph, and the node."""
     add_graph_arguments(parser)
     parser.add_argument("node_name", help="Name of the ROS node")
     hidden_option(parser)
+
+
+def _parameter_arguments(parser: argparse.ArgumentParser) -> None:
+    node_arguments(parser)
     parser.add_argument("parameter_name", help="Name of the parameter")
 
 
@@ -156,9 +161,7 @@ def _list(args: argparse.Namespace) -> Outcome:
 
 
 def _describe_arguments(parser: argparse.ArgumentParser) -> None:
-    add_graph_arguments(parser)
-    parser.add_argument("node_name", help="Name of the ROS node")
-    hidden_option(parser)
+    node_arguments(parser)
     parser.add_argument("parameter_names", nargs="+", help="Names of the parameters")
     timeout_option(parser)
 

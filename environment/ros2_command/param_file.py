@@ -6,12 +6,12 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from environment.ros2_command.commands import Outcome, Verb
-from environment.ros2_command.graph_node import add_graph_arguments, graph_node
+from environment.ros2_command.graph_node import graph_node
 from environment.ros2_command.names import absolute
 from environment.ros2_command.param import (
     ask,
     find_node,
-    hidden_option,
+    node_arguments,
     plain_value,
     timed_out,
     timeout_option,
@@ -22,9 +22,7 @@ if TYPE_CHECKING:
 
 
 def _dump_arguments(parser: argparse.ArgumentParser) -> None:
-    add_graph_arguments(parser)
-    parser.add_argument("node_name", help="Name of the ROS node")
-    hidden_option(parser)
+    node_arguments(parser)
     timeout_option(parser)
 
 
@@ -55,9 +53,7 @@ def _dump(args: argparse.Namespace) -> Outcome:
 
 
 def _load_arguments(parser: argparse.ArgumentParser) -> None:
-    add_graph_arguments(parser)
-    parser.add_argument("node_name", help="Name of the ROS node")
-    hidden_option(parser)
+    node_arguments(parser)
     parser.add_argument("parameter_file", help="Parameter file")
     parser.add_argument(
         "--no-use-wildcard",
