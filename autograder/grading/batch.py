@@ -45,7 +45,7 @@ from autograder.grading.table.true_rows import true_rows
 from autograder.grading.table.what_counts import read_what_counts
 from autograder.grading.work import AskedFor, Work, find_work, without_grade, would_change
 
-# What only a class with something to grade needs is imported where it is used: nbgrader alone takes a second.
+# Modules that only grading needs are imported inside functions: importing nbgrader takes a second.
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -84,7 +84,7 @@ def grade(
         students: Only these; all by default.
         sections: Only the students of these, and those who are named.
         jobs: Notebooks executed at once; as many as processors and memory allow by default.
-        again: Execute everything anew, also what is unchanged.
+        again: Execute every notebook again, even if it has not changed.
         feedback: Make the pages that go back to the students.
         console: The console for progress; standard error by default.
         judge: The class that makes a judge, as ``module:class``; the real one by default.
@@ -96,7 +96,7 @@ def grade(
         The report. Submissions that could not be graded are in it, with zero points and the reason.
 
     Raises:
-        GradingError: The class cannot be graded: it is none, it is busy, the disk is full, nobody can execute it.
+        GradingError: The class cannot be graded: not a class, busy, disk full, or no worker can execute it.
     """
     began = time.monotonic()
     console = console or Console(stderr=True)
@@ -120,7 +120,7 @@ def grade(
         batch = _Batch(directory, store, console, roster, asked, feedback=feedback, dry_run=dry_run)
         batch.collect()
         batch.plan(again)
-        # Before anything is taken back: where nobody can execute anything, all stays as it is.
+        # Before any result is withdrawn: if no worker can execute notebooks, the class stays unchanged.
         execute = stack.enter_context(backend) if batch.unsettled else None
         if not dry_run:
             batch.take_back()
@@ -213,7 +213,7 @@ class _Batch:
         if older:
             self._notices.append(
                 f"{older} submissions had been graded with another version of the course; `./course compare` says "
-                "who has other points since, and `./course grade --dry-run` says it before a run"
+                "whose points have changed since; `./course grade --dry-run` lists them before a run"
             )
         if again:
             self._store.forget_results(work.submission for work in self._works)
@@ -347,7 +347,7 @@ class _Batch:
             self._write(work)
 
     def _tasks(self, works: Sequence[Work]) -> Iterator[Task]:
-        """The tasks to be executed; each is made only when somebody asks for the next one."""
+        """Yield the tasks to execute; each is built only when the caller asks for it."""
         for work in works:
             for task in self._tasks_of(work.submission):
                 if task.problem:
@@ -383,7 +383,7 @@ class _Batch:
         try:
             with self._timings.measure("gradebook"):
                 if self._fingerprints.of(work.submission) != work.fingerprint:
-                    # Its tasks may have been made of other bytes than those that the record would stand for.
+                    # The tasks may have been built from bytes that differ from those this record describes.
                     name = f"{work.submission.student}/{work.submission.assignment}"
                     raise NotWritten(f"{name} was changed while it was graded: grade it again")
                 self._writer.write(work.submission, work.fingerprint, work.pairs, rows)

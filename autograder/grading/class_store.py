@@ -119,7 +119,7 @@ class ClassStore:
 
         The evidence of what stands in the gradebook stays: a run that enters nothing must leave it to an appeal.
 
-        Where the grader itself had trouble nothing is kept and nothing is replaced: the next run tries again.
+        If the grader itself failed, nothing is stored or replaced: the next run tries again.
         """
         result = replace(execution, evidence={})
         if execution.trouble:
@@ -152,7 +152,7 @@ class ClassStore:
         return {task: execution for task, execution in found.items() if execution is not None}
 
     def forget_results(self, submissions: Iterable[Submission]) -> None:
-        """Drop the results of submissions, which are then executed anew. Their evidence stays until there is other."""
+        """Drop the results of submissions, so that they run again. Their evidence stays until a new run replaces it."""
         with self._step() as book:
             names = ((one.student, one.assignment) for one in submissions)
             book.executemany("DELETE FROM result WHERE (student, assignment) = (?, ?)", names)
@@ -172,7 +172,7 @@ class ClassStore:
     # -- what stands in the gradebook
 
     def enter(self, submission: Submission, attempt: Attempt, entered: Entered | None) -> None:
-        """Note an attempt, and what stands in the gradebook now; None where that is to be tried again."""
+        """Note an attempt, and what stands in the gradebook now; None if the next run should try again."""
         names = (submission.student, submission.assignment)
         with self._step() as book:
             book.execute(
@@ -241,7 +241,7 @@ class ClassStore:
     # -- runs
 
     def keep_run(self, course: str, rows: Sequence[Row]) -> None:
-        """Keep the table of a run if it is another one than the last; the oldest are dropped."""
+        """Keep the table of a run if it differs from the last one; the oldest tables are dropped."""
         report = msgspec.json.encode(rows)
         if self._rows("SELECT course, report FROM run ORDER BY name DESC LIMIT 1") == [(course, report)]:
             return
@@ -258,7 +258,7 @@ class ClassStore:
         return [name for (name,) in self._rows("SELECT name FROM run ORDER BY name")]
 
     def run(self, name: str) -> tuple[Row, ...] | None:
-        """The table of a run; None where there is none of that name."""
+        """Return the table of a run, or None if no run has this name."""
         rows = self._rows("SELECT report FROM run WHERE name = ?", name)
         return _decoded(rows[0][0], tuple[Row, ...]) if rows else None
 
@@ -273,7 +273,7 @@ class ClassStore:
             )
 
     def origins(self) -> dict[str, Origin]:
-        """The masters of the sources, by assignment; empty where nobody noted them."""
+        """Return the masters of the sources by assignment; empty if the class has no note of them."""
         return {name: Origin(*fields) for name, *fields in self._rows("SELECT * FROM origin")}
 
     def keep_graded_cells(self, fingerprint: str, cells: bytes) -> None:
@@ -302,7 +302,7 @@ class ClassStore:
                 return []
             book = self._opened(may_make=False)
             if not self._has_tables:
-                return []  # whoever made it was killed before the first step was done
+                return []  # the process that made the file was killed before its first transaction
             return book.execute(question, [name_as_text(name) for name in names]).fetchall()
 
     @contextlib.contextmanager
@@ -316,8 +316,7 @@ class ClassStore:
 
     def _opened(self, *, may_make: bool) -> sqlite3.Connection:
         if self._connection is None:
-            # Open for writing also where only questions follow, so that a step that was killed in its middle is put
-            # back first. SQLite opens a file that may not be written to for reading.
+            # Open for writing even if only queries follow, so that SQLite rolls back a transaction that was killed.
             address = f"{self._path.as_uri()}?mode={'rwc' if may_make else 'rw'}"
             self._connection = sqlite3.connect(address, _PATIENCE, isolation_level=None, uri=True)
             self._connection.execute("PRAGMA journal_mode = TRUNCATE")
@@ -353,7 +352,7 @@ class ClassStore:
 def _decoded(
     data: bytes, form: type[_Decoded], decode: Callable[..., Any] = msgspec.json.decode
 ) -> _Decoded | None:
-    """The decoded value; None where it is damaged."""
+    """Return the decoded value, or None if it is damaged."""
     try:
         found: _Decoded = decode(data, type=form)
     except msgspec.MsgspecError:

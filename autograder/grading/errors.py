@@ -44,7 +44,7 @@ def check_known(wanted: Sequence[str], known: Sequence[str], what: str) -> None:
 
 
 class NotAClass(GradingError):
-    """The folder is no class directory."""
+    """The folder is not a class directory."""
 
     def __init__(self, path: Path, missing: str) -> None:
         super().__init__(
@@ -54,7 +54,7 @@ class NotAClass(GradingError):
 
 
 class ClassExists(GradingError):
-    """A class cannot be made where something is already."""
+    """A class cannot be made: the folder is not empty."""
 
 
 class ClassIncomplete(GradingError):
@@ -66,7 +66,7 @@ class ClassBusy(GradingError):
 
     Args:
         path: The class.
-        holder: The process that runs it; empty where it is not known.
+        holder: The process that runs it; empty if unknown.
     """
 
     def __init__(self, path: Path, holder: str) -> None:
@@ -105,7 +105,7 @@ class GradebookTrouble(GradingError):
         )
         super().__init__(
             f"The gradebook of {path} cannot be read or written ({said}). {advice} What was graded so far is "
-            "kept; nobody has been given points that were not earned."
+            "kept; no student has points that were not earned."
         )
 
 
@@ -123,26 +123,26 @@ class StoreTrouble(GradingError):
         )
         super().__init__(
             f"{file}, which holds what was graded, cannot be read or written ({said}). {advice} The gradebook is not "
-            "touched by that, and nobody has been given points that were not earned."
+            "touched by that, and no student has points that were not earned."
         )
 
 
 _GRADEBOOK_ADVICE = {
-    "locked": "Another program has it open for writing: close that, and run the same command again.",
-    "readonly": "Look at its owner and its mode, and at those of its folder; then run the same command again.",
-    "not a database": "Put back a copy of it; the next run enters all grades anew.",
-    "malformed": "Put back a copy of it; the next run enters all grades anew.",
-    "connection": "Look whether the database server runs, and whether its address and your right to it are right.",
+    "locked": "Another program has the file open for writing: close it, and run the same command again.",
+    "readonly": "Check the owner and the mode of the file and of its folder; then run the same command again.",
+    "not a database": "Restore a backup of the file; the next run enters all grades again.",
+    "malformed": "Restore a backup of the file; the next run enters all grades again.",
+    "connection": "Check that the database server runs, and that its address and your access rights are correct.",
 }
 
 _STORE_ADVICE = {
     "locked": _GRADEBOOK_ADVICE["locked"],
     "readonly": _GRADEBOOK_ADVICE["readonly"],
     "unable to open": _GRADEBOOK_ADVICE["readonly"],
-    "disk I/O error": "Look whether your quota is used up and the disk is sound; then run the same command again.",
-    "newer course": "It is sound: leave it there, and go on with the course that wrote it, or with a newer one.",
-    "malformed": "Put back a copy of it. Without a copy, rename it: the next run grades everything anew, and what was "
-    "noted of earlier attempts, runs and appeals is in the renamed file alone.",
+    "disk I/O error": "Check your quota and the health of the disk; then run the same command again.",
+    "newer course": "The file is not damaged. Use the version of the course that wrote it, or a newer one.",
+    "malformed": "Restore a backup of the file. Without a backup, rename it: the next run grades everything again, and "
+    "the notes of earlier attempts, runs and appeals stay in the renamed file only.",
 }
 
 
@@ -165,7 +165,7 @@ def clear_disk_errors(path: Path) -> Iterator[None]:
         path: The class that is worked on.
 
     Raises:
-        DiskFull: There is no room left, whoever noticed it.
+        DiskFull: The disk is full, whichever step found out.
         GradebookTrouble: The gradebook is locked, read-only, damaged or out of reach.
         GradingError: Something may not be read or written.
     """
@@ -200,7 +200,7 @@ def clear_place_errors(path: Path, option: str) -> Iterator[None]:
         option: The option that names another place.
 
     Raises:
-        GradingError: A folder or a file stands in its way, or there can be no file of that name.
+        GradingError: A file or folder with this name is in the way, or the name is not allowed.
         OSError: It is the disk's trouble, for which :func:`clear_disk_errors` has words.
     """
     try:
@@ -213,12 +213,12 @@ def clear_place_errors(path: Path, option: str) -> Iterator[None]:
             reason = f"{path} is a folder, and a file is to be written there"
         elif isinstance(error, FileExistsError | NotADirectoryError):
             in_the_way = [one for one in path.parents if one.exists() and not one.is_dir()]
-            reason = f"{in_the_way[0]} is no folder" if in_the_way else reason
+            reason = f"{in_the_way[0]} is not a folder" if in_the_way else reason
         raise GradingError(f"{reason}. Name another place: {option}") from error
 
 
 def said_by_database(error: BaseException | None) -> str:
-    """The words of the database at the bottom of ``error``; empty where there is none."""
+    """Return the message of the database error that caused ``error``; empty if no database error did."""
     while error is not None:
         if type(error).__module__.startswith(("sqlite3", "sqlalchemy")):
             return " ".join(str(getattr(error, "orig", None) or error).split())[:200]

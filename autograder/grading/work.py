@@ -97,7 +97,7 @@ class Work:
 
 @dataclass(frozen=True)
 class FoundWork:
-    """The work that is there.
+    """The work that was found.
 
     Attributes:
         works: The submissions that were asked for.
@@ -132,7 +132,7 @@ def find_work(
 
     Raises:
         MasterUnusable: An assignment that was asked for by name cannot be graded.
-        GradingError: There is no assignment or student of a name that was asked for.
+        GradingError: A name that was asked for is not an assignment or a student.
     """
     submissions, refused = directory.submissions()
     found = FoundWork([], [], refused, [])

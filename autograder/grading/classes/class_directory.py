@@ -102,10 +102,10 @@ class ClassDirectory:
 
     @functools.cached_property
     def config(self) -> Config:
-        """The class's nbgrader configuration, with the root set to where the class is now.
+        """Return the class's nbgrader configuration, with its root set to the class's present folder.
 
         Raises:
-            ClassIncomplete: The configuration is no Python, or not one that grades with the judge.
+            ClassIncomplete: The configuration is not valid Python, or does not grade with the judge.
         """
         config = self._as_written
         steps = [str(step) for step in config.Autograde.get("autograde_preprocessors", ())]
@@ -128,10 +128,10 @@ class ClassDirectory:
     def time_zone(self) -> ZoneInfo:
         """The time zone in which formgrader takes due dates, and in which this package shows times.
 
-        It is nbgrader's own option, ``c.NbGraderAPI.timezone``, whose default is UTC.
+        This is nbgrader's own option ``c.NbGraderAPI.timezone``; its default is UTC.
 
         Raises:
-            ClassIncomplete: There is no such zone.
+            ClassIncomplete: The zone does not exist.
         """
         name = self._as_written.NbGraderAPI.get("timezone") or "UTC"
         try:
@@ -153,7 +153,7 @@ class ClassDirectory:
 
     @functools.cached_property
     def secret(self) -> bytes:
-        """The class secret, made now where there is none.
+        """Return the class secret; make it if the class has none.
 
         Raises:
             ClassIncomplete: It is damaged.
@@ -220,7 +220,7 @@ class ClassDirectory:
     def submissions(self) -> tuple[list[Submission], list[Refused]]:
         """Everything that was handed in, and what cannot be graded under the name it has.
 
-        What is in the place of a notebook and is no ordinary file is among both: it is graded, with zero points
+        A notebook that is not an ordinary file is in both lists: it gets zero points
         and the reason.
         """
         notebooks = {assignment: self.notebooks(assignment) for assignment in self.assignments()}
@@ -287,7 +287,7 @@ def refuse_students_folder(folder: Path) -> None:
 
 
 def reason_against_name(name: str) -> str:
-    """The reason why a folder's name cannot be a student's id; empty where it can.
+    """Return why a folder's name cannot be a student's id; empty if it can.
 
     nbgrader looks for folders with wildcards and splits paths at separators, so that some characters would
     find a neighbour's folder or none; control characters would forge lines in a terminal or a log.
@@ -311,7 +311,7 @@ def _odd_files(paths: Iterable[Path]) -> Iterator[Refused]:
 
 
 def _folders(parent: Path, refused: list[Refused]) -> list[Path]:
-    """The folders in ``parent`` with usable names; hidden entries and plain files are nobody's work."""
+    """Return the folders in ``parent`` with usable names; hidden entries and plain files are ignored."""
     found = []
     for entry in _entries(parent, refused):
         if entry.name.startswith("."):

@@ -50,11 +50,11 @@ _changing = threading.Lock()
 def held(path: Path, of: Path) -> Iterator[bool]:
     """Hold the lock of a class. The value is True if the process that held it before was killed.
 
-    It is a POSIX record lock: it goes with the process, however that ends, and no child inherits it. Its file has a
-    name in it as long as somebody is at work: one that is there when nobody is was killed.
+    This is a POSIX record lock: the system drops it when the process ends, and no child inherits it. The file contains
+    the holder's name while the lock is held: a name without a lock means that the holder was killed.
 
     Args:
-        path: The lock's file, made where it is not there.
+        path: The lock's file; made if it does not exist.
         of: The class, for messages.
 
     Raises:
@@ -95,7 +95,7 @@ def _take(file: IO[bytes], holder: Holder, of: Path) -> bool:
 
 
 def _who(file: IO[bytes]) -> str:
-    """The holder of the lock, as the file says; empty where the holder has not written its name yet."""
+    """Return the holder that the file names; empty if the holder has not written its name yet."""
     file.seek(0)
     try:
         return str(msgspec.json.decode(file.read(), type=Holder))

@@ -1,7 +1,7 @@
 """The lines of ``nbgrader_config.py`` that decide how a submission is converted, and those that a class may have.
 
-There is one conversion into the gradebook, whoever starts it. An option of nbgrader's own conversion that it does not
-know is refused before anything is touched, so that nobody believes in a line without effect.
+Every command uses the same conversion into the gradebook. If a class sets an option of nbgrader's conversion that this
+one does not support, the command refuses before it changes anything, so that no line is silently ignored.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ _INSTEAD = {
     f"{section}.timeout": "c.WireExecute.cell_seconds limits the time of a cell"
     for section in ("Execute", "ExecutePreprocessor", "NotebookClient")
 }
-"""The line with the effect that somebody may have meant, by option."""
+"""The supported line that the instructor probably meant, by option."""
 
 
 def check_configuration(directory: ClassDirectory) -> None:
@@ -104,10 +104,10 @@ def check_configuration(directory: ClassDirectory) -> None:
 
 
 def limits_of(directory: ClassDirectory) -> Limits:
-    """The limits that the class's configuration sets; the usual ones where it sets none.
+    """Return the limits that the class's configuration sets, or the defaults.
 
     Raises:
-        ClassIncomplete: One of them is no number above zero.
+        ClassIncomplete: A limit is not a number above zero.
     """
     configured = directory.config.WireExecute
     found: dict[str, Any] = {}

@@ -74,8 +74,8 @@ c.NbGraderAPI.timezone = "{timezone}"
 c.ExportApp.plugin_class = "autograder.grading.export.SafeCsvExport"
 c.ExportPlugin.to = "nbgrader_export.csv"
 
-# In seconds: what the machine has for one cell, and the wall time of a whole notebook. Where the machine is crowded,
-# the first last longer. Check cells have their exercise's own limit.
+# In seconds: the time limit of one cell, and of a whole notebook. On a busy machine the limit of a cell is extended.
+# Check cells have the limit of their exercise.
 c.WireExecute.cell_seconds = {cell_seconds:g}
 c.WireExecute.notebook_seconds = {notebook_seconds:g}
 
@@ -231,7 +231,7 @@ def write_source(
     """Write the source of an assignment, with links that lead to the other notebooks in a class.
 
     In the chapter all notebooks are in one folder; in a class, as nbgrader has it, each is in a folder of its own.
-    What is no assignment of the class is named without a link.
+    Notebooks outside the class are named without a link.
 
     Args:
         directory: The class, in which the assignment's folder is there.
@@ -279,7 +279,7 @@ def release(directory: ClassDirectory, assignments: Sequence[str] = ()) -> None:
 
 
 def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> list[str]:
-    """Write the sources of a class anew from the course's masters, and its release from them.
+    """Write the sources of a class again from the course's masters, and the release from the sources.
 
     Args:
         path: The class directory.
@@ -287,7 +287,7 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
         assignments: Only these; all that the course has masters of by default.
 
     Returns:
-        What was done, a line for each assignment.
+        One line for each assignment: what was done.
 
     Raises:
         GradingError: An assignment is not the course's or not the class's, none is both, or nbgrader refuses the new

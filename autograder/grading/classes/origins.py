@@ -40,7 +40,7 @@ def note_origins(store: ClassStore, made: Mapping[str, tuple[Path, NotebookNode]
 
 
 def news(directory: ClassDirectory, store: ClassStore, assignments: Iterable[str]) -> list[str]:
-    """The note before a class is graded: the tasks that were changed since, or that nobody can know.
+    """Return warnings before grading: tasks that changed since the sources were made, or that cannot be compared.
 
     Args:
         directory: The class.
@@ -50,9 +50,9 @@ def news(directory: ClassDirectory, store: ClassStore, assignments: Iterable[str
     known = store.origins()
     if not known:
         return [
-            "This class was made before classes wrote down what their sources were made of, so nobody can tell whether "
-            "the course asks for something else by now. The judge expects what the course says now. Compare a source "
-            "with what the course has, or hand out and grade the new text; then it is written down: "
+            "This class was made by an older version, which did not record the masters of its sources. So it is "
+            "unknown whether the course's tasks have changed since. The judge expects what the course says now. "
+            "Compare a source with the course, or hand out and grade the new text, which then records its masters: "
             + course_command("renew-class", directory.path)
         ]
     return [warning(directory, name) for name in assignments if name in known and _has_moved(known[name])]

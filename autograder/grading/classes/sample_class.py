@@ -87,7 +87,7 @@ def demo(path: Path, *, console: Console | None = None) -> GradeReport:
     is possible it is graded without one: the samples are the course's own.
 
     Args:
-        path: The class directory, which is made where there is none.
+        path: The class directory; made if it does not exist.
         console: Standard output by default.
 
     Raises:
@@ -108,7 +108,7 @@ def _make(path: Path, console: Console) -> None:
     if stamp.is_file():
         if stamp.read_text() == version:
             return
-        console.print(f"The course has changed: making {path} anew.", highlight=False)
+        console.print(f"The course has changed: making {path} again.", highlight=False)
         shutil.rmtree(path)
     elif (path / CONFIG_NAME).exists():
         raise ClassExists(f"{path} is a class of your own. Name another folder: autograder demo FOLDER")

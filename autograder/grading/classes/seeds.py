@@ -46,8 +46,8 @@ def seed_for(secret: bytes, student: str, assignment: str, notebook: str, work: 
         student: The student's id.
         assignment: The assignment's name.
         notebook: The notebook's name.
-        work: Stands for what was handed in. Who has seen the inputs of one submission in its feedback and writes them
-            into the next one gets others there.
+        work: A hash of what was handed in. A student who copies the inputs from the feedback of one submission
+            into the next one gets different inputs there.
     """
     # Lengths are in the message, so that ("ab", "c") and ("a", "bc") never share a seed.
     message = "".join(f"{len(part)}:{part};" for part in (student, assignment, notebook, work))

@@ -25,7 +25,7 @@ _AHEAD = timedelta(days=1)
 
 
 def read_timestamp(folder: Path) -> str:
-    """The text of the file; empty where there is none, or where it is no ordinary file.
+    """Return the text of the file; empty if it does not exist or is not an ordinary file.
 
     Where work is collected with ``./course collect``, the file counts only as far as that has written it: a student
     can put one into what is handed in.
@@ -38,7 +38,7 @@ def read_timestamp(folder: Path) -> str:
 
 
 def _text(path: Path) -> str | None:
-    """The text of a short file; None where there is none that can be read."""
+    """Return the text of a short file, or None if it cannot be read."""
     try:
         return read_bytes(path, most=_LONGEST).decode("ascii", "replace").strip()
     except UnreadableSubmission:
@@ -61,7 +61,7 @@ def companions(folder: Path) -> dict[str, bytes]:
 
 
 def is_not_believed(folder: Path) -> bool:
-    """True if a file beside a submission says another time than ``./course collect`` wrote down in this class."""
+    """True if the timestamp file of a submission differs from the time that ``./course collect`` recorded."""
     records = CollectedRecords(folder.parent.parent.parent / STATE_NAME)
     if not records.is_used or not (folder / TIMESTAMP).exists():
         return False
@@ -78,15 +78,15 @@ def timestamp_text(when: datetime) -> str:
 
 
 def handed_in_at(folder: Path, *, believed: datetime | None = None) -> datetime | None:
-    """The time at which the work in a folder was handed in, in UTC; None where nobody wrote it down.
+    """Return the time at which the work in a folder was handed in, in UTC; None if no file records it.
 
     Args:
         folder: Of the submission.
-        believed: A time that was found possible before, as the one in the gradebook; it stays so, also where the clock
+        believed: A time that was accepted before, such as the one in the gradebook; it stays accepted even if the clock
             of this machine is wrong today.
 
     Raises:
-        ValueError: The text is no time, or a time at which nobody can have handed in anything.
+        ValueError: The text is not a time, or a time at which no student can have handed in work.
     """
     stamp = read_timestamp(folder)
     if not stamp:
@@ -99,7 +99,7 @@ def handed_in_at(folder: Path, *, believed: datetime | None = None) -> datetime 
         raise ValueError(f"{folder / TIMESTAMP} holds no time: {stamp[:60]!r}") from error
     if at != believed and not _EARLIEST <= at <= datetime.now(tz=UTC).replace(tzinfo=None) + _AHEAD:
         raise ValueError(
-            f"{folder / TIMESTAMP} says {stamp[:60]}, when nobody can have handed in anything for this course: "
+            f"{folder / TIMESTAMP} says {stamp[:60]}, when no student can have handed in work for this course: "
             "write the right time into it, or remove it"
         )
     return at

@@ -1,7 +1,7 @@
 """The conversion of a graded submission: its notebooks in ``autograded/``, and its entry in the gradebook.
 
-It leaves behind what nbgrader's own conversion would, in a twentieth of the time: that one reads, validates and writes
-every notebook twice and opens the gradebook a dozen times.
+The result is the same as that of nbgrader's conversion, in a twentieth of the time: nbgrader reads, validates and
+writes every notebook twice, and opens the gradebook a dozen times.
 """
 
 from __future__ import annotations
@@ -182,7 +182,7 @@ def _graded_outputs(
 def _of_tests(outputs: Sequence[Mapping[str, Any]]) -> Iterator[NotebookNode]:
     """The output and errors of tests, in a form by which nbgrader decides nothing.
 
-    It takes an error and a line on standard error for zero points, and the first value for the points.
+    nbgrader gives zero points for an error or a line on standard error, and takes the first value as points.
     """
     for one in outputs:
         if one["output_type"] == "error":

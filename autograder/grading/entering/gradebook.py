@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from sqlalchemy import Connection
 
 Scores = Mapping[str, float | None]
-"""By grade_id; None where there is no automatic score."""
+"""By grade_id; None if the cell has no automatic score."""
 
 _GRADED = ("GradeCell", "TaskCell")
 _COMMENTED = ("SolutionCell", "TaskCell")
@@ -32,7 +32,7 @@ class NotebookEntry:
     """The entry of one notebook.
 
     Attributes:
-        scores: Automatic points of each graded cell, by grade_id; None where a person has to give them.
+        scores: Automatic points of each graded cell, by grade_id; None if a person has to give them.
         comments: Automatic comment on each cell that can have one, by grade_id.
         unchecked: The graded cells that could not be checked: their zero says nothing, as after :func:`reset`.
     """
@@ -76,7 +76,7 @@ def enter(
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
         assignment: The assignment's name.
-        student: The student's id; the student is made where there is none.
+        student: The student's id; an unknown student is added.
         notebooks: Results, by notebook.
         timestamp: The time of handing in, in UTC; None leaves the time that is known already.
 
@@ -133,7 +133,7 @@ def _cells(book: Connection, assignment: str) -> dict[str, _Cells]:
 
 
 def _submission(book: Connection, assignment: str, student: str, timestamp: datetime | None) -> str:
-    """The id of a submission, made where there is none, with its timestamp as nbgrader keeps it."""
+    """Return the id of a submission; add it, with its timestamp as nbgrader keeps it, if it is new."""
     if not book.execute(sql("SELECT 1 FROM student WHERE id = :id"), {"id": student}).first():
         book.execute(sql("INSERT INTO student (id) VALUES (:id)"), {"id": student})
     found = book.execute(
@@ -228,7 +228,7 @@ def _enter_scores(book: Connection, notebook: str, cells: _Cells, entry: Noteboo
             "n": notebook,
             "cell": cell,
             "score": scores.get(name, 0.0),
-            # As nbgrader's SaveAutoGrades has it: a person looks where a person was, or has to be.
+            # As in nbgrader's SaveAutoGrades: a cell needs a person if a person graded it before, or has to grade it.
             "look": by_hand.get(cell) is not None or scores.get(name, 0.0) is None or name in entry.unchecked,
         }
         for cell, name in cells.graded

@@ -65,8 +65,8 @@ class CellEntry:
 
     Attributes:
         max_score: Points that can be had.
-        judged: Points that were given automatically; None where there are none.
-        by_hand: Points that a person gave instead; None where nobody did.
+        judged: Points that were given automatically; None if there are none.
+        by_hand: Points that a person gave instead; None if no person did.
         extra: Points that a person gave on top.
         waits: True if nbgrader says that a person has to grade the cell.
         comment: A person's comment, or else the automatic one.
@@ -90,11 +90,11 @@ class SubmissionEntry:
     """The gradebook's rows of one submission.
 
     Attributes:
-        handed_in: The time of handing in, in UTC; None where it is not known.
+        handed_in: The time of handing in, in UTC; None if unknown.
         due: Until when it was due for this student, in UTC; None without a due date.
         penalties: Points that are taken off for being late, by notebook.
         cells: By notebook and grade_id.
-        name: The student's name, empty where the gradebook has none.
+        name: The student's name; empty if the gradebook has none.
     """
 
     handed_in: datetime | None = None
@@ -120,7 +120,7 @@ class SubmissionEntry:
 
     @property
     def taken_off(self) -> float:
-        """Points that being late costs; as with nbgrader, nobody has fewer than none."""
+        """The late penalty in points; as in nbgrader, no score falls below zero."""
         return min(self.penalty, max(0.0, self.raw))
 
     def why_late(self, zone: tzinfo) -> str:
@@ -136,7 +136,7 @@ class SubmissionEntry:
         )
 
     def judged(self, notebook: str, cell: str) -> float | None:
-        """The points that a cell was given automatically; None where there are none."""
+        """Return the points that a cell was given automatically, or None."""
         entry = self.cells.get(notebook, {}).get(cell)
         return entry.judged if entry else None
 
@@ -167,7 +167,7 @@ def sql(statement: str) -> TextClause:
 
 
 def gradebook_file(url: str) -> Path | None:
-    """The file of a gradebook; None where that is in a database server."""
+    """Return the file of a gradebook, or None if a database server holds it."""
     address = sqlalchemy.make_url(url)
     return Path(address.database) if address.database and address.get_backend_name() == "sqlite" else None
 
@@ -204,7 +204,7 @@ def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entrie
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
-        student: Only this student's; everybody's where empty.
+        student: Only this student's rows; all students' if empty.
         assignment: Only of this assignment; of all where empty.
     """
     names = {"student": student, "assignment": assignment}
@@ -244,7 +244,7 @@ def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entrie
 
 
 def read_entry(url: str, student: str, assignment: str) -> SubmissionEntry:
-    """The gradebook's rows of one submission; none in it where the gradebook does not know it."""
+    """Return the gradebook's rows of one submission; empty if the gradebook does not know the submission."""
     entries = read_entries(url, student=student, assignment=assignment)
     return entries.get((student, assignment), SubmissionEntry())
 

@@ -114,7 +114,7 @@ class Writer:
 
         Args:
             submission: Its grades stay as they are.
-            at: In UTC; None where that is in the gradebook already.
+            at: In UTC; None if the gradebook has the time already.
         """
         names = submission.assignment, submission.student
         with quiet(self._directory.state):
@@ -134,7 +134,7 @@ class Writer:
         return read_entries(url, student=student, assignment=assignment)[student, assignment]
 
     def write_feedback(self, submission: Submission) -> bool:
-        """Make the HTML pages that go back to a student; False where one could not be made, with the reason in the log.
+        """Make the HTML pages that go back to a student. Return False if one failed; the log has the reason.
 
         Raises:
             OSError: There is no room on the disk.

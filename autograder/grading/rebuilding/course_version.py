@@ -25,7 +25,7 @@ _OF_CHAPTERS = (f"*/{course.CHAPTER}", "*/*/*.py", f"*/*/*{REFERENCE}")
 def course_version() -> str:
     """A hash of everything of the course that runs and judges submissions, as hexadecimal digits.
 
-    A release number would not do: an exercise that was mended must not leave yesterday's results standing. A result is
+    A release number would not do: after an exercise is fixed, yesterday's results must not be reused. A result is
     kept under it, a graded submission is looked at again when it changes, and a cluster's machines must agree on it.
 
     Every file of the package and of the environment counts, also those of which one would say that no grade depends on

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 def read_master(source: Path, config: Config) -> NotebookNode:
     """The notebook as ``nbgrader generate_assignment`` enters it into the gradebook.
 
-    It is derived from the source, not read from ``release/``: hidden tests are in it, solutions are not. It is
+    The master is derived from the source, not read from ``release/``: it contains hidden tests but no solutions. It is
     shared by all who ask for it, because a copy for each submission would take as long as reading it: copy what you
     change.
 
@@ -39,7 +39,7 @@ def read_master(source: Path, config: Config) -> NotebookNode:
         config: The class's nbgrader configuration.
 
     Raises:
-        MasterUnusable: It is no notebook, two cells have one name, or a cell asks the judge for no exercise.
+        MasterUnusable: The file is not a notebook, two cells have one name, or a check cell names no exercise.
     """
     try:
         data = source.read_bytes()
@@ -54,7 +54,7 @@ def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
         notebook = nodes.read(data.decode())
     except Exception as error:  # nbformat raises what its JSON and schema libraries raise
         raise MasterUnusable(
-            f"{source} is not a notebook: {error}. Make it anew or put back a copy."
+            f"{source} is not a notebook: {error}. Make it again or put back a copy."
         ) from error
     resources: dict[str, Any] = {}
     rubrics, given = _rubrics(notebook), {grade_id(cell): _given_part(cell.source) for cell in notebook.cells}
@@ -115,7 +115,7 @@ def check_of(cell: NotebookNode) -> Check | None:
 
 
 def exercise_of(name: str) -> str:
-    """The id of the exercise that a check cell of this name checks; the name itself where there is none."""
+    """Return the id of the exercise that a check cell checks, or the cell's name if it checks none."""
     return next((known for known in exercises.all_ids() if exercises.grade_id(known) == name), name)
 
 

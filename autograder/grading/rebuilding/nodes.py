@@ -65,7 +65,7 @@ def cell(kind: CellType, source: str, identifier: str = "") -> NotebookNode:
 def output(**fields: Any) -> NotebookNode:
     """An output from its fields as nbformat names them, of the kinds that boxes hand over.
 
-    It is looked at here and not by nbformat, which takes a hundred times as long: a notebook has a dozen.
+    This check replaces nbformat's, which takes a hundred times as long.
 
     Raises:
         msgspec.ValidationError: They are not those of an output.
@@ -109,7 +109,7 @@ def copied(of: NotebookNode) -> NotebookNode:
 
 
 def _node(value: Any) -> Any:
-    """JSON's values anew, with each dictionary as a node."""
+    """Copy JSON values, with each dictionary as a node."""
     if isinstance(value, str):
         return value
     if isinstance(value, dict):

@@ -170,7 +170,7 @@ class _Sorting:
         if cell.kind != master.cell_type:
             found.append(
                 f"The cell {_quoted(name)} had become a {cell.kind} cell. "
-                f"It is a {master.cell_type} cell again."
+                f"The cell is a {master.cell_type} cell again."
             )
         if not is_answer(master) and normalized(cell.source) not in map(normalized, _handed_out(master)):
             found.append(f"The cell {_quoted(name)} is not yours to change. The original was used.")
@@ -179,7 +179,7 @@ class _Sorting:
     def _choose(self, name: str, places: Sequence[int]) -> int:
         """The last submitted cell of that name before its check, as the check sees it when all cells are run.
 
-        A copy of the untouched stub does not count, and one behind the check only where there is no other.
+        A copy of the untouched stub does not count; a copy behind the check counts only if there is no other copy.
         """
         stub = self._master[name].source.strip()
         answered = [place for place in places if self._submitted[place].source.strip() != stub] or places
@@ -198,7 +198,7 @@ class _Sorting:
         return before[max(before)] if before else _START
 
     def _is_in_its_place(self, name: str, place: int) -> bool:
-        """True if a cell is exactly where an answer's own cell would be: nothing moves if it is taken for that one."""
+        """True if a cell stands exactly where the answer's own cell would: taking it as the answer moves nothing."""
         names, anchor = list(self._master), self._anchor(place)
         behind = {at: other for other, at in self._chosen.items() if at > place}
         return (
@@ -255,7 +255,7 @@ class _Sorting:
 
 
 def grade_id(cell: NotebookNode) -> str:
-    """The name of a master's cell, empty where it has none."""
+    """Return the name of a master's cell; empty if it has none."""
     return str(cell.metadata.get("nbgrader", {}).get("grade_id", ""))
 
 

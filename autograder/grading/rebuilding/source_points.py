@@ -28,7 +28,7 @@ class GradedCell:
     Attributes:
         notebook: The notebook it is in.
         name: Its grade_id.
-        exercise: The exercise's id; the cell's own name where it has none.
+        exercise: The exercise's id, or the cell's name if it checks no exercise.
         worth: Points it carries.
         by_judge: Whether the judge or the cell's own tests give the points, and not a person.
     """
@@ -75,7 +75,7 @@ def check_release(directory: ClassDirectory, cells: dict[str, tuple[GradedCell, 
     """Check that the gradebook knows the cells that the sources have, with the same points.
 
     Raises:
-        ClassIncomplete: There is no assignment, or the gradebook has it otherwise.
+        ClassIncomplete: The assignment does not exist, or the gradebook has different cells or points.
     """
     if not cells:
         raise ClassIncomplete(
@@ -90,7 +90,7 @@ def check_release(directory: ClassDirectory, cells: dict[str, tuple[GradedCell, 
                     f"The gradebook does not know {cell.notebook} as it is in "
                     f"{directory.path / 'source' / assignment}. "
                     f"Enter it: {course_command(*command, inside=directory.path)}. "
-                    "Where nbgrader refuses that, because somebody has points already: put the source back as it was, "
+                    "If nbgrader refuses because a student has points already: put the source back as it was, "
                     f"and say in {directory.path / 'class.toml'} what is left out or gets other points, which works at "
                     "any time"
                 )

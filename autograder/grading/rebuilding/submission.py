@@ -76,7 +76,7 @@ class SubmittedCell:
 
 
 class NotAFile(UnreadableSubmission):
-    """The file in the place of the notebook is no ordinary one, or may not be read."""
+    """The notebook is not an ordinary file, or cannot be read."""
 
 
 def read_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
@@ -104,7 +104,7 @@ def read_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
 
 
 def reason_against_file(path: Path) -> str:
-    """The reason why ``path`` cannot be a submission; empty for an ordinary file and where nothing is there."""
+    """Return why ``path`` cannot be a submission; empty for an ordinary file or if nothing exists there."""
     try:
         with _opened(path):
             return ""
@@ -138,15 +138,15 @@ def _check(path: Path, status: os.stat_result) -> None:
         raise NotAFile(f"{_shown(path.name)} is not a file; hand in the notebook itself.")
     if status.st_nlink > 1 and _is_somebody_elses(path, status):
         raise NotAFile(
-            f"{_shown(path.name)} is somebody else's file under a second name (a hard link); hand in your own."
+            f"{_shown(path.name)} is another student's file under a second name (a hard link); hand in your own."
         )
 
 
 def _is_somebody_elses(path: Path, status: os.stat_result) -> bool:
     """True if a file of several names was in another place of the class first.
 
-    Only the one who was first keeps it: nobody can have a neighbour refused by giving the neighbour's file a second
-    name. A folder's time of change is set by the system when a name is made in it, and by nobody else. Names outside of
+    The first owner keeps the file, so that a student cannot get another student's work refused by giving it a second
+    name. Only the system sets a folder's time of change, when a name is made in it. Names outside of
     the class are a backup's.
     """
     submitted = next((folder for folder in path.parents if folder.name == "submitted"), path.parent)
@@ -187,7 +187,7 @@ def parse(data: bytes) -> tuple[list[SubmittedCell], int]:
         The cells, and the number of those that were left out because they had not the form of a cell.
 
     Raises:
-        UnreadableSubmission: It is no notebook.
+        UnreadableSubmission: The file is not a notebook.
     """
     notebook = _decoded(data)
     if not isinstance(notebook, Mapping) or not isinstance(notebook.get("nbformat"), int):
@@ -237,7 +237,7 @@ def _decoded(data: bytes) -> Any:
             f"The file is not a notebook: it is not UTF-8 text (byte {error.start}). "
             "Save the notebook in JupyterLab and hand in that file."
         ) from None
-    # What stands in quotation marks, such as a million numbers that a cell has printed, is a single text.
+    # A quoted string counts once, even if it contains a million printed numbers.
     if _values(text) > MAX_VALUES and _values(_QUOTED.sub("", text)) > MAX_VALUES:
         raise UnreadableSubmission(
             f"The file has more than {MAX_VALUES:,} values, far more than a notebook has."
@@ -266,7 +266,7 @@ def _raw_cells(notebook: Mapping[str, Any]) -> list[Any]:
     cells = notebook.get("cells")
     if notebook["nbformat"] != 4 or not isinstance(cells, list):
         raise UnreadableSubmission(
-            f"This is no notebook of format 4 (it says format {str(notebook['nbformat'])[:20]})."
+            f"This is not a notebook of format 4 (the file says format {str(notebook['nbformat'])[:20]})."
         )
     return cells
 

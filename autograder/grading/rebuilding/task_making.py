@@ -74,7 +74,7 @@ def task_of(directory: ClassDirectory, submission: Submission, notebook: str) ->
 def _rebuilt(
     directory: ClassDirectory, submission: Submission, notebook: str, master: NotebookNode
 ) -> tuple[NotebookNode, str]:
-    """The notebook that stands for the submitted file, and why it was not taken over (empty where it was)."""
+    """Return the notebook that represents the submitted file, and why it was not used (empty if it was)."""
     path = submission.folder / f"{notebook}{SUFFIX}"
     try:
         cells, left_out = parse(read_bytes(path))

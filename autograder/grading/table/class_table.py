@@ -33,9 +33,9 @@ class ClassTable:
         entries: The entries of the gradebook, by student and assignment.
         stale: Submissions that were handed in or changed after they were graded last, as student/assignment.
         unplaced: Files that were collected and have no place.
-        unusable: Assignments that are in no row of anybody, as their source cannot be used, with the reason.
+        unusable: Assignments that no row has because their source cannot be used, with the reason.
         notices: Sentences on what is not as the instructor will have meant it, with students' ids.
-        absent: The points of students who have handed in nothing: None, or zero where the instructor says so.
+        absent: The points of students who handed in nothing: None, or zero if the instructor chose that.
     """
 
     rows: tuple[Row, ...]
@@ -61,7 +61,7 @@ class ClassTable:
 
     @functools.cached_property
     def assignments(self) -> list[str]:
-        """The assignments that somebody has handed in."""
+        """The assignments that at least one student has handed in."""
         return list(dict.fromkeys(row.assignment for row in self.rows))
 
     def check_usable(self, wanted: Collection[str] = ()) -> None:
@@ -75,7 +75,7 @@ class ClassTable:
                 raise MasterUnusable(reason)
 
     def of(self, student: str, assignment: str = "") -> list[Row]:
-        """A student's rows of all assignments, or of one, which has its points also where the total leaves it out."""
+        """Return a student's rows of all assignments, or of one, with its points even if the total leaves it out."""
         own = self._of_student.get(student, [])
         return [
             row for row in own if not assignment or (row.assignment == assignment and row.exercise != DROPPED)
@@ -94,8 +94,8 @@ class ClassTable:
     def score(self, student: str, assignment: str = "") -> float | None:
         """A student's points as the gradebook has them, less what being late costs.
 
-        None where there are none, and for an assignment with a check that could not be made: without that one, its
-        points are a number that somebody might take for the last word.
+        None if there are none, or if a check of the assignment could not be made: without that check,
+        the sum could be mistaken for the final points.
         """
         rows = self.of(student, assignment)
         return None if assignment and any(row.is_unchecked for row in rows) else self.points(rows)
@@ -137,7 +137,7 @@ def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> Class
         sections: Only the students of these; all where empty.
 
     Raises:
-        GradingError: The class or its list of students cannot be used, or nobody is in such a section.
+        GradingError: The class or its list of students cannot be used, or the section has no students.
     """
     fingerprints = Fingerprints(directory)
     with ClassStore(directory) as store:

@@ -26,9 +26,11 @@ class LatePolicy(LateSubmissionPlugin):
     percent_per_day = Float(
         10.0, min=0, max=100, help="Taken off for each day that has begun, in percent."
     ).tag(config=True)
-    grace_minutes = Float(0.0, min=0, help="Who is late by no more than this loses nothing.").tag(config=True)
+    grace_minutes = Float(
+        0.0, min=0, help="Work that is late by at most this many minutes loses nothing."
+    ).tag(config=True)
     cut_off_days = Float(
-        math.inf, min=0, help="Who is late by more days than this has no points for the assignment."
+        math.inf, min=0, help="Work that is late by more days than this earns no points."
     ).tag(config=True)
 
     def late_submission_penalty(self, student_id: str, score: float, total_seconds_late: float) -> float:

@@ -22,8 +22,8 @@ class Difference:
         student: The student's id.
         assignment: The assignment's name.
         exercise: The exercise's id, or ``late``.
-        before: Points before; None where there were none.
-        after: Points now; None where there are none any more.
+        before: Points before; None if there were none.
+        after: Points now; None if there are none any more.
         diagnosis_before: The diagnosis before.
         diagnosis_after: The diagnosis now.
         note: A remark for a person; empty for none.
@@ -77,7 +77,7 @@ def compare(store: ClassStore, before: str = "", after: str = "") -> tuple[str, 
         after: A later run; the last one by default.
 
     Returns:
-        The names of the two runs, and where they differ.
+        Return the names of the two runs, and how they differ.
 
     Raises:
         GradingError: There are not two runs, or none of that name.

@@ -62,7 +62,7 @@ class Student:
 
     Attributes:
         id: The student's id, which is also the folder's name.
-        first_name: Empty where it is not known.
+        first_name: Empty if unknown.
         last_name: The same.
         email: The same.
         lms: Ids and user names in learning management systems, by the names of :data:`LMS`.
@@ -86,10 +86,10 @@ class Student:
 
 @dataclass(frozen=True)
 class Identity:
-    """The name of somebody in a file name, or in a list of an LMS.
+    """A person's name in a file name, or in a list of an LMS.
 
     Attributes:
-        lms: The system, one of :data:`LMS`; empty where a folder has a plain name.
+        lms: The system, one of :data:`LMS`; empty if a folder has a plain name.
         number: The system's number of the student.
         login: A user name, an address, or a name with its blanks left out.
         name: A name as people write it.
@@ -116,7 +116,7 @@ class Roster:
 
     @property
     def names(self) -> dict[str, str]:
-        """The students' names, empty where they are not known, by id."""
+        """The students' names by id; empty if unknown."""
         return {student.id: student.name for student in self.students.values()}
 
     @property
@@ -138,7 +138,7 @@ class Roster:
                     found.setdefault(name, []).append(one.id)
         return [
             f"{NAME} excuses {', '.join(ids[:_MOST_NAMED])}{' …' if ids[_MOST_NAMED:] else ''} from {name}, "
-            f"and there is no such assignment: nobody is excused by that. There is: {', '.join(assignments)}"
+            f"and there is no such assignment, so the entry excuses no student. There is: {', '.join(assignments)}"
             for name, ids in found.items()
         ]
 
@@ -160,7 +160,7 @@ class Roster:
     def find(self, identity: Identity) -> tuple[Student, ...]:
         """The students who may be meant: one student if it is certain, several if not.
 
-        What identifies best is asked first: the number in that system, then user names and addresses, then names.
+        The strongest identification comes first: the number in that system, then user names and addresses, then names.
         """
         for known in (self._by_number, self._by_login, self._by_name):
             found = known(identity)
@@ -214,7 +214,7 @@ def read_roster(directory: ClassDirectory) -> Roster:
 
 
 def read_students_csv(directory: ClassDirectory) -> list[Student]:
-    """The students of ``students.csv``; none where there is no such file.
+    """Return the students of ``students.csv``; none if the file does not exist.
 
     Raises:
         RosterError: A column or an id is missing, or is there twice.
@@ -263,7 +263,7 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
 
 
 def _as_ours(line: Mapping[str, str], form: Mapping[str, tuple[str, ...]]) -> dict[str, str]:
-    """A line of an LMS's list with the columns of ours; empty for what is no person."""
+    """Convert a line of an LMS's list to our columns; empty if the line is not a person."""
     values = {ours: next(filter(None, map(line.get, theirs)), "") or "" for ours, theirs in form.items()}
     full = values.pop("full_name", "")
     if full.lower().startswith(_NOBODY):
@@ -287,7 +287,7 @@ def enter_roster(directory: ClassDirectory) -> None:
         return
     with opened(directory.gradebook_url) as book:
         if not has_tables(book):
-            return  # whoever needs the gradebook says so
+            return  # the step that needs the gradebook reports that
         known = set(book.execute(sql("SELECT id FROM student")).scalars())
         for student in students:
             values = {

@@ -32,7 +32,7 @@ def true_rows(
 ) -> list[Row]:
     """The rows of a class, by student, in the order of the course.
 
-    Assignments that nobody has handed in are left out; in the others every student has rows.
+    Assignments that no student has handed in are left out; in the others every student has rows.
 
     Args:
         students: Their names, by id.
@@ -105,7 +105,7 @@ def _with_points(row: Row, kept: CellEntry) -> Row:
 
 
 _IS_GRADED = ("passed", "failed", WAITS, BY_HAND)
-"""States in which somebody has judged: any other one waits for a run and not for a person."""
+"""States in which a verdict exists: any other state waits for a run and not for a person."""
 
 
 def _state(cell: GradedCell, kept: CellEntry) -> str:

@@ -42,7 +42,7 @@ class WhatCounts:
     def applied(self, rows: Sequence[Row]) -> list[Row]:
         """The rows of one submission as they count.
 
-        What being late costs stays the same share of what was earned.
+        The late penalty stays the same share of the points earned.
         """
         plain = [row for row in rows if row.exercise != LATE]
         factors = [self.factors.get((row.assignment, row.exercise), 1.0) for row in plain]
@@ -97,7 +97,7 @@ def _scaled(row: Row, factor: float) -> Row:
 
 
 def read_what_counts(directory: ClassDirectory, cells: Mapping[str, Sequence[GradedCell]]) -> WhatCounts:
-    """The content of ``class.toml``; everything counts as it is where there is no such file.
+    """Return the content of ``class.toml``; if the file does not exist, everything counts as it is.
 
     Args:
         directory: The class.

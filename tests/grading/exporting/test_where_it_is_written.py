@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 @pytest.mark.parametrize(
     ("command", "output", "said"),
     [
-        (("export", "--to", "csv"), "file", "file is no folder"),
-        (("export", "--to", "csv"), "file/below", "file is no folder"),
+        (("export", "--to", "csv"), "file", "file is not a folder"),
+        (("export", "--to", "csv"), "file/below", "file is not a folder"),
         (("export", "--to", "csv"), "with", "with/students.csv is a folder"),
         (("report",), "folder", "folder is a folder"),
-        (("report",), "file/report.html", "file is no folder"),
+        (("report",), "file/report.html", "file is not a folder"),
         (("similar",), "folder", "folder is a folder"),
-        (("similar",), "file/similar.html", "file is no folder"),
+        (("similar",), "file/similar.html", "file is not a folder"),
         (("similar",), "x" * 300, "cannot be written"),
     ],
 )

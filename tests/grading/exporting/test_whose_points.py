@@ -53,7 +53,7 @@ def test_who_is_excused_from_what_there_is_not_is_named(klass: TinyClass) -> Non
         "id,section,excused\nada,A,lab_1_2 lab_12\nben,B,\neve,B,lab_12\njose,A,\nzoe,A,\n"
     )
     said = (
-        "students.csv excuses {} from lab_12, and there is no such assignment: nobody is excused by that. "
+        "students.csv excuses {} from lab_12, and there is no such assignment, so the entry excuses no student. "
         "There is: lab_1_2"
     )
     assert said.format("ada, eve") in export(klass.path, "csv").notices
