@@ -6,6 +6,7 @@ import html
 import json
 import re
 import subprocess
+import tomllib
 from functools import cache
 from pathlib import Path
 from urllib.parse import unquote
@@ -228,3 +229,12 @@ def test_the_readme_lists_each_notebook_with_its_minutes_and_points() -> None:
     hours = round(sum(minutes for minutes, _ in true.values()) / 30) / 2
     assert f"{len(true)} notebooks, about {hours:g} hours".replace(".5", "½") in readme
     assert f"{sum(points for _, points in true.values())} points" in readme
+
+
+def test_a_release_has_one_version_and_its_own_notes() -> None:
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    changelog = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert f"\n## [{version}] - " in changelog
+    for release in changelog.split("\n## ")[1:]:
+        assert sum(line.startswith("- ") for line in release.splitlines()) <= 25, release.partition("\n")[0]
