@@ -153,6 +153,19 @@ def test_pictures_are_small_and_shown_somewhere() -> None:
         assert f"images/{picture.name}" in shown
 
 
+def test_the_moving_picture_is_short_and_small_and_goes_on() -> None:
+    film = (ROOT / "docs/images/lab.gif").read_bytes()
+    assert "images/lab.gif" in markdown(ROOT / "README.md")
+    assert len(film) < 1_200_000
+    assert b"NETSCAPE2.0" in film
+    # A graphic control extension per frame holds its time, in hundredths of a second.
+    times = [
+        int.from_bytes(found[1], "little")
+        for found in re.finditer(rb"\x21\xf9\x04.(..).\x00", film, re.DOTALL)
+    ]
+    assert 12 <= sum(times) / 100 <= 25
+
+
 def test_every_page_of_the_documentation_can_be_reached_from_the_readme() -> None:
     reached, ahead = set(), [ROOT / "README.md"]
     while ahead:
