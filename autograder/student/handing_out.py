@@ -151,8 +151,7 @@ def _files(
     """The files by the names that they get."""
     for name in WHOLE:
         yield from ((path.relative_to(root).as_posix(), path) for path in _below(root / name, root))
-    yield from ((f"docs/{name}", root / "docs" / name) for name in PAGES if (root / "docs" / name).is_file())
-    yield from ((path.relative_to(root).as_posix(), path) for path in _below(root / "docs" / "images", root))
+    yield from _pages(root)
     names = {lab.name for chapter in chapters for lab in chapter.labs}
     for chapter in chapters:
         for path in [chapter.folder / course.CHAPTER, *_judges_part(chapter, with_solutions=with_solutions)]:
@@ -160,6 +159,14 @@ def _files(
                 yield f"{HANDED_OUT}/{path.relative_to(chapter.folder.parent).as_posix()}", path
         for lab in chapter.labs:
             yield from _notebook(root, chapter, lab, names)
+
+
+def _pages(root: Path) -> Iterator[tuple[str, Path]]:
+    """The pages, and the pictures that they show: the README's picture shows a solution."""
+    pages = [page for name in PAGES if (page := root / "docs" / name).is_file()]
+    text = "".join(page.read_text(encoding="utf-8") for page in pages)
+    shown = (path for path in _below(root / "docs" / "images", root) if f"(images/{path.name})" in text)
+    yield from ((path.relative_to(root).as_posix(), path) for path in [*pages, *shown])
 
 
 def _notebook(

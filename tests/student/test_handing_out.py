@@ -102,6 +102,12 @@ def test_its_pages_lead_to_what_is_in_it(handed_out: Path) -> None:
             assert (page.parent / target).exists(), f"{page.name}: {target}"
 
 
+def test_it_has_only_the_pictures_that_its_pages_show(handed_out: Path) -> None:
+    """The film of the README types the solution of a lab."""
+    pictures = {path.name for path in (handed_out / "docs/images").iterdir()}
+    assert pictures == {"course-panel.png", "passed.png"}
+
+
 def run(place: Path, *words: str) -> subprocess.CompletedProcess[str]:
     environ = os.environ | {"PYTHONPATH": str(place), "AUTOGRADER_COURSE": str(place)}
     return subprocess.run(
