@@ -6,7 +6,8 @@ The lock files in ``requirements/`` are one resolution, cut into the parts that 
 * ``course.lock``: the dependencies of pyproject.toml, those of a class, and the build tools;
 * ``ros.lock``: the ROS wheels and what only they need, left out where a Jazzy is sourced;
 * ``dev.lock``: what ``./course test`` needs besides;
-* ``cluster.lock``, ``postgresql.lock``: what the extra of that name needs besides, installed where it is asked for.
+* ``cluster.lock``, ``postgresql.lock``, ``site.lock``: what the extra of that name needs besides, installed where
+  it is asked for.
 
 Without ``--upgrade`` a version that is locked stays as long as the inputs allow it. The locks name no package
 index: that is what pip is configured for, and the hashes make sure that it is the same file.
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parent.parent
 REQUIREMENTS = ROOT / "environment" / "requirements"
-EXTRAS = ("cluster", "postgresql")
+EXTRAS = ("cluster", "postgresql", "site")
 COURSE = ("--extra", "class")
 """The extras that the course itself is installed with: ROS is in a lock of its own."""
 LOCKS = ("uv", "course", "ros", "dev", *EXTRAS)
@@ -48,6 +49,7 @@ _PURPOSE = {
     "dev": "What the checks and tests of the project need besides.",
     "cluster": "What grading on a Dask cluster needs besides.",
     "postgresql": "What a gradebook in PostgreSQL needs besides.",
+    "site": "What the course as a book of HTML pages needs besides.",
 }
 _BLOCK_START = re.compile(r"^([A-Za-z0-9][A-Za-z0-9._-]*)==")
 

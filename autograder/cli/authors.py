@@ -136,9 +136,42 @@ def try_exercise(
     sys.exit(0 if fits else NO)
 
 
+@click.command()
+@click.option(
+    "--edition",
+    type=click.Choice(["self", "class"]),
+    default="self",
+    show_default=True,
+    help="self: solutions are folded; class: there are none.",
+)
+@click.option(
+    "--to",
+    "folder",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="The folder of the pages; site/ if not given.",
+)
+@click.option("--quick", is_flag=True, help="Do not execute the notebooks: the pages have no outputs.")
+@click.option("--files", default="", metavar="URL", help="Where readers find the files of the repository.")
+def site(edition: str, folder: Path | None, quick: bool, files: str) -> None:
+    """Make the course, its guides and known mistakes one book of HTML pages, which needs no server and no network."""
+    from autograder import course
+    from autograder.authoring.site.building import build_site
+
+    root = course.root()
+    folder = (folder or root / "site").absolute()
+    if folder.exists() and any(folder.iterdir()) and not (folder / "searchindex.js").is_file():
+        fail(f"{folder} is not empty and is not a site: name another folder with --to")
+    problems = build_site(root, folder, edition, outputs=not quick, repository=files, tell=click.echo)
+    click.echo(f"written    {folder / 'index.html'}")
+    if problems:
+        click.echo(f"{problems} problems are listed above.", err=True)
+    sys.exit(NO if problems else 0)
+
+
 COMMANDS = (
     build,
     execute,
+    site,
     record,
     new_exercise,
     try_exercise,

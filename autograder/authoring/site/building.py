@@ -1,0 +1,117 @@
+"""Build the book with Sphinx, from the sources alone, without a network."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from docutils import nodes
+from sphinx import addnodes
+from sphinx.application import Sphinx
+
+from autograder import course
+from autograder.authoring.site.outputs import run_masters
+from autograder.authoring.site.pages import STATIC, write_sources
+from autograder.masters.layout import masters
+from autograder.temporary_folders import HeldFolder
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+LARGEST = 1_000_000
+"""Bytes of a page."""
+STYLE = "book.css"
+SETTINGS: dict[str, Any] = {
+    "author": "The maintainers of this course",
+    "extensions": ["myst_nb", "sphinx_copybutton", "autograder.authoring.site.building"],
+    "html_theme": "sphinx_book_theme",
+    "html_static_path": [STATIC],
+    "html_css_files": [STYLE],
+    "html_theme_options": {
+        "show_navbar_depth": 1,
+        "use_download_button": False,
+        "use_fullscreen_button": False,
+        "pygments_light_style": "a11y-high-contrast-light",
+        "pygments_dark_style": "a11y-high-contrast-dark",
+    },
+    "html_copy_source": False,
+    "html_show_sphinx": False,
+    "language": "en",
+    "nb_execution_mode": "off",
+    # What these would load comes from elsewhere, and no page has a widget.
+    "nb_ipywidgets_js": {},
+    "myst_enable_extensions": ["colon_fence", "html_image"],
+    "myst_heading_anchors": 6,
+    "copybutton_prompt_text": "$ ",
+    "suppress_warnings": ["myst.header", "misc.highlighting_failure"],
+}
+
+
+def build_site(
+    root: Path, folder: Path, edition: str, *, outputs: bool, repository: str, tell: Callable[[str], None]
+) -> int:
+    """Build the book of a course.
+
+    Args:
+        root: The folder of the course.
+        folder: The folder of the pages; the pages of an earlier build in it are replaced.
+        edition: One of ``autograder.authoring.site.pages.EDITIONS``.
+        outputs: Whether the notebooks are executed first.
+        repository: The address below which a reader finds the files of the course; empty if there is none.
+        tell: Prints a line.
+
+    Returns:
+        The number of problems: links that lead nowhere, pages that are too large.
+    """
+    executed = run_masters(masters(root), tell) if outputs else {}
+    with HeldFolder("course-site-") as held:
+        sources, pages = held.path / "sources", held.path / "pages"
+        sources.mkdir()
+        write_sources(root, sources, edition, executed)
+        shutil.copyfile(Path(__file__).with_name(STYLE), sources / STATIC / STYLE)
+        title = next(iter(course.chapters(root))).title
+        settings = SETTINGS | {"project": title, "html_title": title, "course_files": repository}
+        with (held.path / "warnings").open("w+", encoding="utf-8") as warnings:
+            app = Sphinx(
+                sources, None, pages, held.path / "trees", "html", settings, status=None, warning=warnings
+            )
+            app.build()
+            warnings.seek(0)
+            problems = [line.strip().replace(f"{sources}/", "") for line in warnings if line.strip()]
+        problems += [
+            f"{page.relative_to(pages)} has {page.stat().st_size} bytes: at most {LARGEST} are allowed"
+            for page in pages.rglob("*.html")
+            if page.stat().st_size > LARGEST
+        ]
+        if folder.exists():
+            shutil.rmtree(folder)
+        shutil.move(pages, folder)
+    for problem in problems:
+        tell(problem)
+    return len(problems)
+
+
+def _settle_what_is_elsewhere(app: Sphinx, tree: nodes.document) -> None:
+    """Pictures of other hosts become their words; links to files of the repository lead to it, or become words."""
+    for picture in list(tree.findall(nodes.image)):
+        if str(picture["uri"]).startswith(("http:", "https:")):
+            picture.replace_self(nodes.Text(picture.get("alt", "")))
+    for link in list(tree.findall(addnodes.pending_xref)):
+        target = str(link["reftarget"]).partition("#")[0]
+        file = os.path.normpath(Path(link["refdoc"]).parent / target)
+        if link.get("reftype") != "myst" or not target or file.startswith("."):
+            continue
+        if (course.root() / file).exists() and not (Path(app.srcdir) / file).is_file():
+            base = app.config.course_files
+            shown = nodes.reference(refuri=f"{base}/{file}") if base else nodes.inline()
+            shown.extend(link.children)
+            link.replace_self(shown)
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register this module as an extension of Sphinx."""
+    app.add_config_value("course_files", "", "html")
+    app.connect("doctree-read", _settle_what_is_elsewhere)
+    return {"parallel_read_safe": True}

@@ -1,0 +1,167 @@
+"""Run the masters as a student would in JupyterLab, and keep everything that their cells show, moving pictures too."""
+
+from __future__ import annotations
+
+import base64
+import os
+import subprocess
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import re2
+from nbclient import NotebookClient
+
+from autograder.masters.layout import lab_name
+from autograder.masters.source import source_notebook
+from autograder.ros_domain import DOMAIN_VARIABLE, claim_free_domain
+from autograder.student import journal
+from autograder.temporary_folders import HeldFolder
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from nbformat import NotebookNode
+
+LIMIT = 600
+"""Seconds for one cell; the longest cell builds a workspace."""
+AT_ONCE = 3
+"""Notebooks that run at the same time."""
+MOST_FRAMES = 60
+FRAME_SECONDS = 0.25
+RECORDED = "Recorded while this cell ran"
+MOVING = "moving_pictures"
+"""The key in a notebook's metadata of its moving pictures: SVG texts by their names."""
+_SVG_DATA = re2.compile(r'src="data:image/svg\+xml;base64,([A-Za-z0-9+/=]+)"')
+_STYLE = re2.compile(r"(?s)<style>(.*?)</style>")
+_INNER = re2.compile(r"(?s)^<svg([^>]*)>(.*)</svg>$")
+_TITLE = re2.compile(r"(?s)<title>.*?</title>")
+
+
+def run_masters(masters: Sequence[Path], tell: Callable[[str], None]) -> dict[str, NotebookNode]:
+    """Execute masters, each in a new kernel, a folder and a ROS domain of its own.
+
+    Args:
+        masters: The masters' files.
+        tell: Prints a line about each notebook that is done.
+
+    Returns:
+        The executed source notebooks by the names of their labs.
+
+    Raises:
+        nbclient.exceptions.CellExecutionError: A cell raised an error.
+    """
+
+    def run(master: Path) -> tuple[str, NotebookNode]:
+        done = _run(source_notebook(master), lab_name(master))
+        tell(f"executed   {lab_name(master)}")
+        return lab_name(master), done
+
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        return dict(pool.map(run, masters))
+
+
+def _run(notebook: NotebookNode, name: str) -> NotebookNode:
+    with HeldFolder("course-site-") as held:
+        folder = held.path / "notebooks"
+        folder.mkdir()
+        claim = claim_free_domain()
+        environment = {
+            **os.environ,
+            DOMAIN_VARIABLE: str(claim.domain),
+            "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+            journal.VARIABLE: str(held.path / "journal.jsonl"),
+        }
+        # If it is set, ipykernel leaves the log lines of rclpy out of the cells.
+        environment.pop("PYTEST_CURRENT_TEST", None)
+        client = _Recorder(
+            notebook, timeout=LIMIT, kernel_name="python3", resources={"metadata": {"path": str(folder)}}
+        )
+        try:
+            client.execute(env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        finally:
+            claim.release()
+        _put_moving_pictures(notebook, name, client.frames)
+        _hide_the_folder(notebook, str(folder))
+    return notebook
+
+
+class _Recorder(NotebookClient):
+    """Keeps each picture that a live picture shows, not only the last one."""
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self.frames: dict[str, list[str]] = {}
+
+    def process_message(self, msg: dict[str, Any], cell: NotebookNode, cell_index: int) -> Any:
+        content = msg["content"]
+        display = content.get("transient", {}).get("display_id")
+        if display and (found := _SVG_DATA.search(content.get("data", {}).get("text/html", ""))):
+            self.frames.setdefault(display, []).append(found[1])
+        return super().process_message(msg, cell, cell_index)
+
+
+def _put_moving_pictures(notebook: NotebookNode, name: str, frames: dict[str, list[str]]) -> None:
+    """Replace the last picture of each live picture by the picture that moves."""
+    pictures: dict[str, str] = {}
+    for shown in frames.values():
+        if len(set(shown)) < 3:
+            continue
+        for cell in notebook.cells:
+            for output in cell.get("outputs", ()):
+                page = output.get("data", {}).get("text/html", "")
+                if shown[-1] in page:
+                    file = f"{name}-{len(pictures) + 1}.svg"
+                    pictures[file] = moving_picture([base64.b64decode(one).decode() for one in shown])
+                    picture = page.replace(f"data:image/svg+xml;base64,{shown[-1]}", f"../../_static/{file}")
+                    output["data"]["text/html"] = (
+                        f'<details class="moving" open><summary>{RECORDED}</summary>{picture}</details>'
+                    )
+    notebook.metadata[MOVING] = pictures
+
+
+def moving_picture(frames: Sequence[str]) -> str:
+    """One SVG that shows these SVGs one after the other, again and again, and only the last one if motion is reduced.
+
+    Args:
+        frames: At least one picture, all of the same size and with the same style.
+    """
+    step = -(-len(frames) // MOST_FRAMES)
+    kept = [*frames[:-1:step], frames[-1]]
+    last = _INNER.match(kept[-1])
+    style = _STYLE.search(kept[0])
+    title = _TITLE.search(kept[-1])
+    pause = 6
+    parts = len(kept) + pause
+    seconds = parts * FRAME_SECONDS
+    share = 100 / parts
+    motion = (
+        ".frame { visibility: hidden; } .frame:last-of-type { visibility: visible; } "
+        "@media (prefers-reduced-motion: no-preference) { "
+        f".frame {{ animation: shown {seconds:g}s step-end infinite; }} "
+        f".frame:last-of-type {{ visibility: hidden; animation-name: last; }} }} "
+        f"@keyframes shown {{ 0% {{ visibility: visible; }} {share:.3f}% {{ visibility: hidden; }} }} "
+        f"@keyframes last {{ 0% {{ visibility: visible; }} {share * (pause + 1):.3f}% {{ visibility: hidden; }} }}"
+    )
+    drawn = []
+    for number, frame in enumerate(kept):
+        inner = _TITLE.sub("", _STYLE.sub("", _INNER.match(frame)[2]))
+        delay = number * FRAME_SECONDS
+        drawn.append(f'<g class="frame" style="animation-delay:{delay:g}s">{inner}</g>')
+    head = (title[0] if title else "") + f"<style>{style[1] if style else ''}{motion}</style>"
+    return f"<svg{last[1]}>{head}{''.join(drawn)}</svg>"
+
+
+def _hide_the_folder(notebook: NotebookNode, folder: str) -> None:
+    """Show the folder of the run as a student's folder: its name differs on each machine."""
+    for cell in notebook.cells:
+        for output in cell.get("outputs", ()):
+            for holder, key in (
+                (output, "text"),
+                *((output.get("data", {}), k) for k in output.get("data", {})),
+            ):
+                if isinstance(holder.get(key), str):
+                    holder[key] = (
+                        holder[key]
+                        .replace(folder, "/home/you/course")
+                        .replace(str(Path(folder).parent), "/home/you")
+                    )

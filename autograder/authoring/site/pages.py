@@ -1,0 +1,174 @@
+"""The sources of the book: notebooks and Markdown pages at the places that they have in the course, so links hold."""
+
+from __future__ import annotations
+
+import shutil
+from typing import TYPE_CHECKING
+from urllib.parse import unquote
+
+import nbformat
+import re2
+from nbformat.v4 import new_code_cell, new_markdown_cell
+
+from autograder import course
+from autograder.authoring.site.outputs import MOVING
+from autograder.masters.layout import chapter_path, lab_name, masters
+from autograder.masters.release import release_text
+from autograder.masters.source import source_notebook
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from nbformat import NotebookNode
+
+SELF, CLASS = "self", "class"
+EDITIONS = (SELF, CLASS)
+"""For learners on their own, with solutions; for classes, without."""
+SUMMARY = "Solution (click to expand)"
+STATIC = "_static"
+_ATTACHMENT = re2.compile(r"\(attachment:([^)]+)\)")
+_NOTEBOOK_LINK = re2.compile(r"\]\(([\w./-]*\.ipynb)#([^)]+)\)")
+_WAYS = re2.compile(r"^(← Previous: |Next: )")
+_OUTCOME = re2.compile(r"(?m)^\| ([^|]+) \| [^|]+ \| .*/([\w-]+)\.ipynb\) \|$")
+_PARTS = {
+    "For students": (
+        "students-guide",
+        "mistakes",
+        "glossary",
+        "learning-outcomes",
+        "robot",
+        "ros2-command",
+        "fairness",
+    ),
+    "For instructors": ("instructors-guide", "instructor/*", "course-text", "environment", "scale"),
+    "For authors": (
+        *(
+            "writing-a-master",
+            "adding-an-exercise",
+            "your-own-repository",
+            "exercise-reference",
+            "what-ros-does",
+        ),
+        *("../CONTRIBUTING", "architecture", "decisions", "boxes", "workspaces", "testing"),
+    ),
+    "About": ("comparison", "security", "performance", "../CHANGELOG", "../SECURITY", "README"),
+}
+
+
+def write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str, NotebookNode]) -> None:
+    """Write the sources of the book.
+
+    Args:
+        root: The folder of the course.
+        folder: An empty folder.
+        edition: One of ``EDITIONS``.
+        executed: The executed source notebooks by the names of their labs; a lab without one has no outputs.
+    """
+    (folder / STATIC).mkdir()
+    shutil.copytree(root / "docs", folder / "docs", ignore=shutil.ignore_patterns("*.py", "*.json"))
+    for page in root.glob("*.md"):
+        name = "index.md" if page.name == "README.md" else page.name
+        text = page.read_text(encoding="utf-8")
+        (folder / name).write_text(text + _contents(root) if name == "index.md" else text, encoding="utf-8")
+    for page in folder.rglob("*.md"):
+        text = (
+            page.read_text(encoding="utf-8")
+            .replace("../README.md", "../index.md")
+            .replace("](README.md", "](index.md")
+        )
+        page.write_text(_with_plain_anchors(text), encoding="utf-8")
+    outcomes = _outcomes(root)
+    for master in masters(root):
+        source = executed.get(lab_name(master)) or source_notebook(master)
+        for name, picture in source.metadata.pop(MOVING, {}).items():
+            (folder / STATIC / name).write_text(picture, encoding="utf-8")
+        file = folder / chapter_path(root, master).relative_to(root)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        figures = {svg.with_suffix(".png").name: svg for svg in master.parents[1].glob("**/figures/*.svg")}
+        notebook = book_page(source, edition, outcomes.get(lab_name(master), ()))
+        for cell in notebook.cells:
+            for name in _ATTACHMENT.findall(cell.source):
+                shutil.copyfile(figures[unquote(name)], file.with_name(figures[unquote(name)].name))
+            cell.source = _ATTACHMENT.sub(lambda found: f"({unquote(found[1])[:-4]}.svg)", cell.source)
+            cell.pop("attachments", None)
+        nbformat.write(notebook, file)
+
+
+def book_page(source: NotebookNode, edition: str, outcomes: tuple[str, ...] = ()) -> NotebookNode:
+    """The page of a notebook: each cell as students get it, and its solution folded below it, or absent.
+
+    Args:
+        source: The source notebook, with outputs or without.
+        edition: One of ``EDITIONS``.
+        outcomes: What a reader can do after this notebook.
+    """
+    page = nbformat.reads(release_text(source), as_version=4)
+    cells = []
+    for solved, cell in zip(source.cells, page.cells, strict=True):
+        if _WAYS.match(cell.source):
+            continue  # the book has its own links to the pages before and after
+        changed = solved.source != cell.source
+        outputs = solved.get("outputs", [])
+        cell.metadata = {}
+        if cell.cell_type == "markdown":
+            cell.source = _with_plain_anchors(cell.source)
+        else:
+            cell.outputs = [] if changed else outputs
+        cells.append(cell)
+        if changed and edition == SELF:
+            cells.append(_folded(solved, outputs))
+    if outcomes:
+        listed = "\n".join(f"- {one}" for one in outcomes)
+        cells.insert(
+            1,
+            new_markdown_cell(
+                f":::{{admonition}} Learning Outcomes\nAfter this notebook you can\n\n{listed}\n:::"
+            ),
+        )
+    page.cells = cells
+    page.metadata.pop("celltoolbar", None)
+    return page
+
+
+def _folded(solved: NotebookNode, outputs: list[NotebookNode]) -> NotebookNode:
+    if solved.cell_type == "markdown":
+        return new_markdown_cell(f"<details>\n<summary>{SUMMARY}</summary>\n\n{solved.source}\n\n</details>")
+    lines = solved.source.split("\n")
+    shown = [line for line in lines if "### BEGIN SOLUTION" not in line and "### END SOLUTION" not in line]
+    said = {"code_prompt_show": SUMMARY, "code_prompt_hide": "Solution (click to fold)"}
+    return new_code_cell("\n".join(shown), outputs=outputs, metadata={"tags": ["hide-input"], "mystnb": said})
+
+
+def _with_plain_anchors(text: str) -> str:
+    """Links to headings of notebooks as the book names them: in small letters, as GitHub does for Markdown."""
+
+    def plain(link: re2._Match[str]) -> str:
+        anchor = re2.sub(r"[^\w\- ]", "", unquote(link[2]).lower()).replace(" ", "-")
+        return f"]({link[1]}#{anchor})"
+
+    return _NOTEBOOK_LINK.sub(plain, text)
+
+
+def _outcomes(root: Path) -> dict[str, tuple[str, ...]]:
+    """The rows of the page of learning outcomes, by the names of the labs."""
+    found: dict[str, tuple[str, ...]] = {}
+    page = root / "docs" / "learning-outcomes.md"
+    for outcome, lab in _OUTCOME.findall(page.read_text(encoding="utf-8")) if page.exists() else ():
+        found[lab] = (*found.get(lab, ()), outcome)
+    return found
+
+
+def _contents(root: Path) -> str:
+    """The tree of the book: the chapters, then the pages of each kind of reader."""
+    trees = {}
+    for chapter in course.chapters(root):
+        trees[chapter.title] = [f"chapters/{chapter.folder.name}/{lab.name}" for lab in chapter.labs]
+    for title, names in _PARTS.items():
+        found = [page for name in names for page in sorted((root / "docs").glob(f"{name}.md"))]
+        trees[title] = [str(page.resolve().relative_to(root.resolve()).with_suffix("")) for page in found]
+    return "".join(
+        f'\n\n```{{toctree}}\n:hidden:\n:caption: "{title}"\n\n' + "\n".join(pages) + "\n```\n"
+        for title, pages in trees.items()
+        if pages
+    )

@@ -1,0 +1,64 @@
+"""The book: its links lead somewhere, it loads nothing from elsewhere, and a class's edition has no solutions."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from autograder.authoring.site.building import LARGEST, build_site
+from autograder.authoring.site.outputs import moving_picture
+from autograder.authoring.site.pages import EDITIONS, SELF, SUMMARY
+from autograder.masters.layout import masters
+
+pytest.importorskip("sphinx_book_theme")
+ROOT = Path(__file__).resolve().parents[3]
+ELSEWHERE = re.compile(
+    r"""<(?:script|img|iframe|source)\b[^>]*\bsrc=["'](?:https?:)?//|<link\b(?=[^>]*stylesheet|[^>]*preload)[^>]*href=["'](?:https?:)?//"""
+)
+
+
+@pytest.fixture(scope="module", params=EDITIONS)
+def book(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
+    folder = tmp_path_factory.mktemp("book") / "pages"
+    said: list[str] = []
+    assert not build_site(ROOT, folder, request.param, outputs=False, repository="", tell=said.append), said
+    return request.param, folder
+
+
+def test_every_lab_has_a_page_and_every_page_is_small_and_loads_nothing(book: tuple[str, Path]) -> None:
+    pages = list(book[1].rglob("*.html"))
+    names = {page.stem for page in pages}
+    assert {master.parent.name for master in masters(ROOT)} | {
+        "index",
+        "mistakes",
+        "glossary",
+        "search",
+    } <= names
+    assert not [page.name for page in pages if page.stat().st_size > LARGEST]
+    assert not [page.name for page in pages if ELSEWHERE.search(page.read_text(encoding="utf-8"))]
+
+
+def test_solutions_are_folded_or_absent(book: tuple[str, Path]) -> None:
+    edition, folder = book
+    page = (folder / "chapters/01_ros2_fundamentals/lab_1_2.html").read_text(encoding="utf-8")
+    text = re.sub(r"<[^>]*>", "", page)
+    assert "Learning Outcomes" in text
+    assert (SUMMARY in text) == (edition == SELF)
+    assert ("create_timer(0.5, self.say_hello)" in text) == (edition == SELF)
+    assert "TODO: make the publisher and the timer here" in text
+
+
+def test_a_moving_picture_is_one_drawing_of_all_frames() -> None:
+    frames = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><title>at {x}</title>'
+        f'<style>.a {{ fill: red; }}</style><circle cx="{x}" r="1"/></svg>'
+        for x in range(200)
+    ]
+    drawn = ElementTree.fromstring(moving_picture(frames))
+    groups = [one for one in drawn.iter() if one.tag.endswith("}g")]
+    assert 40 <= len(groups) <= 62
+    assert groups[-1][0].get("cx") == "199"
+    assert drawn.findtext("{http://www.w3.org/2000/svg}title") == "at 199"
