@@ -20,6 +20,7 @@ from autograder.temporary_folders import HeldFolder
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+
     from nbformat import NotebookNode
 
 LIMIT = 600
