@@ -42,6 +42,7 @@ SETTINGS: dict[str, Any] = {
     "html_show_sphinx": False,
     "language": "en",
     "nb_execution_mode": "off",
+    "nb_merge_streams": True,
     # What these would load comes from elsewhere, and no page has a widget.
     "nb_ipywidgets_js": {},
     "myst_enable_extensions": ["colon_fence", "html_image"],
