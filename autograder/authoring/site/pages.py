@@ -104,12 +104,13 @@ def book_page(source: NotebookNode, edition: str, outcomes: tuple[str, ...] = ()
         outcomes: What a reader can do after this notebook.
     """
     page = nbformat.reads(release_text(source), as_version=4)
+    secret = _lines_of_solutions(source, page) if edition == CLASS else frozenset[str]()
     cells = []
     for solved, cell in zip(source.cells, page.cells, strict=True):
         if _WAYS.match(cell.source):
             continue  # the book has its own links to the pages before and after
         changed = solved.source != cell.source
-        outputs = solved.get("outputs", [])
+        outputs = [one for one in solved.get("outputs", []) if secret.isdisjoint(_printed(one))]
         cell.metadata = {}
         if cell.cell_type == "markdown":
             cell.source = _with_plain_anchors(cell.source)
@@ -129,6 +130,20 @@ def book_page(source: NotebookNode, edition: str, outcomes: tuple[str, ...] = ()
     page.cells = cells
     page.metadata.pop("celltoolbar", None)
     return page
+
+
+def _lines_of_solutions(source: NotebookNode, page: NotebookNode) -> frozenset[str]:
+    """The lines that only the solutions have: a cell may print the file that another one has written."""
+    solved, open_ = (
+        {line.strip() for cell in notebook.cells for line in cell.source.split("\n")}
+        for notebook in (source, page)
+    )
+    return frozenset(line for line in solved - open_ if any(map(str.isalnum, line)))
+
+
+def _printed(output: NotebookNode) -> set[str]:
+    text = str(output.get("text", "")) + str(output.get("data", {}).get("text/plain", ""))
+    return {line.strip() for line in text.split("\n")}
 
 
 def _folded(solved: NotebookNode, outputs: list[NotebookNode]) -> NotebookNode:

@@ -8,11 +8,13 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from nbformat.v4 import new_output
 
 from autograder.authoring.site.building import LARGEST
 from autograder.authoring.site.outputs import moving_picture
-from autograder.authoring.site.pages import EDITIONS, SELF, SUMMARY
+from autograder.authoring.site.pages import CLASS, EDITIONS, SELF, SUMMARY, book_page
 from autograder.masters.layout import masters
+from autograder.masters.source import source_notebook
 from environment.python_child import python_child
 
 pytest.importorskip("sphinx_book_theme")
@@ -26,7 +28,9 @@ ELSEWHERE = re.compile(
 def book(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
     folder = tmp_path_factory.mktemp("book") / "pages"
     # In a process of its own: Sphinx keeps what one book has registered.
-    command = python_child("-m", "autograder", "site", "--quick", "--edition", request.param, "--to", folder)
+    command = python_child(
+        "-m", "autograder", "site", "--quick", "--edition", request.param, "--to", str(folder)
+    )
     done = subprocess.run(command.command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     return request.param, folder
@@ -53,6 +57,19 @@ def test_solutions_are_folded_or_absent(book: tuple[str, Path]) -> None:
     assert (SUMMARY in text) == (edition == SELF)
     assert ("create_timer(0.5, self.say_hello)" in text) == (edition == SELF)
     assert "TODO: make the publisher and the timer here" in text
+
+
+def test_no_output_shows_a_class_what_a_solution_has_written() -> None:
+    source = source_notebook(next(one for one in masters(ROOT) if one.parent.name == "lab_1_3"))
+    solved = next(cell for cell in source.cells if "BEGIN SOLUTION" in cell.source)
+    given = next(cell for cell in source.cells if cell.cell_type == "code" and cell is not solved)
+    for text in (solved.source, "a plain line"):
+        given.outputs.append(new_output("stream", text=text))
+    shown = {
+        edition: [out.text for cell in book_page(source, edition).cells for out in cell.get("outputs", ())]
+        for edition in EDITIONS
+    }
+    assert shown == {SELF: [solved.source, "a plain line"], CLASS: ["a plain line"]}
 
 
 def test_a_moving_picture_is_one_drawing_of_all_frames() -> None:
