@@ -88,6 +88,8 @@ def build_site(
             for page in pages.rglob("*.html")
             if page.stat().st_size > LARGEST
         ]
+        for template in (pages / STATIC).glob("*macros.html"):
+            template.unlink()  # the themes' own templates, which are not pages
         if folder.exists():
             shutil.rmtree(folder)
         shutil.move(pages, folder)
