@@ -106,7 +106,7 @@ def _settle_what_is_elsewhere(app: Sphinx, tree: nodes.document) -> None:
     for link in list(tree.findall(addnodes.pending_xref)):
         target = str(link["reftarget"]).partition("#")[0]
         file = os.path.normpath(Path(link["refdoc"]).parent / target)
-        if link.get("reftype") != "myst" or not target or file.startswith("."):
+        if link.get("reftype") != "myst" or not target or Path(file).parts[0] == "..":
             continue
         if (course.root() / file).exists() and not (Path(app.srcdir) / file).is_file():
             base = app.config.course_files
