@@ -273,7 +273,7 @@ def test_a_damaged_file_is_named_and_costs_nobody_points(
     else:
         with contextlib.closing(sqlite3.connect(file)) as book:
             book.execute("PRAGMA user_version = 1")
-    advice = r"class\.db, which holds what was graded, cannot be read or written .*Put back a copy of it.*rename it"
+    advice = r"class\.db, which holds what was graded, cannot be read or written .*Restore a backup of the file.*rename it"
     with pytest.raises(StoreTrouble, match=advice):
         tiny.grade()
     for words in (
@@ -282,7 +282,7 @@ def test_a_damaged_file_is_named_and_costs_nobody_points(
         ["report", str(tiny.path)],
     ):
         said = CliRunner().invoke(cli, words)
-        assert (said.exit_code, "Put back a copy of it" in said.output) == (2, True), said.output
+        assert (said.exit_code, "Restore a backup of the file" in said.output) == (2, True), said.output
     assert tiny.scores("ada")[TALKER] == 4
     file.rename(file.with_suffix(".old"))
     fake_engine.ran.clear()
@@ -294,7 +294,7 @@ def test_a_file_of_a_newer_course_is_sound(store: ClassStore, tmp_path: Path) ->
     store.keep_graded_cells("f", b"{}")
     with contextlib.closing(sqlite3.connect(tmp_path / "class" / ".autograder" / "class.db")) as book:
         book.execute("PRAGMA user_version = 99")
-    with pytest.raises(StoreTrouble, match=r"form 99 of a newer course.* It is sound") as caught:
+    with pytest.raises(StoreTrouble, match=r"form 99 of a newer course.* The file is not damaged") as caught:
         ClassStore(ClassDirectory(tmp_path / "class")).entered()
     assert "Put back" not in str(caught.value)
 
@@ -473,5 +473,5 @@ def test_a_class_that_may_only_be_read_is_read(
             done = CliRunner().invoke(cli, [words[0], str(tiny.path), *words[1:]])
             assert done.exit_code == 0, done.output
         store = ClassStore(ClassDirectory(tiny.path))
-        with pytest.raises(StoreTrouble, match=r"readonly.*Look at its owner"):
+        with pytest.raises(StoreTrouble, match=r"readonly.*Check the owner"):
             store.forget_entered([submission()])

@@ -49,7 +49,7 @@ def test_a_gradebook_that_may_only_be_read(tiny: TinyClass, fake_engine: FakeEng
     config.write_text(f"{usual}\nc.CourseDirectory.db_url = {url!r}\n")
     tiny.submit("ada", 9)
     fake_engine.ran.clear()
-    with pytest.raises(GradebookTrouble, match=r"readonly database.*Look at its owner"):
+    with pytest.raises(GradebookTrouble, match=r"readonly database.*Check the owner"):
         tiny.grade()
     assert fake_engine.ran == [], "what cannot be taken back is not run"
     config.write_text(usual)
@@ -89,7 +89,7 @@ def test_a_gradebook_that_is_damaged(tiny: TinyClass, fake_engine: FakeEngine) -
     book = tiny.path / "gradebook.db"
     good = book.read_bytes()
     book.write_bytes(b"no more" * 1000)
-    with pytest.raises(GradebookTrouble, match=r"not a database.*Put back a copy"):
+    with pytest.raises(GradebookTrouble, match=r"not a database.*Restore a backup"):
         tiny.grade()
     book.write_bytes(good)
     assert tiny.grade().exit_code == 0

@@ -157,7 +157,7 @@ def test_what_is_missing_is_said(
     with pytest.raises(ClassIncomplete, match=r"needs the name of the course.*course_id"):
         tiny.grade()
     config.write_text(f'{config.read_text()}c.CourseDirectory.course_id = "ros2"\n')
-    with pytest.raises(GradingError, match="Look whether the database server runs"):
+    with pytest.raises(GradingError, match="Check that the database server runs"):
         tiny.grade()
     monkeypatch.setitem(sys.modules, "psycopg", None)
     gradebook_reading._engine.cache_clear()  # as in another process
