@@ -420,7 +420,7 @@ def test_a_store_that_another_program_holds(store: ClassStore, monkeypatch: pyte
     with contextlib.closing(sqlite3.connect(file_of(store), isolation_level=None)) as other:
         other.execute("BEGIN EXCLUSIVE")
         for ask in (store.entered, lambda: store.forget_entered([submission()])):
-            with pytest.raises(StoreTrouble, match=r"locked.*Another program has it open"):
+            with pytest.raises(StoreTrouble, match=r"locked.*Another program has the file open"):
                 ask()
         other.execute("ROLLBACK")
     assert store.entered() == {("ada", "lab"): entered()}

@@ -71,7 +71,7 @@ def test_a_gradebook_that_another_program_holds(tiny: TinyClass, fake_engine: Fa
             other.execute("BEGIN EXCLUSIVE")
 
     fake_engine.before = hold
-    with pytest.raises(GradebookTrouble, match=r"locked.*Another program has it open"):
+    with pytest.raises(GradebookTrouble, match=r"locked.*Another program has the file open"):
         tiny.grade()
     other.execute("ROLLBACK")
     other.close()

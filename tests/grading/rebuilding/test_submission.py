@@ -82,8 +82,8 @@ def test_a_lone_surrogate_can_be_written_again() -> None:
         (b"PK\x03\x04", "not JSON"),
         (b"[]", "not a Jupyter notebook"),
         (b'{"cells": []}', "not a Jupyter notebook"),
-        (b'{"nbformat": 4, "cells": {}}', "no notebook of format 4"),
-        (b'{"nbformat": 9, "cells": []}', "no notebook of format 4"),
+        (b'{"nbformat": 4, "cells": {}}', "not a notebook of format 4"),
+        (b'{"nbformat": 9, "cells": []}', "not a notebook of format 4"),
         (b"[" * 100_000, "nested too deeply"),
     ],
 )
