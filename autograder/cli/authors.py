@@ -156,12 +156,16 @@ def site(edition: str, folder: Path | None, quick: bool, files: str) -> None:
     """Make the course, its guides and known mistakes one book of HTML pages, which needs no server and no network."""
     from autograder import course
     from autograder.authoring.site.building import build_site
+    from autograder.student.handing_out import CannotHandOut
 
     root = course.root()
     folder = (folder or root / "site").absolute()
     if folder.exists() and any(folder.iterdir()) and not (folder / "searchindex.js").is_file():
         fail(f"{folder} is not empty and is not a site: name another folder with --to")
-    problems = build_site(root, folder, edition, outputs=not quick, repository=files, tell=click.echo)
+    try:
+        problems = build_site(root, folder, edition, outputs=not quick, repository=files, tell=click.echo)
+    except CannotHandOut as error:
+        fail(str(error))
     click.echo(f"written    {folder / 'index.html'}")
     if problems:
         click.echo(f"{problems} problems are listed above.", err=True)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import os
 import resource
-import subprocess
 import sys
 import tempfile
 import time
@@ -23,6 +22,7 @@ from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 
 from autograder import course
+from autograder.authoring.site.outputs import execute_in_new_kernel
 from autograder.masters.layout import lab_name, masters
 from autograder.masters.source import source_notebook
 from autograder.ros_domain import DOMAIN_VARIABLE, claim_free_domain
@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 
 SOURCES = "ros2_ws/src"
 """Where the student's packages are, beside the notebooks."""
-LIMIT = 600
-"""Seconds for one cell: the longest builds a workspace."""
 
 
 @dataclass(frozen=True)
@@ -110,15 +108,8 @@ def run_all(folder: Path, notebooks: Mapping[str, NotebookNode], order: Sequence
 
 def _run(notebook: NotebookNode, folder: Path, lines: Path) -> str:
     """Run one notebook in a new kernel; what went wrong, or nothing."""
-    environment = {**os.environ, journal.VARIABLE: str(lines)}
-    # With it, ipykernel leaves the output of compiled code, such as rclpy's log lines, out of the cells.
-    environment.pop("PYTEST_CURRENT_TEST", None)
-    client = NotebookClient(
-        notebook, timeout=LIMIT, kernel_name="python3", resources={"metadata": {"path": str(folder)}}
-    )
     try:
-        # Log lines go to the kernel's standard output, too.
-        client.execute(env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        execute_in_new_kernel(NotebookClient(notebook), folder, lines)
     except (CellExecutionError, CellTimeoutError, DeadKernelError) as error:
         return str(error)
     return ""

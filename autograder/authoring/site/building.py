@@ -13,15 +13,16 @@ from sphinx.application import Sphinx
 
 from autograder import course
 from autograder.authoring.site.outputs import run_masters
-from autograder.authoring.site.pages import STATIC, write_sources
+from autograder.authoring.site.pages import SELF, STATIC, write_sources
 from autograder.masters.layout import masters
+from autograder.student.handing_out import hand_out
 from autograder.temporary_folders import HeldFolder
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 LARGEST = 1_000_000
-"""Bytes of a page."""
+"""The most bytes that a page may have."""
 STYLE = "book.css"
 SETTINGS: dict[str, Any] = {
     "author": "The maintainers of this course",
@@ -42,8 +43,7 @@ SETTINGS: dict[str, Any] = {
     "html_show_sphinx": False,
     "language": "en",
     "nb_execution_mode": "off",
-    "nb_merge_streams": True,
-    # What these would load comes from elsewhere, and no page has a widget.
+    # No page has a widget, and the scripts for widgets would be loaded from another host.
     "nb_ipywidgets_js": {},
     "myst_enable_extensions": ["colon_fence", "html_image"],
     "myst_heading_anchors": 6,
@@ -68,8 +68,8 @@ def build_site(
     Returns:
         The number of problems: links that lead nowhere, pages that are too large.
     """
-    executed = run_masters(masters(root), tell) if outputs else {}
     with HeldFolder("course-site-") as held:
+        executed = run_masters(masters(root), course_of(edition, root, held.path), tell) if outputs else {}
         sources, pages = held.path / "sources", held.path / "pages"
         sources.mkdir()
         write_sources(root, sources, edition, executed)
@@ -96,6 +96,17 @@ def build_site(
     for problem in problems:
         tell(problem)
     return len(problems)
+
+
+def course_of(edition: str, root: Path, folder: Path) -> Path:
+    """Return the course whose cards an edition shows; for a class a hand-out, as its cards offer no solution.
+
+    Raises:
+        autograder.student.handing_out.CannotHandOut: An author has worked in a notebook of the chapters.
+    """
+    if edition == SELF:
+        return root
+    return hand_out(folder / "handed-out", root).place
 
 
 def _settle_what_is_elsewhere(app: Sphinx, tree: nodes.document) -> None:

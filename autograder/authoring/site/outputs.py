@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import re2
 from nbclient import NotebookClient
+from nbconvert.preprocessors import CoalesceStreamsPreprocessor
 
+from autograder import course
 from autograder.masters.layout import lab_name
 from autograder.masters.source import source_notebook
 from autograder.ros_domain import DOMAIN_VARIABLE, claim_free_domain
@@ -38,11 +40,12 @@ _INNER = re2.compile(r"(?s)^<svg([^>]*)>(.*)</svg>$")
 _TITLE = re2.compile(r"(?s)<title>.*?</title>")
 
 
-def run_masters(masters: Sequence[Path], tell: Callable[[str], None]) -> dict[str, NotebookNode]:
+def run_masters(masters: Sequence[Path], root: Path, tell: Callable[[str], None]) -> dict[str, NotebookNode]:
     """Execute masters, each in a new kernel, a folder and a ROS domain of its own.
 
     Args:
         masters: The masters' files.
+        root: The folder of the course that the kernels and their judges use.
         tell: Prints a line about each notebook that is done.
 
     Returns:
@@ -53,7 +56,7 @@ def run_masters(masters: Sequence[Path], tell: Callable[[str], None]) -> dict[st
     """
 
     def run(master: Path) -> tuple[str, NotebookNode]:
-        done = _run(source_notebook(master), lab_name(master))
+        done = _run(source_notebook(master), lab_name(master), root)
         tell(f"executed   {lab_name(master)}")
         return lab_name(master), done
 
@@ -61,28 +64,44 @@ def run_masters(masters: Sequence[Path], tell: Callable[[str], None]) -> dict[st
         return dict(pool.map(run, masters))
 
 
-def _run(notebook: NotebookNode, name: str) -> NotebookNode:
+def execute_in_new_kernel(client: NotebookClient, folder: Path, lines: Path, **variables: str) -> None:
+    """Execute a client's notebook as JupyterLab would: in a new kernel, with the log lines of rclpy in the cells.
+
+    Args:
+        client: The client of the notebook; its limits and its kernel are set here.
+        folder: The folder in which the kernel runs.
+        lines: The file of the student's journal.
+        variables: More environment variables for the kernel.
+
+    Raises:
+        nbclient.exceptions.CellExecutionError: A cell raised an error.
+        nbclient.exceptions.CellTimeoutError: A cell took longer than ``LIMIT``.
+        nbclient.exceptions.DeadKernelError: The kernel ended.
+    """
+    client.timeout, client.kernel_name = LIMIT, "python3"
+    client.resources = {"metadata": {"path": str(folder)}}
+    environment = {**os.environ, **variables, journal.VARIABLE: str(lines)}
+    # If it is set, ipykernel leaves the log lines of rclpy out of the cells.
+    environment.pop("PYTEST_CURRENT_TEST", None)
+    # The log lines also go to the kernel's own output, where no reader sees them.
+    client.execute(env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def _run(notebook: NotebookNode, name: str, root: Path) -> NotebookNode:
     with HeldFolder("course-site-") as held:
         folder = held.path / "notebooks"
         folder.mkdir()
+        client = _Recorder(notebook)
         claim = claim_free_domain()
-        environment = {
-            **os.environ,
-            DOMAIN_VARIABLE: str(claim.domain),
-            "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-            journal.VARIABLE: str(held.path / "journal.jsonl"),
-        }
-        # If it is set, ipykernel leaves the log lines of rclpy out of the cells.
-        environment.pop("PYTEST_CURRENT_TEST", None)
-        client = _Recorder(
-            notebook, timeout=LIMIT, kernel_name="python3", resources={"metadata": {"path": str(folder)}}
-        )
+        variables = {DOMAIN_VARIABLE: str(claim.domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+        variables[course.VARIABLE] = str(root)
+        variables["GIT_CONFIG_GLOBAL"] = os.devnull  # a new package would name the builder's address
         try:
-            client.execute(env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            execute_in_new_kernel(client, folder, held.path / "journal.jsonl", **variables)
         finally:
             claim.release()
         _put_moving_pictures(notebook, name, client.frames)
-        _hide_the_folder(notebook, str(folder))
+        show_as_a_students(notebook, str(folder))
     return notebook
 
 
@@ -152,17 +171,18 @@ def moving_picture(frames: Sequence[str]) -> str:
     return f"<svg{last[1]}>{head}{''.join(drawn)}</svg>"
 
 
-def _hide_the_folder(notebook: NotebookNode, folder: str) -> None:
-    """Show the folder of the run as a student's folder: its name differs on each machine."""
+def show_as_a_students(notebook: NotebookNode, folder: str) -> None:
+    """Join what a cell printed in pieces, and show the folder of the run as a student's: its name differs each time.
+
+    Args:
+        notebook: An executed notebook.
+        folder: The folder in which it was executed.
+    """
+    CoalesceStreamsPreprocessor().preprocess(notebook, {})
     for cell in notebook.cells:
         for output in cell.get("outputs", ()):
-            for holder, key in (
-                (output, "text"),
-                *((output.get("data", {}), k) for k in output.get("data", {})),
-            ):
-                if isinstance(holder.get(key), str):
-                    holder[key] = (
-                        holder[key]
-                        .replace(folder, "/home/you/course")
-                        .replace(str(Path(folder).parent), "/home/you")
-                    )
+            for holder in (output, output.get("data", {})):
+                for key, text in holder.items():
+                    if isinstance(text, str):
+                        shown = text.replace(folder, "/home/you/course")
+                        holder[key] = shown.replace(str(Path(folder).parent), "/home/you")

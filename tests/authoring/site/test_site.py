@@ -8,11 +8,12 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from nbformat.v4 import new_output
+from nbformat.v4 import new_code_cell, new_notebook, new_output
 
-from autograder.authoring.site.building import LARGEST
-from autograder.authoring.site.outputs import moving_picture
+from autograder.authoring.site.building import LARGEST, course_of
+from autograder.authoring.site.outputs import moving_picture, show_as_a_students
 from autograder.authoring.site.pages import CLASS, EDITIONS, SELF, SUMMARY, book_page
+from autograder.course import SOLUTION
 from autograder.masters.layout import masters
 from autograder.masters.source import source_notebook
 from environment.python_child import python_child
@@ -70,6 +71,20 @@ def test_no_output_shows_a_class_what_a_solution_has_written() -> None:
         for edition in EDITIONS
     }
     assert shown == {SELF: [solved.source, "a plain line"], CLASS: ["a plain line"]}
+
+
+def test_the_cards_of_a_classes_book_offer_no_solution(tmp_path: Path) -> None:
+    assert course_of(SELF, ROOT, tmp_path) == ROOT
+    handed_out = course_of(CLASS, ROOT, tmp_path)
+    assert list(handed_out.rglob("*.reference.json"))
+    assert not list(handed_out.rglob(f"*{SOLUTION}"))
+
+
+def test_a_line_that_was_printed_in_two_pieces_is_one_line_without_the_folder_of_the_run() -> None:
+    pieces = ("in /run/course-si", "te-1/notebooks/ros2_ws")
+    cell = new_code_cell(outputs=[new_output("stream", text=piece) for piece in pieces])
+    show_as_a_students(new_notebook(cells=[cell]), "/run/course-site-1/notebooks")
+    assert [output.text for output in cell.outputs] == ["in /home/you/course/ros2_ws"]
 
 
 def test_a_moving_picture_is_one_drawing_of_all_frames() -> None:
