@@ -162,7 +162,7 @@ def _files(
 
 
 def _pages(root: Path) -> Iterator[tuple[str, Path]]:
-    """The pages, and the pictures that they show: the README's picture shows a solution."""
+    """The pages and the pictures that they show: other pictures, such as the README's, may show a solution."""
     pages = [page for name in PAGES if (page := root / "docs" / name).is_file()]
     text = "".join(page.read_text(encoding="utf-8") for page in pages)
     shown = (path for path in _below(root / "docs" / "images", root) if f"(images/{path.name})" in text)

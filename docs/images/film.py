@@ -110,7 +110,7 @@ def record(folder: Path) -> str:
         page.set_default_timeout(SECONDS * 1000)
         film = Film(page)
         drive_the_robot(film, opened(page, address, "00_nervous_system"))
-        mend_the_talker(film, opened(page, address, "lab_1_2"))
+        correct_the_talker(film, opened(page, address, "lab_1_2"))
         browser.close()
     film.save(folder / "lab.gif")
     return "lab.gif"
@@ -162,8 +162,8 @@ def drive_the_robot(film: Film, notebook: OpenNotebook) -> None:
     film.shoot(900)
 
 
-def mend_the_talker(film: Film, notebook: OpenNotebook) -> None:
-    """Mistype a topic, read the card, mend it, and see the green card."""
+def correct_the_talker(film: Film, notebook: OpenNotebook) -> None:
+    """Mistype a topic, read the card, correct the name, and see the green card."""
     expect(notebook.run(r"^import time")).to_contain_text(re.compile("ROS 2 is up"))
     before, _, after = TALKER.partition("TOPIC")
     notebook.write(r"^class TalkerNode", before + after)

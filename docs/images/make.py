@@ -23,8 +23,9 @@ HERE = Path(__file__).resolve().parent
 TESTS = ("tests/browser/test_lab_1_2.py", "tests/browser/test_course_page.py")
 TAKEN = ("passed.png", "course-panel.png")
 LARGEST = 300_000
+"""Bytes of a picture: a clone should not grow with every new look of a card."""
 LARGEST_FILM = 1_200_000
-"""Bytes: a clone should not grow with every new look of a card."""
+"""Bytes of the moving picture."""
 
 
 SEEN = 1500

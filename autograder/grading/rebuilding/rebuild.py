@@ -179,7 +179,7 @@ class _Sorting:
     def _choose(self, name: str, places: Sequence[int]) -> int:
         """The last submitted cell of that name before its check, as the check sees it when all cells are run.
 
-        A copy of the untouched stub does not count; a copy behind the check counts only if there is no other copy.
+        An untouched copy of the stub does not count; a copy behind the check counts only if there is no other copy.
         """
         stub = self._master[name].source.strip()
         answered = [place for place in places if self._submitted[place].source.strip() != stub] or places
