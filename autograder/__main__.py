@@ -1,4 +1,4 @@
-"""``python -m autograder`` and the ``autograder`` command."""
+"""Run ``python -m autograder`` and the ``autograder`` command."""
 
 from __future__ import annotations
 
@@ -12,18 +12,17 @@ from pathlib import Path
 import re2
 
 from autograder import course
+from environment.installation import PACKAGE
 from environment.python_child import SAFE_PATH
-
-PACKAGE = "ros2-course-autograder"
 
 TERMINATED = 143
 """A shell's exit code for a program that SIGTERM ended: 128 and the signal's number."""
 
 
 def main() -> None:
-    """Run the command line; a closed pipe, Ctrl-C and SIGTERM end it quietly, with all that it has started."""
-    # This process has obeyed the variable when it started. A student's program below must not inherit the variable: the
-    # program imports modules from its own folder, as Python always does.
+    """Run the command line. A closed pipe, Ctrl-C and SIGTERM end it quietly, with everything that it has started."""
+    # Python has used this variable at its start. A student's program must not inherit it, because the
+    # program imports modules from its own folder, as usual.
     os.environ.pop(SAFE_PATH, None)
     from autograder.cli import cli
 

@@ -1,7 +1,7 @@
-"""Code that is right elsewhere (ROS 1, another ROS 2, C++, asyncio), and how it is written in this course.
+"""Recognize code from other sources (ROS 1, another ROS 2, C++, asyncio), and say how to write it in this course.
 
-Copied lines are recognised by the exception that they end with. Each row has the pattern of this exception, the
-cause, and what to write here. The judge says it on a card, the notebook below a cell that ended with such an exception.
+Copied lines are recognized by the exception that they raise. Each row has the pattern of this exception, the
+cause, and what to write here. The judge shows it on a card, and the notebook below a cell that raised the exception.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ if TYPE_CHECKING:
 KEY = "code_of_elsewhere"
 """The diagnosis key of these mistakes in ``docs/mistakes.md``."""
 _MARKS = r"\n(?:[ ~^]*\n)?"
-"""From a quoted line of code to the exception: perhaps a line of marks below the code."""
+"""Matches the text between a line of code and the exception: perhaps a line of marks."""
 
 
 @dataclass(frozen=True)
 class Elsewhere:
-    """One way in which code of elsewhere ends here.
+    """One kind of code from other sources, with its exception.
 
     Attributes:
-        pattern: Found in the traceback (multi-line search); its groups may be named in both texts. ``{here}`` stands
-            there for the package with this course's types.
-        text: Where the code comes from, in a sentence.
+        pattern: Searched in the traceback (multi-line); both texts may name its groups. ``{here}`` stands
+            in them for the package with this course's types.
+        text: The source of the code, in a sentence.
         next_step: What to write here.
         key: The diagnosis key.
     """
@@ -62,14 +62,7 @@ _HERE = {
     "ROSInterruptException|signal_shutdown|on_shutdown": "Leave it out. A program ends with rclpy.shutdown().",
     "spin|spinOnce|spin_some": "Write rclpy.spin(your_node) in a program, `with spinning(your_node):` in a notebook.",
 }
-"""What ROS 1 has in its module rospy (and C++ in rclcpp): pattern of the name -> what is written here."""
-_SPELLINGS = {
-    "this": "self",
-    "true": "True",
-    "false": "False",
-    "null|NULL|nullptr|undefined": "None",
-}
-"""What other languages write -> Python."""
+"""Names in ROS 1's module rospy (and C++'s rclcpp): pattern of the name -> what to write here."""
 _TYPES = r"\w*Ints|SetBool|Trigger|Empty|Fibonacci|WalkTo"
 _PARTS = "Request|Response|Goal|Result|Feedback"
 
@@ -134,17 +127,6 @@ ROWS = (
         "create_subscription({type}, 'chatter', self.on_message, 10).",
     ),
     Elsewhere(
-        r"AttributeError: 'Publisher' object has no attribute 'get_num_connections'",
-        "get_num_connections is ROS 1's, and this course uses ROS 2.",
-        "Write get_subscription_count() in its place.",
-    ),
-    Elsewhere(
-        r"TypeError: ActionServer\.__init__\(\) got an unexpected keyword argument '(?P<name>execute_cb|auto_start)'",
-        "{name}= is ROS 1's, and this course uses ROS 2.",
-        "Write ActionServer(self, Fibonacci, 'fibonacci', execute_callback=self.execute): the node first, then the "
-        "type, then the name. It starts by itself.",
-    ),
-    Elsewhere(
         rf"(?:ImportError: cannot import name|NameError: name) '(?P<type>{_TYPES})(?P<part>{_PARTS})'",
         "In ROS 1 and in C++ the {part} of {type} has a name of its own; in ROS 2 it is a part of {type} in Python.",
         "Import {type} alone, and write the part with a dot: {type}.{part}.",
@@ -183,56 +165,32 @@ ROWS = (
         "answer, give the future that call_async returned a function to go on in, with its add_done_callback(...).",
     ),
     Elsewhere(
-        r"TypeError: __init__\(\) should return None, not 'coroutine'",
-        "__init__ is an `async def`, and making an object cannot wait.",
-        "Write def in place of async def, and no await in it.",
-    ),
-    *(
-        Elsewhere(
-            rf"NameError: name '(?P<name>{names})' is not defined",
-            "{name} is another language's: in Python it is " + python + ".",
-            f"Write {python} in place of {{name}}.",
-        )
-        for names, python in _SPELLINGS.items()
+        r"NameError: name '(?P<name>this|true|false|null|NULL|nullptr|undefined)' is not defined",
+        "{name} is another language's word.",
+        "In Python it is self (for this), True, False or None, with these capitals.",
     ),
     Elsewhere(
-        r"(?:ModuleNotFoundError: No module named|NameError: name) '(?P<name>rclcpp|RCLCPP_\w+)\b",
-        "{name} is C++, and this course writes ROS 2 in Python.",
-        "The Python module is rclpy; a node writes its log with self.get_logger().info('...').",
-    ),
-    Elsewhere(
-        r"TypeError: '<' not supported between instances of '(?:method|function)' and 'Metaclass_(?P<type>\w+)'",
-        "A type in angle brackets is C++.",
-        "In Python the type is the first argument, as in create_publisher({type}, 'chatter', 10).",
-    ),
-    Elsewhere(
-        r"AttributeError: '\w+' object has no attribute '(?P<name>create_wall_timer)'",
-        "{name} is C++, and this course writes ROS 2 in Python.",
-        "Write create_timer(0.5, self.tick): the period in seconds, then the method.",
-    ),
-    Elsewhere(
-        r"AttributeError: '\w+' object has no attribute '(?P<name>async_send_request|async_send_goal|async_get_result"
-        r"|async_cancel_goal)'",
-        "{name} is C++, and this course writes ROS 2 in Python.",
-        "In Python these names end in async: call_async, send_goal_async, get_result_async, cancel_goal_async.",
-    ),
-    Elsewhere(
-        r"^ +(?:.*[\s=(,])?[A-Za-z_][\w.]*(?:::|->)[A-Za-z_].*\n(?:[ ~^]*\n)?SyntaxError: ",
+        r"(?:ModuleNotFoundError: No module named|NameError: name) '(?:rclcpp|RCLCPP_\w+)\b"
+        r"|AttributeError: '\w+' object has no attribute '(?:create_wall_timer|async_(?:send_\w+|get_result"
+        r"|cancel_goal))'"
+        r"|TypeError: '<' not supported between instances of '(?:method|function)' and 'Metaclass_"
+        r"|^ +(?:.*[\s=(,])?[A-Za-z_][\w.]*(?:::|->)[A-Za-z_].*\n(?:[ ~^]*\n)?SyntaxError: ",
         "This line is C++, and this course writes ROS 2 in Python.",
-        "Write a dot in place of :: and of ->, as in self.publisher.publish(message), and import a type: from "
-        "std_msgs.msg import String.",
+        "The Python module is rclpy. Write a dot in place of :: and of ->, and a type as the first argument, without "
+        "angle brackets, as in self.create_publisher(String, 'chatter', 10). A timer is create_timer(0.5, self.tick), "
+        "a line of the log is self.get_logger().info('hello'), and names end in async, as call_async does.",
     ),
 )
-"""Code of elsewhere, most exact first."""
+"""All rows, the most exact ones first."""
 
 
 def packages(names: Iterable[str]) -> str:
-    """The packages with this course's types, for a sentence."""
+    """Return the packages with this course's types, for a sentence."""
     return " or ".join(sorted(set(names))) or "the package that the lab imports from"
 
 
 def recognised(traceback: str, here: str) -> Elsewhere | None:
-    """The row that a traceback shows, with both texts filled in; None if it shows no code of elsewhere.
+    """Return the row that a traceback matches, with both texts filled in; None if it matches none.
 
     Args:
         traceback: The traceback.

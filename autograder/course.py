@@ -1,4 +1,4 @@
-"""The places of the course's own files: its chapters, and the labs of a chapter in their order."""
+"""Find the course's own files: its chapters, and the labs of a chapter in order."""
 
 from __future__ import annotations
 
@@ -8,29 +8,34 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import re2
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 VARIABLE = "AUTOGRADER_COURSE"
-"""Names the top folder of a course that is elsewhere than the package."""
+"""Environment variable with the top folder of a course that does not contain this package."""
 SOLUTIONS = "solutions"
 """The folder of the chapters as their authors write them."""
 HANDED_OUT = "exercises"
-"""The folder in its place in what students are handed: the judge's part of the chapters, and no master."""
+"""The folder in a hand-out that replaces it: the judge's part of the chapters, without masters."""
 CHAPTERS = "chapters"
-"""The folder of the notebooks that students open, one folder a chapter."""
+"""The folder of the notebooks that students open, with one folder for each chapter."""
 CHAPTER = "chapter.toml"
-"""The file of facts about a chapter that the folders of its labs do not show."""
+"""The file that describes a chapter, beyond the folders of its labs."""
 INTERFACES = "interfaces"
-"""The folder of a chapter with its own packages of interfaces, which the set-up of the course builds."""
+"""The folder of a chapter's interface packages, which the set-up of the course builds."""
+GITHUB = "https://github.com/"
+BRANCH = "main"
+"""The branch of the course's repository that its readers open."""
 COPY = "(your copy,"
 """In the name of each notebook that `./course reset` has kept."""
 LAB = "lab.md"
 """The master in a lab's folder, from which its notebook is derived."""
 WHY = ".why.md"
-"""The ending of the file beside an exercise that says why its reference solution is written so."""
+"""The ending of the file next to an exercise with the reasons for its reference solution."""
 SOLUTION = ".solution.json"
-"""The ending of the file that is derived from that and from the master, for students with full marks."""
+"""The ending of the file made from these reasons and the master, for students with full marks."""
 
 
 class NoCourse(LookupError):
@@ -46,13 +51,13 @@ class Chapter:
     """A chapter of the course.
 
     Attributes:
-        folder: With its description, and a folder for each lab.
-        title: Of the chapter.
-        labs: The folders of its labs, in the order in which they are read. Those that the description does not name
+        folder: The folder with its description and a folder for each lab.
+        title: The title of the chapter.
+        labs: The folders of its labs, in the order in which they are read. Labs that the description does not name
             come last.
-        exercises: For a lab, the names of its exercises in the order in which they are done, where that is not the
-            order of the alphabet.
-        interfaces: The packages with interfaces that come with the chapter, for its nodes to import. The set-up builds
+        exercises: The names of a lab's exercises in the order in which they are done, if that is not
+            alphabetical.
+        interfaces: The interface packages that come with the chapter, for its nodes to import. The set-up builds
             each, from the chapter's folder ``interfaces`` or from the course's environment.
     """
 
@@ -63,19 +68,19 @@ class Chapter:
     interfaces: tuple[str, ...]
 
     def in_order(self, lab: Path, files: Sequence[Path]) -> list[Path]:
-        """The files of a lab's exercises in the order in which they are done."""
+        """Return the files of a lab's exercises in the order in which they are done."""
         wanted = self.exercises.get(lab.name, ())
         return sorted(files, key=lambda file: wanted.index(file.stem) if file.stem in wanted else len(wanted))
 
     def exercises_of(self, lab: Path) -> dict[str, Path]:
-        """The files of a lab's exercises by their ids, in the order in which they are done."""
+        """Return the files of a lab's exercises by their ids, in the order in which they are done."""
         return {f"{lab.name}.{file.stem}": file for file in self.in_order(lab, sorted(lab.glob("[!_]*.py")))}
 
 
 def root() -> Path:
     """Return the top folder of the course.
 
-    It is the folder in the environment variable ``AUTOGRADER_COURSE``, or else the clone that this package is in.
+    It is the folder in the environment variable ``AUTOGRADER_COURSE``, or else the clone that contains this package.
 
     Raises:
         NoCourse: There is no course.
@@ -92,16 +97,16 @@ def root() -> Path:
 
 
 def use(folder: Path) -> None:
-    """Use a course from now on, in this process and its children, if none is named and this package is in none."""
+    """Use a course in this process and its children, unless one is named or contains this package."""
     if VARIABLE not in os.environ and not _written(Path(__file__).resolve().parents[1]).is_dir():
         os.environ[VARIABLE] = str(folder)
 
 
 def use_the_one_around(folder: Path) -> None:
-    """Use the course that a folder is in, if it is in one.
+    """Use the course that contains a folder, if there is one.
 
-    For commands that run what their user wrote. A command for a class never looks around: a student's folder could
-    hold a course, too.
+    For commands that run their user's own code. A command for a class never searches: a student's folder could
+    contain a course, too.
     """
     for candidate in (folder, *folder.parents):
         if _written(candidate).is_dir():
@@ -110,12 +115,42 @@ def use_the_one_around(folder: Path) -> None:
 
 
 def variables() -> dict[str, str]:
-    """The variables with which another process finds the same course. No box of a student's gets it."""
+    """Return the variables with which another process finds the same course. No student's sandbox gets them."""
     return {VARIABLE: str(root())}
 
 
+def repository(folder: Path) -> str:
+    """Return the address of a course's public repository, ``https://github.com/OWNER/NAME``; empty if it has none.
+
+    It is ``Repository`` in the table ``[project.urls]`` of the course's pyproject.toml, and stands nowhere else.
+
+    Args:
+        folder: The top folder of the course.
+
+    Raises:
+        BrokenChapter: The file cannot be read, or names an address of another form.
+    """
+    file = folder / "pyproject.toml"
+    try:
+        said = tomllib.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
+    except (OSError, ValueError) as error:
+        raise BrokenChapter(f"{file} cannot be read: {error}") from error
+    address = str(said.get("project", {}).get("urls", {}).get("Repository", "")).removesuffix("/")
+    name = address.removeprefix(GITHUB).removesuffix(".git")
+    if not address:
+        return ""
+    if not address.startswith(GITHUB) or not re2.fullmatch(r"[\w.-]+/[\w.-]+", name):
+        raise BrokenChapter(f"{file}: Repository is {address!r}, and has to be like {GITHUB}OWNER/NAME")
+    return GITHUB + name
+
+
+def archive(address: str) -> str:
+    """Return the address of a zip with the files of a repository."""
+    return f"{address}/archive/refs/heads/{BRANCH}.zip"
+
+
 def chapters(folder: Path) -> tuple[Chapter, ...]:
-    """The chapters of a course, in the order of their folders' names.
+    """Return the chapters of a course, in the order of their folders' names.
 
     Args:
         folder: The top folder of the course.
@@ -130,23 +165,23 @@ def chapters(folder: Path) -> tuple[Chapter, ...]:
 
 
 def _written(folder: Path) -> Path:
-    """The folder of the chapters: the authors' own, or that of what students are handed."""
+    """Return the folder of the chapters: the authors' own, or that of a hand-out."""
     solutions, handed_out = folder / SOLUTIONS, folder / HANDED_OUT
     return handed_out if handed_out.is_dir() and not solutions.is_dir() else solutions
 
 
 def released(lab: Path) -> Path:
-    """The path of a lab's notebook as it was released, in what students are handed."""
+    """Return the path of a lab's released notebook in a hand-out."""
     return lab / f"{lab.name}.ipynb"
 
 
 def interfaces() -> tuple[str, ...]:
-    """The packages with interfaces that come with the course."""
+    """Return the interface packages that come with the course."""
     return tuple(name for chapter in chapters(root()) for name in chapter.interfaces)
 
 
 def interface_modules() -> tuple[str, ...]:
-    """The modules in which their classes may be; a package need not have all three kinds."""
+    """Return the modules that may contain their classes; a package need not have all three kinds."""
     return tuple(f"{package}.{kind}" for package in interfaces() for kind in ("msg", "srv", "action"))
 
 
@@ -186,7 +221,7 @@ def _are_names(said: object) -> bool:
 
 
 def _is_lab(folder: Path) -> bool:
-    # What students are handed has exercises and the notebook as it was released, and no master.
+    # A hand-out contains exercises and released notebooks, and no master.
     return folder.is_dir() and (
         (folder / LAB).is_file() or released(folder).is_file() or any(folder.glob("*.py"))
     )

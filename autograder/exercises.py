@@ -1,8 +1,8 @@
-"""The exercises, found by what is in the labs' folders. A module is imported when it is asked for.
+"""Find the exercises in the labs' folders. A module is imported when it is asked for.
 
 An exercise ``lab_1_2.talker`` is the file ``talker.py`` in the folder ``lab_1_2`` of a chapter, and a module of the
 same name, so that the files of a lab import each other as in a package. A file whose name begins with an underscore is
-a part of the others. Only judges and graders import these modules: no box of a student's sees them.
+a part of the others. Only judges and graders import these modules: no student's sandbox contains them.
 """
 
 from __future__ import annotations
@@ -26,28 +26,28 @@ if TYPE_CHECKING:
     from autograder.kit.model import Exercise
 
 REFERENCE = ".reference.json"
-"""The ending of the file beside an exercise that holds its reference output."""
+"""The ending of the file next to an exercise that contains its reference output."""
 
 
 class UnknownExercise(LookupError):
-    """There is no exercise of that id. The message names the nearest ones."""
+    """No exercise has this id. The message names similar ones."""
 
 
 class BrokenExercise(Exception):
-    """A file in a lab's folder is no exercise. The message says why, or what it lacks."""
+    """A file in a lab's folder is not a valid exercise. The message says why."""
 
 
 def all_ids() -> tuple[str, ...]:
-    """The ids of all exercises, in the order of the course."""
+    """Return the ids of all exercises, in the order of the course."""
     return tuple(_files())
 
 
 def get(exercise_id: str) -> Exercise:
-    """The exercise of that id.
+    """Return the exercise with an id.
 
     Raises:
         UnknownExercise: There is none.
-        BrokenExercise: Its file cannot be imported, or defines none, or one of another id.
+        BrokenExercise: Its file cannot be imported, or does not define an exercise with this id.
     """
     file = path(exercise_id)
     try:
@@ -65,7 +65,7 @@ def get(exercise_id: str) -> Exercise:
 
 
 def unbroken() -> tuple[Exercise, ...]:
-    """All exercises but those whose files are broken, as one is while its author writes it."""
+    """Return all exercises except broken ones, such as one that its author is still writing."""
     found = []
     for exercise_id in all_ids():
         with contextlib.suppress(BrokenExercise):
@@ -74,7 +74,7 @@ def unbroken() -> tuple[Exercise, ...]:
 
 
 def path(exercise_id: str) -> Path:
-    """The file of an exercise.
+    """Return the file of an exercise.
 
     Raises:
         UnknownExercise: There is none.
@@ -89,7 +89,7 @@ def path(exercise_id: str) -> Path:
 
 
 def reference_path(exercise_id: str) -> Path:
-    """The path of an exercise's reference output.
+    """Return the path of an exercise's reference output.
 
     Raises:
         UnknownExercise: There is no such exercise.
@@ -98,12 +98,12 @@ def reference_path(exercise_id: str) -> Path:
 
 
 def grade_id(exercise_id: str) -> str:
-    """The nbgrader grade_id of an exercise's check cell: nbgrader allows no dot in it."""
+    """Return the nbgrader grade_id of an exercise's check cell: nbgrader does not allow a dot in it."""
     return exercise_id.replace(".", "-")
 
 
 def _words(error: Exception) -> str:
-    """The error of an import with its place, in one line."""
+    """Return an import's error with its file and line, as one line of text."""
     kind = type(error).__name__
     if isinstance(error, SyntaxError):
         return f"{kind}: {error.msg} ({error.filename}, line {error.lineno})"
@@ -115,7 +115,7 @@ def _files() -> dict[str, Path]:
     return _files_of(course.root())
 
 
-# Looked up once: a judge in its box sees no folder of a lab any more.
+# Found once, because a judge in its sandbox cannot read the folders of labs.
 @functools.cache
 def _files_of(root: Path) -> dict[str, Path]:
     return {
@@ -127,13 +127,13 @@ def _files_of(root: Path) -> dict[str, Path]:
 
 
 class _LabsFinder:
-    """Has Python find the folder of a lab as a package, wherever its chapter is."""
+    """Lets Python find the folder of a lab as a package, in any chapter."""
 
     @staticmethod
     def find_spec(
         name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """The package of a lab; see :class:`importlib.abc.MetaPathFinder`."""
+        """Return the package of a lab; see :class:`importlib.abc.MetaPathFinder`."""
         del target
         folder = None if path is not None else _folders().get(name)
         if folder is None:

@@ -1,4 +1,4 @@
-"""Messages as a file that ``ros2 bag``, Foxglove and Python programs open: MCAP, written in one place for all."""
+"""Write messages as MCAP, the format that ``ros2 bag``, Foxglove and Python programs open."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
 ROS_2 = "ros2"
-"""The profile of a file whose messages are in CDR, with the definitions of their types."""
+"""The MCAP profile for messages in CDR with the definitions of their types."""
 _LINE = "=" * 80
-"""Between the definitions that MCAP has of a type and of the types in it."""
+"""Separates the definition of a type from those of the types that it contains."""
 _FIELD = re2.compile(r"^\s*([A-Za-z][\w/]*)(?:<=\d+)?(?:\[[^\]]*\])?\s+\w")
-"""A line of a definition: a type, perhaps bounded or an array, and a name."""
+"""Matches a line of a definition: a type, perhaps bounded or an array, and a name."""
 
 
 class MessageFile:
-    """An MCAP file while it is written; without :meth:`close` it is not complete.
+    """An MCAP file that is being written; only :meth:`close` completes it.
 
     Args:
-        stream: Where to; stays the caller's.
-        profile: What kind of file it is, such as :data:`ROS_2`; empty for messages as JSON.
+        stream: The stream to write to; the caller closes it.
+        profile: The profile of the file, such as :data:`ROS_2`; empty for messages as JSON.
     """
 
     def __init__(self, stream: IO[bytes], profile: str = "") -> None:
@@ -37,14 +37,14 @@ class MessageFile:
     def channel(
         self, topic: str, type_name: str, definition: str, *, as_json: bool = False, about: Mapping[str, str]
     ) -> int:
-        """Announce messages of one type on one topic; the number to write them under.
+        """Register messages of one type on one topic, and return the number of the channel.
 
         Args:
-            topic: Where they were sent.
-            type_name: Of the message, such as ``"std_msgs/msg/String"``.
-            definition: What is in it: as ROS defines it, or as JSON Schema.
-            as_json: The messages are JSON; in CDR where not.
-            about: More that is known of them.
+            topic: The name of the topic.
+            type_name: The type of the messages, such as ``"std_msgs/msg/String"``.
+            definition: The definition of the type: that of ROS, or a JSON Schema.
+            as_json: True for messages as JSON; False for CDR.
+            about: Further facts about the messages.
         """
         encodings = ("jsonschema", "json") if as_json else ("ros2msg", "cdr")
         schema = self._writer.register_schema(type_name, encodings[0], definition.encode())
@@ -54,10 +54,10 @@ class MessageFile:
         """Write one message.
 
         Args:
-            channel: What :meth:`channel` has said.
+            channel: The number from :meth:`channel`.
             data: The message.
-            arrived: When, in nanoseconds of Unix time.
-            sent: When, likewise.
+            arrived: Unix time of arrival, in nanoseconds.
+            sent: Unix time of sending, in nanoseconds.
         """
         self._counts[channel] += 1
         self._writer.add_message(
@@ -74,10 +74,10 @@ class MessageFile:
 
 
 def definition(type_name: str) -> str:
-    """The definition of a type such as ``"geometry_msgs/msg/Twist"``, followed by those of all types in it.
+    """Return the definition of a type such as ``"geometry_msgs/msg/Twist"``, and of all types in it.
 
     Raises:
-        LookupError: This environment has no such type.
+        LookupError: This environment does not have the type.
     """
     found = {type_name: _text(type_name)}
     waiting = [type_name]
@@ -99,7 +99,7 @@ def _text(type_name: str) -> str:
 
 
 def _types_in(text: str, package: str) -> Iterator[str]:
-    """The types of fields that are messages themselves: their names begin with a capital, or name a package."""
+    """Yield the types of fields that are messages themselves: their names begin with a capital, or name a package."""
     for line in text.splitlines():
         field = _FIELD.match(line)
         if field is None or not (field[1][0].isupper() or "/" in field[1]):

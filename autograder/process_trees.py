@@ -1,7 +1,7 @@
-"""The processes below a process: listed, ended together, and bound to the life of their parent.
+"""List the descendants of a process, end them together, and make them end with their parent.
 
-All of it is Linux's own (proc(5), prctl(2), pidfd_open(2)). What has to end with a whole process, and with all that it
-has started itself, is started as ``python -I -S process_trees.py PARENT COMMAND …`` (:func:`keep`).
+This works on Linux only (proc(5), prctl(2), pidfd_open(2)). A command that must end with another process, with
+everything that it has started, is run as ``python -I -S process_trees.py PARENT COMMAND ...`` (:func:`keep`).
 """
 
 from __future__ import annotations
@@ -21,25 +21,25 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     Known = tuple[int, str]
-    """A process by its number and its start (:func:`started_at`): a later process of that number has another start."""
+    """A process id and its start time (:func:`started_at`): a later process with that id has a different one."""
 
 _PR_SET_PDEATHSIG = 1  # linux/prctl.h
 _PR_SET_DUMPABLE = 4
 _PR_SET_CHILD_SUBREAPER = 36
-# Loaded once and here: between a fork and what is executed there nothing can be loaded safely.
+# Loaded here, because loading a library between fork and exec is not safe.
 _libc = ctypes.CDLL(None, use_errno=True)
 
 
 def die_with_parent(parent: int = 0, number: signal.Signals = signal.SIGKILL) -> None:
-    """Get a signal when the parent ends; be killed where it has ended already.
+    """Make this process get a signal when its parent ends, or be killed if the parent has already ended.
 
-    What this process becomes by exec gets it too, its children do not. A change of rights takes it away. Linux takes
-    the *thread* that started a process for its parent: it must live as long as the process is wanted.
+    The setting survives exec, but children do not inherit it, and a change of rights removes it. Linux takes
+    the *thread* that started a process as its parent: that thread must live as long as the process.
 
     Args:
-        parent: Who was the parent before the fork; 0 where it is in another PID namespace or not known, so that one
-            which has ended already is not noticed.
-        number: What to get.
+        parent: The id of the parent before the fork; 0 if it is in another PID namespace or not known. A parent
+            that has already ended is not noticed then.
+        number: The signal.
     """
     _prctl(_PR_SET_PDEATHSIG, number)
     if parent and os.getppid() != parent:
@@ -47,16 +47,16 @@ def die_with_parent(parent: int = 0, number: signal.Signals = signal.SIGKILL) ->
 
 
 def adopt_orphans() -> bool:
-    """Become the parent of every descendant that loses its own, so that none gets out of sight.
+    """Become the parent of every descendant that loses its own parent, so that none escapes.
 
     Returns:
-        Whether the system can do this; elsewhere than on Linux a daemon may escape.
+        True if the system supports this; on other systems than Linux a daemon may escape.
     """
     return _prctl(_PR_SET_CHILD_SUBREAPER, 1)
 
 
 def descendants(pid: int) -> list[int]:
-    """Every process that a process has started and these have started, as far as they live."""
+    """Return the ids of all running descendants of a process."""
     found: list[int] = []
     ahead = [pid]
     while ahead:
@@ -67,18 +67,18 @@ def descendants(pid: int) -> list[int]:
 
 
 def known(processes: Iterable[int]) -> set[Known]:
-    """Processes with their starts, so that they can be ended later and nobody else in their place."""
+    """Return processes with their start times, so that a signal never reaches a later process with the same id."""
     return {(pid, started_at(pid)) for pid in processes}
 
 
 def started_at(pid: int) -> str:
-    """The start of a process, in clock ticks since the system's; empty where it is gone."""
+    """Return the start time of a process, in clock ticks since the system's start; empty if it has ended."""
     fields = _fields(pid)
     return fields[19] if fields else ""
 
 
 def send(processes: Iterable[Known], number: int) -> None:
-    """Send a signal to each of these processes that is still there."""
+    """Send a signal to each of these processes that still runs."""
     for process in processes:
         _signal(process, number)
 
@@ -86,7 +86,7 @@ def send(processes: Iterable[Known], number: int) -> None:
 def kill(processes: Iterable[Known]) -> None:
     """Kill processes that may start others.
 
-    Each is stopped first, so that none can start another while the others are gone through.
+    Each process is stopped first, so that it cannot start another one meanwhile.
     """
     processes = list(processes)
     for number in (signal.SIGSTOP, signal.SIGKILL):
@@ -97,9 +97,9 @@ def end_each(processes: Iterable[int], number: int, within: float) -> None:
     """Send a signal to one process after the other, and wait each time until it has ended.
 
     Args:
-        processes: Those that are wanted to end, in this order.
+        processes: The processes to end, in order.
         number: The signal.
-        within: Seconds for all of them together; after that they get the signal and nobody waits.
+        within: Seconds to wait for all of them together; the rest get the signal without a wait.
     """
     deadline = time.monotonic() + within
     for process in [(pid, started_at(pid)) for pid in processes]:
@@ -107,14 +107,14 @@ def end_each(processes: Iterable[int], number: int, within: float) -> None:
 
 
 def signal_group(leader: int, number: int) -> None:
-    """Send a signal to a process group, where there still is one; 0, the caller's own, stands for a box without one."""
+    """Send a signal to a process group if it still exists. Do nothing for 0, the caller's own group."""
     with contextlib.suppress(ProcessLookupError, PermissionError):
         if leader > 0:
             os.killpg(leader, number)
 
 
 def end_soon(process: subprocess.Popen[bytes], within: float) -> None:
-    """Wait for a child that was asked to end, and kill it where it does not end in time.
+    """Wait for a child that was asked to end, and kill it if it does not end in time.
 
     Args:
         process: The child.
@@ -130,14 +130,14 @@ def end_soon(process: subprocess.Popen[bytes], within: float) -> None:
 def end_descendants(within: float = 3.0, *, spare: Sequence[int] = ()) -> int:
     """Kill every descendant of this process, and reap those that are or become its children.
 
-    Meant for a process that adopts orphans, at a time when nothing of its own is running.
+    Call it only in a process that adopts orphans, when no child of its own is needed.
 
     Args:
-        within: Seconds after which to give up; a process in an uninterruptible system call dies when that ends.
-        spare: Children that are left alone, with all that is below them.
+        within: Limit in seconds; a process in an uninterruptible system call dies when the call ends.
+        spare: Children to leave alone, with their descendants.
 
     Returns:
-        How many processes were found.
+        The number of processes found.
     """
     seen: set[int] = set()
     deadline = time.monotonic() + within
@@ -155,30 +155,30 @@ def end_descendants(within: float = 3.0, *, spare: Sequence[int] = ()) -> int:
 
 
 def end_below(pid: int) -> None:
-    """Kill every process below one that adopts orphans, also what is started meanwhile, and wait until none lives.
+    """Kill every descendant of a process that adopts orphans, even those started meanwhile, and wait for their end.
 
-    What may not be killed, as another user's, is left.
+    Processes of another user, which may not be killed, are left.
 
     Args:
-        pid: Any process; it is left alone itself.
+        pid: The process, which is not killed itself.
     """
     left: set[Known] = set()
     while living := known(one for one in descendants(pid) if _lives(one)) - left:
-        send(living, signal.SIGSTOP)  # so that none can start another while they are gone through
+        send(living, signal.SIGSTOP)  # so that none can start another one meanwhile
         left |= {process for process in living if not _signal(process, signal.SIGKILL)}
-        # The first process of a box ends only when all that was in it has been reaped (pid_namespaces(7)): by us, where
-        # they were started from outside and their parent is gone.
+        # The first process of a sandbox ends only after all its processes were reaped (pid_namespaces(7)). This process
+        # must reap those that were started from outside and whose parent has ended.
         if pid != os.getpid() or not _reap(_children(pid)):
             time.sleep(0.005)
 
 
 def keep(parent: int, command: list[str]) -> int:
-    """Run a command, and end it with all that it has started as soon as the parent ends or this gets SIGTERM.
+    """Run a command, and end it with everything that it started once the parent ends or this process gets SIGTERM.
 
-    What the command leaves behind when it ends by itself is ended, too. Ctrl-C reaches the command and not this.
+    Processes that the command leaves behind are ended, too. Ctrl-C reaches the command and not this process.
 
     Args:
-        parent: The process that has started this one.
+        parent: The id of the process that started this one.
         command: The program and its arguments.
 
     Returns:

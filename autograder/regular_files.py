@@ -66,6 +66,18 @@ def write_whole(path: Path, data: bytes) -> None:
         _keep_names(folder)
 
 
+def keep_whole(beside: Path, path: Path) -> None:
+    """Give a file that was written beside ``path`` that name, once the disk has all of it.
+
+    Raises:
+        OSError: It could not be written.
+    """
+    with beside.open("rb+") as file:
+        os.fsync(file.fileno())
+    beside.replace(path)
+    _keep_names(path.parent)
+
+
 def files_below(folder: Path) -> Iterator[Path]:
     """All files and links below a folder, as far as they can be looked at, however many folders are in each other."""
     folders = [folder]  # os.walk and Path.rglob do not come back from a thousand

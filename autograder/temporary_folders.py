@@ -112,13 +112,14 @@ class HeldFolder:
     def __init__(self, prefix: str) -> None:
         sweep(prefix)
         while True:
-            self.path = fresh_folder(prefix)
+            # Until it is locked, another process may remove it as one that was left behind.
             try:
+                self.path = fresh_folder(prefix)
                 self._lock = os.open(self.path, os.O_RDONLY | os.O_DIRECTORY)
             except FileNotFoundError:
+                _base()  # raises if the folder of temporary files is what does not exist
                 continue
             fcntl.flock(self._lock, fcntl.LOCK_EX)
-            # Before it was locked, another process may have removed it as one that was left behind.
             if self.path.exists():
                 return
             os.close(self._lock)

@@ -17,7 +17,7 @@ from rich.console import Console
 from autograder.boxes.execution import CellRun, Ended, Execution
 from autograder.grading import batch
 from autograder.grading.running import backends
-from autograder.grading.running.engine import Done
+from autograder.grading.running.dispatcher import Done
 from autograder.verdict import State, Verdict
 from benchmarks.ours import GRADE
 from environment.python_child import python_child

@@ -1,4 +1,4 @@
-"""Set the course up in ``.venv``: ``python3 -m environment.bootstrap [--tests] [--with EXTRA] [--token TEXT]``.
+"""Set the course up in ``.venv``: ``python3 -m environment.bootstrap``, with the options below.
 
 Called by ``./course``, with any Python from 3.11 on and its standard library only. Each step is stamped with
 what it was made from (see steps.py), so running this again does what is left to do: nothing, as a rule.
@@ -53,6 +53,21 @@ def choose_ros(place: Place, environ: Mapping[str, str]) -> tuple[Ros, dict[str,
         return subprocess.run(command, env=sourced, capture_output=True, check=False).returncode == 0
 
     return ros_flavour.decide(sourced, Machine.here(), imports_rclpy), sourced
+
+
+def without_network(wheels: Path | None) -> dict[str, str]:
+    """Return the variables with which pip, and so uv, installs from a folder of wheels only.
+
+    Raises:
+        SetupError: There is no such folder.
+    """
+    if wheels is None:
+        return {}
+    if not wheels.is_dir():
+        raise SetupError(
+            f"there is no folder {wheels}. `python3 -m environment.lock --wheels FOLDER` fills one."
+        )
+    return {"PIP_NO_INDEX": "1", "PIP_FIND_LINKS": str(wheels.resolve()), "PIP_EXTRA_INDEX_URL": ""}
 
 
 def _find_base_python() -> Path:
@@ -174,6 +189,11 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument(
         "--with", dest="extras", action="append", choices=EXTRAS, default=[], help="also what this needs"
     )
+    parser.add_argument(
+        "--wheels",
+        type=Path,
+        help="install from this folder, without a network; environment/lock.py fills it",
+    )
     parser.add_argument("--token", help="what ./course compares to know that nothing changed since")
     options = parser.parse_args(arguments)
     place = Place(ROOT, _find_base_python())
@@ -185,7 +205,7 @@ def main(arguments: list[str] | None = None) -> int:
         except BlockingIOError:
             say("another set-up is running, waiting for it")
             fcntl.flock(folder, fcntl.LOCK_EX)
-        set_up(place, os.environ, options.tests, options.extras)
+        set_up(place, {**os.environ, **without_network(options.wheels)}, options.tests, options.extras)
         if options.token:
             (place.notes / "token").write_text(f"{options.token}\n", encoding="utf-8")
     except (SetupError, NoRosError, system_packages.MissingPackagesError) as error:

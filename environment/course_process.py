@@ -103,6 +103,16 @@ def begin() -> None:
         _start_again(environ)
 
 
+def join() -> None:
+    """Set the variables of a process that runs already and was started by another Python.
+
+    The paths of libraries come too late for its loader: see environment/plain_kernel.py.
+    """
+    from course_paths import PATHS, VALUES
+
+    os.environ.update(variables(PATHS, VALUES, os.environ))
+
+
 def export_lines() -> str:
     """Return shell commands that give a terminal the variables that this process started with."""
     import shlex

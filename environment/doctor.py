@@ -13,12 +13,13 @@ import shutil
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from environment import jupyter_files, loopback, ros_flavour, system_packages
+from environment.installation import COMMAND, IS_CLONE, installing
 from environment.place import Place, may_write, owner
 from environment.python_child import INTERPRETER, PythonChild, python_child
 from environment.ros_report import INTERFACE_FIELDS
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parent.parent
 PREFIX = ROOT / ".venv"
 SET_UP = "Type: ./course setup"
-SET_UP_ANEW = "Delete the folder .venv, then type: ./course setup"
 
 # Fast DDS moves messages between processes through /dev/shm. A participant takes about half a megabyte per
 # transport; a container's default of 64 MB is enough for a class of one.
@@ -107,9 +107,22 @@ def _last_line(text: str) -> str:
     return _first_line("\n".join(reversed(text.splitlines())))
 
 
+def _again(extra: str = "") -> str:
+    """Return how to get what a set-up installs.
+
+    Args:
+        extra: The extra of the wheel that brings it; empty for what comes with a sourced ROS only.
+    """
+    if IS_CLONE:
+        return f"Delete the folder .venv, then {SET_UP[0].lower()}{SET_UP[1:]}"
+    return f"Type: {installing(extra)}" if extra else "It comes with a ROS 2 Jazzy that is sourced."
+
+
 def python() -> list[Finding]:
     """Look at the Python that runs this, and at the environment of the course."""
     detail = f"{sys.version.split()[0]}, {INTERPRETER}"
+    if not IS_CLONE:
+        return [Finding("Python", "ok", detail)]
     if Path(sys.prefix) == PREFIX:
         warning = Place(ROOT, Path(INTERPRETER)).warning
         return [
@@ -127,7 +140,9 @@ def ros() -> list[Finding]:
     recorded = ros_flavour.load(Path(sys.prefix))
     # The last line: a library that is loaded may have printed before.
     report = _parsed(_last_line(_output(python_child("-m", "environment.ros_report"))[1]))
-    return [_ros(recorded, report), _middleware(report), _interfaces(report)]
+    found = [_ros(recorded, report), _middleware(report)]
+    # The course's own interfaces are no part of the wheel.
+    return [*found, _interfaces(report)] if IS_CLONE else found
 
 
 def _parsed(line: str) -> dict[str, object]:
@@ -141,8 +156,10 @@ def _parsed(line: str) -> dict[str, object]:
 def _ros(recorded: ros_flavour.Ros | None, report: dict[str, object]) -> Finding:
     if "rclpy_error" in report:
         source = recorded is not None and recorded.is_sourced
-        remedy = "Is the ROS 2 that was sourced at set-up still there? " * source + SET_UP_ANEW
+        remedy = "Is the ROS 2 that was sourced at set-up still there? " * source + _again("ros")
         return Finding("ROS 2", "missing", f"rclpy cannot be imported: {report['rclpy_error']}", remedy)
+    if not IS_CLONE and not report.get("prefix"):
+        return Finding("ROS 2", "ok", f"from wheels, rclpy {_distribution('ros-rclpy')}")
     flavour = recorded.flavour if recorded else "sourced"
     where = {"wheels": "from wheels", "system": "of the system", "robostack": "of RoboStack"}.get(
         flavour, flavour
@@ -163,7 +180,7 @@ def _middleware(report: dict[str, object]) -> Finding:
 def _interfaces(report: dict[str, object]) -> Finding:
     name = "my_robot_interfaces"
     if "fields" not in report:
-        return Finding(name, "missing", str(report.get("interfaces_error", "rclpy is missing")), SET_UP_ANEW)
+        return Finding(name, "missing", str(report.get("interfaces_error", "rclpy is missing")), _again())
     if report["fields"] != INTERFACE_FIELDS:
         detail = f"another package of that name is in the way: its fields are {report['fields']}"
         return Finding(name, "missing", detail, "Type it in a terminal where no workspace is sourced.")
@@ -179,7 +196,7 @@ def talk() -> list[Finding]:
     if seconds is None:
         detail = f"a listener heard nothing of a talker beside it for {loopback.LIMIT:.0f} s"
         remedy = (
-            "Try: ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST FASTDDS_BUILTIN_TRANSPORTS=UDPv4 ./course doctor"
+            f"Try: ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST FASTDDS_BUILTIN_TRANSPORTS=UDPv4 {COMMAND} doctor"
         )
         return [Finding(name, "missing", detail, remedy)]
     return [
@@ -203,7 +220,7 @@ def build_tools() -> list[Finding]:
     if colcon and colcon_version:
         found.append(Finding("colcon", "ok", f"colcon-core {colcon_version}, {colcon}"))
     else:
-        found.append(Finding("colcon", "missing", "not found on the PATH", SET_UP_ANEW))
+        found.append(Finding("colcon", "missing", "not found on the PATH", _again()))
     return found
 
 
@@ -211,7 +228,7 @@ def _program(title: str, name: str, arguments: list[str]) -> Finding:
     path = shutil.which(name)
     code, text = _output([path, *arguments]) if path else (127, "not found on the PATH")
     if code != 0:
-        return Finding(title, "missing", _last_line(text), SET_UP_ANEW)
+        return Finding(title, "missing", _last_line(text), _again())
     return Finding(title, "ok", f"{_first_line(text)}, {path}")
 
 
@@ -231,8 +248,10 @@ def jupyter() -> list[Finding]:
         found.append(
             Finding(title, "ok", number)
             if number
-            else Finding(title, "missing", "not installed", SET_UP_ANEW)
+            else Finding(title, "missing", "not installed", _again("class"))
         )
+    if not IS_CLONE:  # whose kernel is the user's own
+        return found
     spec = Path(sys.prefix) / "share/jupyter/kernels" / jupyter_files.KERNEL_NAME / "kernel.json"
     return [*found, kernel(spec)]
 
@@ -244,20 +263,25 @@ def kernel(spec: Path) -> Finding:
         content = json.loads(spec.read_text(encoding="utf-8"))
         program, variables = content["argv"][0], content.get("env", {})
     except (OSError, ValueError, LookupError, TypeError) as error:
-        return Finding(name, "missing", f"{spec} cannot be read: {error}", SET_UP_ANEW)
+        return Finding(name, "missing", f"{spec} cannot be read: {error}", _again())
     if shutil.which(program) is None:
-        return Finding(name, "missing", f"it starts {program}, which is not there", SET_UP_ANEW)
+        return Finding(name, "missing", f"it starts {program}, which is not there", _again())
     wrong = [key for key, value in jupyter_files.KERNEL_VARIABLES.items() if variables.get(key) != value]
     if wrong:
         detail = f"it does not set {', '.join(wrong)}: log lines would cost points"
-        return Finding(name, "missing", detail, SET_UP_ANEW)
+        return Finding(name, "missing", detail, _again())
     return Finding(name, "ok", program)
 
 
 def space() -> list[Finding]:
     """Look at the disk and at the shared memory."""
-    whose = f"Have {owner(ROOT)}, whose folder it is, type what changes it, such as: ./course setup"
-    found = [folder_space("Disk", ROOT, _DISK_NEEDED, "Make room on the disk.", whose)]
+    folder = ROOT if IS_CLONE else Path.cwd()
+    whose = (
+        f"Have {owner(folder)}, whose folder it is, type what changes it, such as: ./course setup"
+        if IS_CLONE
+        else "Type it in a folder of your own."
+    )
+    found = [folder_space("Disk", folder, _DISK_NEEDED, "Make room on the disk.", whose)]
     remedy = "In a container: docker run --shm-size=512m …; or set FASTDDS_BUILTIN_TRANSPORTS=UDPv4"
     return [*found, folder_space("Shared memory", Path("/dev/shm"), _SHM_NEEDED, remedy)]
 
@@ -324,7 +348,15 @@ def _not_there(need: system_packages.Need) -> list[Finding]:
     ]
 
 
-PROBES = (python, ros, talk, build_tools, jupyter, space, sandbox, for_tests)
+def for_more() -> list[Finding]:
+    """Look at what builds packages and at Jupyter: a wheel judges programs without them."""
+    found = [*build_tools(), *jupyter()]
+    if IS_CLONE:
+        return found
+    return [replace(one, state="optional") if one.state == "missing" else one for one in found]
+
+
+PROBES = (python, ros, talk, for_more, space, sandbox, *([for_tests] if IS_CLONE else []))
 
 
 def examine() -> list[Finding]:

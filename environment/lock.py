@@ -1,4 +1,4 @@
-"""Resolve the dependencies into hashed lock files: ``python3 -m environment.lock [--upgrade]``.
+"""Resolve the dependencies into hashed lock files: ``python3 -m environment.lock [--upgrade | --wheels FOLDER]``.
 
 The lock files in ``requirements/`` are one resolution, cut into the parts that a set-up installs separately:
 
@@ -11,6 +11,9 @@ The lock files in ``requirements/`` are one resolution, cut into the parts that 
 
 Without ``--upgrade`` a version that is locked stays as long as the inputs allow it. The locks name no package
 index: that is what pip is configured for, and the hashes make sure that it is the same file.
+
+With ``--wheels FOLDER`` nothing is resolved: the files of the locks are downloaded into the folder, for this very
+version of Python. ``./course setup --wheels FOLDER`` installs from it, without a network.
 """
 
 from __future__ import annotations
@@ -25,8 +28,10 @@ import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from environment.python_child import INTERPRETER
+
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
 ROOT = Path(__file__).resolve().parent.parent
 REQUIREMENTS = ROOT / "environment" / "requirements"
@@ -120,11 +125,44 @@ def _resolve(resolver: Path, work: Path, inputs: list[Path], *options: str) -> s
     return work.read_text(encoding="utf-8")
 
 
+def fill(folder: Path, locks: Sequence[str] = LOCKS) -> int:
+    """Download the files that a set-up installs, each by its hash, and return pip's exit code.
+
+    The Python that runs this has to be the version that will install them, to the last number: some locks depend on it.
+    """
+    command = [
+        INTERPRETER,
+        "-m",
+        "pip",
+        "download",
+        "--disable-pip-version-check",
+        "--quiet",
+        "--dest",
+        str(folder),
+    ]
+    command += [
+        "--require-hashes",
+        "--no-deps",
+        "--only-binary=:all:",
+        "--no-binary=empy",
+        "--no-build-isolation",
+    ]
+    command += [word for lock in locks for word in ("--requirement", str(REQUIREMENTS / f"{lock}.lock"))]
+    code = subprocess.run(command, check=False).returncode
+    if code == 0:
+        print(f"{folder} has {len(list(folder.iterdir()))} files. Type: ./course setup --wheels {folder}")
+    return code
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Write the lock files."""
     parser = argparse.ArgumentParser(prog="python3 -m environment.lock", description=__doc__.splitlines()[0])
     parser.add_argument("--upgrade", action="store_true", help="take the newest versions the inputs allow")
-    upgrade = ["--upgrade"] if parser.parse_args(arguments).upgrade else []
+    parser.add_argument("--wheels", type=Path, help="fill this folder with the files of the locks instead")
+    options = parser.parse_args(arguments)
+    if options.wheels:
+        return fill(options.wheels)
+    upgrade = ["--upgrade"] if options.upgrade else []
     pyproject, tools, ros = ROOT / "pyproject.toml", REQUIREMENTS / "tools.in", REQUIREMENTS / "ros.in"
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)

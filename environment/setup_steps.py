@@ -203,6 +203,7 @@ class Setup:
         command += ["--python", self.place.python, "--no-build-isolation", "--compile-bytecode"]
         # Copied, not linked: who changes a file of this environment must not change uv's cache. pip, too, takes the
         # best of all indexes; the hashes say which file that is.
+        options = [option for option in options if option not in arguments]  # uv takes none twice
         command += ["--link-mode=copy", "--index-strategy=unsafe-best-match", *options, *arguments]
         self._run("installing packages", command, **variables)
 

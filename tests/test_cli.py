@@ -111,7 +111,7 @@ def test_where_no_box_is_possible_nothing_is_run(tmp_path: Path) -> None:
     nothing.mkdir()
     done = _boxed(tmp_path, "/bin/sh", "-c", "touch it_ran", PATH=str(nothing))
     assert done.returncode == 2
-    assert "no box is possible here: bubblewrap is not installed" in done.stderr
+    assert "no sandbox is possible here: bubblewrap is not installed" in done.stderr
     assert not (tmp_path / "it_ran").exists()
 
 

@@ -13,7 +13,6 @@ from autograder.code_of_elsewhere import recognised
 SETTING = """
 import asyncio, json, linecache, sys, traceback
 import rclpy, std_msgs
-from rclpy.action import ActionServer
 from rclpy.node import Node
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
@@ -53,8 +52,6 @@ SAYS = {
     "node.create_publisher(String, 'chatter', 10, latch=True)": "latch= is ROS 1's",
     "node.create_publisher('chatter', String, 10)": "create_publisher(String, 'chatter', 10)",
     "node.create_subscription('chatter', String, on_message, 10)": "The type String is where the name belongs",
-    "node.create_publisher(String, 'chatter', 10).get_num_connections()": "get_subscription_count()",
-    "ActionServer(node, Trigger, 'x', execute_cb=on_message)": "execute_callback=",
     "from my_robot_interfaces.srv import AddTwoIntsResponse": "AddTwoInts.Response",
     "AddTwoIntsRequest(a=1, b=2)": "AddTwoInts.Request",
     # packages
@@ -74,7 +71,6 @@ SAYS = {
     # asyncio
     "async def tick():\n    await asyncio.sleep(1)\ntick().send(None)": "Leave asyncio out",
     "async def tick():\n    asyncio.run(on_message)\nasyncio.run(tick())": "Leave asyncio out",
-    "class A:\n    async def __init__(self): pass\nA()": "Write def in place of async def",
     # C++ and others
     "import rclcpp": "this course writes ROS 2 in Python",
     "RCLCPP_INFO(node.get_logger(), 'hello')": "self.get_logger().info",
@@ -82,9 +78,9 @@ SAYS = {
     "node.create_publisher<String>('chatter', 10)": "create_publisher(String, 'chatter', 10)",
     "node.create_client(Trigger, 'x').async_send_request(1)": "call_async",
     "rclpy.spin_some(node)": "rclpy.spin(your_node)",
-    "this.count = 0": "Write self in place of this",
-    "done = true": "Write True in place of true",
-    "answer = nullptr": "Write None in place of nullptr",
+    "this.count = 0": "In Python it is self",
+    "done = true": "True, False or None",
+    "answer = nullptr": "True, False or None",
     "message = std_msgs::msg::String()": "Write a dot in place of ::",
     "node->publish(1)": "Write a dot in place of ::",
 }

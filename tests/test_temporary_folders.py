@@ -5,14 +5,12 @@ from __future__ import annotations
 import subprocess
 import sys
 import tempfile
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import Any
 
 import pytest
 
 from autograder.temporary_folders import HeldFolder, UnsafeTemporaryFolder, fresh_folder
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 MAKER = """
 import sys, tempfile
@@ -84,3 +82,22 @@ def test_where_every_user_can_replace_what_is_made_another_folder_is_taken(
     everybodys.chmod(0o1777)
     with HeldFolder("held-") as held:
         assert held.path.parent == everybodys
+
+
+def test_one_that_another_process_removes_before_it_is_locked_is_made_again(
+    temporary: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    usual, made = tempfile.mkdtemp, list[str]()
+
+    def removed_at_first(**how: Any) -> str:
+        made.append(usual(**how))
+        if len(made) == 1:
+            Path(made[0]).rmdir()
+        return made[-1]
+
+    monkeypatch.setattr(tempfile, "mkdtemp", removed_at_first)
+    with HeldFolder("held-") as held:
+        assert [str(held.path)] == made[1:]
+    temporary.rmdir()
+    with pytest.raises(FileNotFoundError):
+        HeldFolder("held-")

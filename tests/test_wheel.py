@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import shutil
 import subprocess
@@ -9,6 +10,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import nbformat
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -78,6 +80,19 @@ def add(folder: Path, wheel: Path, extra: str) -> None:
     assert done.returncode == 0, done.stderr
 
 
+def judged_notebook(installed: Path, program: Path, course: Path) -> str:
+    """Run a notebook with a program's class and a check of it, and return what the check shows."""
+    code = program.read_text().partition("\nrclpy.init()")[0]
+    check = "from autograder.notebook import check\ncheck('lab_1_1.battery', Battery)"
+    cells = [nbformat.v4.new_code_cell(source) for source in (code, check)]
+    notebook = installed / "mine.ipynb"
+    nbformat.write(nbformat.v4.new_notebook(cells=cells), notebook)
+    execute = installed / "venv" / "bin" / "jupyter-execute"
+    run(execute, "--inplace", notebook, cwd=installed, AUTOGRADER_COURSE=str(course))
+    shown = nbformat.read(notebook, as_version=4).cells[-1].outputs
+    return "\n".join(str(output.get("data", {}).get("text/plain", output)) for output in shown)
+
+
 @pytest.mark.slow
 @pytest.mark.ros
 def test_an_exercise_is_made_tried_checked_and_a_class_of_two_is_graded(installed: Path, wheel: Path) -> None:
@@ -93,10 +108,12 @@ def test_an_exercise_is_made_tried_checked_and_a_class_of_two_is_graded(installe
     inside = mine / "solutions" / "01_first"
     judged = run(autograder, "check", "lab_1_1.battery", "--json", "--", "python3", program, cwd=inside)
     assert printed_json(judged)["score"] == 10
+    assert "./course" not in run(autograder, "doctor", cwd=mine)
     assert "pip install 'ros2-course-autograder[notebooks]'" in run(autograder, "build", cwd=mine, code=2)
 
     add(installed, wheel, "class")
     run(autograder, "build", cwd=mine)
+    assert "PASSED: 10 of 10 points" in judged_notebook(installed, program, mine)
     class_ = installed / "class"
     run(autograder, "new-class", class_, cwd=mine)
     for student, folder in (("ada", class_ / "source" / "lab_1_1"), ("ben", mine / "chapters" / "01_first")):
@@ -125,3 +142,23 @@ def test_a_folder_of_a_student_is_no_course_to_a_command_for_a_class(tmp_path: P
         check=False,
     )
     assert (done.returncode, "used" in done.stdout, "it ran" in done.stdout) == (2, False, False), done.stderr
+
+
+WRITTEN_FOR_A_CLONE = ("student/handing_out.py", "masters/first_cell.py")
+"""What these write is read in a clone or in what `hand-out` makes, which has ``./course``, too."""
+
+
+def test_no_message_names_what_only_a_clone_has() -> None:
+    """``environment/installation.py`` decides what a message tells people to type."""
+    package = ROOT / "autograder"
+    found = []
+    for path in sorted(package.rglob("*.py")):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        apart = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}  # docstrings
+        found += [
+            f"{path.relative_to(package)}:{node.lineno}"
+            for node in ast.walk(tree)
+            if isinstance(node, ast.Constant) and isinstance(node.value, str) and "./course" in node.value
+            if id(node) not in apart and str(path.relative_to(package)) not in WRITTEN_FOR_A_CLONE
+        ]
+    assert not found

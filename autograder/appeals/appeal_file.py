@@ -1,4 +1,4 @@
-"""An appeal file: one check of one student, as JSON that a person reads and ``./course replay`` judges again."""
+"""Read and write appeal files: one check of one student, as JSON for people and for ``./course replay``."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import msgspec
 
 from autograder.cards.readable import printable_json
 from autograder.judge.verdicts.keeping import Kept, plain, restored
+from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -16,18 +17,18 @@ if TYPE_CHECKING:
 
 FORMAT = "ros2-course-appeal-1"
 ABOUT = (
-    "One check of one student. To judge it again: ./course replay FILE. This file proves nothing by itself: anybody "
+    f"One check of one student. To judge it again: {COMMAND} replay FILE. This file proves nothing by itself: anybody "
     "can write one. Only the class that it names has the grade and what the judge saw."
 )
-"""Stands at the top of each file."""
+"""The text at the top of each file."""
 MAX_BYTES = 64_000_000
-"""Bytes of a file that is read. The largest evidence takes a fifth of that."""
+"""Limit of a file, in bytes. The largest evidence takes a fifth of that."""
 _WIDTH = 120
-"""Characters of a line of JSON; what is longer is broken where it can be."""
+"""Limit of a line of JSON, in characters; longer values are broken if possible."""
 
 
 class BadAppeal(ValueError):
-    """The file is no appeal file, or not a whole one; the message says what to do."""
+    """The file is not a whole appeal file; the message says what to do."""
 
 
 class Cell(msgspec.Struct, frozen=True):
@@ -35,7 +36,7 @@ class Cell(msgspec.Struct, frozen=True):
 
     Attributes:
         cell: The cell's name; empty for a cell that the student has added.
-        text: Line by line.
+        text: The lines of the cell.
     """
 
     cell: str
@@ -49,11 +50,11 @@ class Appeal(msgspec.Struct, frozen=True):
         student: The student's id.
         assignment: The assignment's name.
         notebook: The notebook's name.
-        task: What was asked for, in a sentence.
-        course: Stands for the version of the course that the check was made with.
-        solution: The student's cells that were run before the check, in order.
-        expected: The reference output that was expected; None where the course expects another one since.
-        seen: The evidence, with the verdict that was entered.
+        task: The task, in one sentence.
+        course: Identifies the version of the course that made the check.
+        solution: The student's cells that ran before the check, in order.
+        expected: The reference output of the check; None if the course has a newer one.
+        seen: The evidence, with the verdict in the gradebook.
     """
 
     student: str
@@ -67,7 +68,7 @@ class Appeal(msgspec.Struct, frozen=True):
 
 
 def dump(appeal: Appeal) -> bytes:
-    """The file's content: JSON, an event a line."""
+    """Return the file's content: JSON, one event in each line."""
     content = plain(msgspec.to_builtins(appeal))
     head = {"format": FORMAT, "about": ABOUT}
     return ("\n".join(_lines({**head, **content}, "")) + "\n").encode()
@@ -77,7 +78,7 @@ def read(path: Path) -> Appeal:
     """Read an appeal file.
 
     Raises:
-        BadAppeal: It cannot be read, or is none.
+        BadAppeal: The file cannot be read, or is not an appeal file.
     """
     try:
         with path.open("rb") as file:
@@ -93,12 +94,12 @@ def read(path: Path) -> Appeal:
     except (ValueError, RecursionError) as error:
         raise BadAppeal(
             f"{path} is no appeal file, or only a part of one ({error}). Write it again: "
-            "./course appeal CLASS STUDENT EXERCISE"
+            f"{COMMAND} appeal CLASS STUDENT EXERCISE"
         ) from error
     if not isinstance(content, dict) or content.pop("format", None) != FORMAT:
         raise BadAppeal(
             f"{path} is JSON, but not an appeal file of this version of the course ({FORMAT}). "
-            "`./course appeal CLASS STUDENT EXERCISE` writes one."
+            f"`{COMMAND} appeal CLASS STUDENT EXERCISE` writes one."
         )
     try:
         return msgspec.convert(restored(content), type=Appeal)
@@ -107,7 +108,7 @@ def read(path: Path) -> Appeal:
 
 
 def _lines(value: Any, indent: str, before: str = "", after: str = "") -> Iterator[str]:
-    """JSON in which what is short stands on one line."""
+    """Yield lines of JSON in which short values take one line."""
     whole = _json(value)
     inside = (
         (list(value.items()) if isinstance(value, dict) else value) if isinstance(value, (dict, list)) else ()

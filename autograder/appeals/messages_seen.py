@@ -1,14 +1,14 @@
-"""A check as the judge saw it, as MCAP: each event a message in JSON, for Foxglove and other programs.
+"""Write the evidence of a check as MCAP: each event is a message in JSON, for Foxglove and other programs.
 
-Messages are on their own topic and the log is on ``/rosout``; requests, answers, goals and the like are on the name of
-the service or action with the word of the transcript, such as ``/add_two_ints/asked``; all else is below ``/judge``.
-Beside its fields each message has under ``_judge`` what else is known: in which part and look, and when by the judge's
-watch and by the simulated clock.
+Messages are on their own topic and the log is on ``/rosout``; requests, answers, goals and so on are on the name of
+the service or action plus the kind of event, such as ``/add_two_ints/asked``; everything else is below ``/judge``.
+Each message has a field ``_judge`` with its part and look, and its time by the judge's
+clock and by the simulated clock.
 
-A second form, for ``ros2 bag play``, has the messages of topics alone, in CDR with the definitions of their types: what
-plays a file wants to know each type, and one way of writing for all of it.
+A second form, for ``ros2 bag play``, has only the messages of topics, in CDR with the definitions of their types: a
+player must know each type, and all messages must have the same encoding.
 
-The runs of a check stand one after the other, in the order of the evidence.
+The runs of a check follow each other, in the order of the evidence.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part
 
 _ENDS = {"message": "publisher", "sent": "subscription"}
-"""The subject's end of a topic on which it is heard, and of one on which it is spoken to."""
+"""The subject's endpoint for a message that it sends, and for one that it receives."""
 _OF_CALLS = (
     "asked", "answered", "request", "response", "goal", "goal_sent", "goal_answer", "goal_answered", "feedback",
     "feedback_heard", "cancel", "cancel_sent", "cancel_answer", "cancel_answered", "result_request", "result",
@@ -35,12 +35,12 @@ _OF_CALLS = (
 )  # fmt: skip
 """The traffic between the client and the server of a service or an action."""
 _JUDGE = "_judge"
-"""The field of what no message says of itself."""
+"""The field for everything that is not in the message itself."""
 _SECOND = 1_000_000_000
 
 
 def write_messages(kept: Kept, stream: IO[bytes]) -> int:
-    """Write an MCAP file of a check; how many messages are in it.
+    """Write an MCAP file of a check, and return the number of its messages.
 
     Args:
         kept: What was seen.
@@ -79,9 +79,9 @@ def write_messages(kept: Kept, stream: IO[bytes]) -> int:
 
 
 def write_bag(kept: Kept, stream: IO[bytes]) -> tuple[int, int]:
-    """Write the messages of topics as ``ros2 bag record`` would; how many there are, and how many could not be written.
+    """Write the messages of topics as ``ros2 bag record`` does. Return how many were written, and how many were not.
 
-    A message cannot be written whose type was not on the graph, is none of this environment's, or does not have these
+    A message cannot be written if its type was not on the graph, is not in this environment, or does not have these
     fields.
 
     Args:
@@ -102,7 +102,7 @@ def write_bag(kept: Kept, stream: IO[bytes]) -> tuple[int, int]:
         try:
             data = _in_cdr(channel[1], event.data.get("fields", {})) if channel is not None else None
         except (AttributeError, AssertionError, OverflowError, TypeError, ValueError):
-            data = None  # these fields are not that type's: it has changed since
+            data = None  # the type has different fields now
         if channel is None or data is None:
             left_out += 1
             continue
@@ -119,9 +119,9 @@ def _in_cdr(kind: Any, fields: Mapping[str, Any]) -> bytes:
 
 
 def _channel_in_cdr(file: MessageFile, topic: str, type_name: str) -> tuple[int, Any] | None:
-    """The number to write messages of a topic under, and their class; None where the type is not known here."""
+    """Return the channel number of a topic and the class of its messages; None if the type is not known here."""
     try:
-        # In this order: to look for a class is to import a module, and whoever wrote the file may have named any.
+        # First the definition, then the class: looking for a class imports a module, and the file may name any module.
         text = definition(type_name)
         kind = interface(type_name)
     except LookupError:
@@ -131,7 +131,7 @@ def _channel_in_cdr(file: MessageFile, topic: str, type_name: str) -> tuple[int,
 
 
 def _seen(kept: Kept) -> Iterator[tuple[str, Event, int, dict[str, Any]]]:
-    """Each event with its topic, its time and its message."""
+    """Yield each event with its topic, time and message."""
     began = kept.at - kept.verdict.seconds
     for look in kept.looks:
         for part in look.parts:
@@ -167,7 +167,7 @@ def _message(look: KeptLook, part: Part, event: Event) -> dict[str, Any]:
 
 
 def _types(kept: Kept) -> dict[tuple[str, str], str]:
-    """The types of topics, as the graph had them: by the kind of event and the topic's name."""
+    """Return the types of topics on the graph, by kind of event and name of the topic."""
     return {
         (kind, topic): str(type_name)
         for look in kept.looks
@@ -180,7 +180,7 @@ def _types(kept: Kept) -> dict[tuple[str, str], str]:
 
 
 def _extend(schema: dict[str, Any], value: Any) -> None:
-    """Have a JSON Schema allow one more value."""
+    """Extend a JSON Schema to allow one more value."""
     if isinstance(value, dict):
         properties = schema.setdefault("properties", {})
         for key, inner in value.items():

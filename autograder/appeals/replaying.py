@@ -1,4 +1,4 @@
-"""A check judged again from its evidence, by the present code."""
+"""Judge a check again from its evidence, with the present code."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from autograder import exercises
 from autograder.cards.readable import printable_json
 from autograder.judge.verdicts import reference, trial
 from autograder.judge.verdicts.keeping import NoEvidence, evidence_of
+from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -27,10 +28,10 @@ class Replay:
     """The result of a second judging.
 
     Attributes:
-        then: The verdict that was given.
+        then: The original verdict.
         now: The verdict of the present code.
-        differences: A line for each thing in which they differ that counts: state, points, criteria, diagnosis.
-        notes: What may explain it, and what differs in words alone.
+        differences: One line for each important difference: state, points, criteria, diagnosis.
+        notes: Possible reasons, and differences in words only.
     """
 
     then: Verdict
@@ -40,7 +41,7 @@ class Replay:
 
 
 def replay(kept: Kept) -> Replay:
-    """Decide the criteria and the diagnosis once more.
+    """Decide the criteria and the diagnosis again.
 
     Raises:
         CannotReplay: The exercise is gone, or the evidence is not enough.
@@ -49,7 +50,7 @@ def replay(kept: Kept) -> Replay:
     if kept.cut:
         raise CannotReplay(
             f"the judge saw more in this check than is kept, and no verdict follows from a part of it: {kept.cut}. "
-            "`./course grade --student STUDENT --again` makes the check anew, with the same inputs."
+            f"`{COMMAND} grade --student STUDENT --again` repeats the check with the same inputs."
         )
     try:
         exercise = exercises.get(then.exercise)
@@ -88,7 +89,7 @@ def _differences(then: Verdict, now: Verdict) -> Iterator[str]:
 
 
 def _other_words(then: Verdict, now: Verdict) -> Iterator[str]:
-    """The words that a student reads and no grade depends on."""
+    """Yield differences in words that a student reads, on which no grade depends."""
     before = {criterion.name: criterion for criterion in then.criteria}
     for new in now.criteria:
         old = before.get(new.name)

@@ -12,6 +12,7 @@ from autograder.grading.rebuilding.task_making import cells_of
 from autograder.grading.task import Task
 from autograder.masters.layout import chapter_path, lab_name, masters
 from autograder.masters.source import source_notebook
+from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -80,12 +81,12 @@ def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
             continue
         chapter = chapter_path(root, master)
         if not chapter.is_file():
-            raise NothingToExecuteError(f"{chapter.relative_to(root)} is not there: run `./course build`.")
+            raise NothingToExecuteError(f"{chapter.relative_to(root)} is not there: run `{COMMAND} build`.")
         try:
             built = nodes.read(chapter.read_text(encoding="utf-8"))
         except Exception as error:  # nbformat's libraries raise anything
             raise NothingToExecuteError(
-                f"{chapter.relative_to(root)} is no notebook: run `./course build`."
+                f"{chapter.relative_to(root)} is no notebook: run `{COMMAND} build`."
             ) from error
         planned.append(_planned(NotebookKind.MASTER, lab_name(master), source_notebook(master)))
         planned.append(_planned(NotebookKind.CHAPTER, lab_name(master), built))

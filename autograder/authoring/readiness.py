@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from autograder import course, exercises
 from autograder.authoring.house_rules import broken_rules
 from autograder.masters.source import named_cells
+from environment.installation import installing
 from environment.python_child import installed_program
 
 if TYPE_CHECKING:
@@ -102,7 +103,7 @@ def _of_linters(lab: Path) -> Iterator[str]:
     programs = {name: installed_program(name) for name in ("ruff", "mypy")}
     for name, program in programs.items():
         if not program.is_file():
-            yield f"{name}: not installed, so nothing was looked at: `./course setup --tests` installs it"
+            yield f"{name}: not installed, so nothing was looked at. Type: {installing('dev', clone='--tests')}"
     files = [str(file) for file in sorted(lab.glob("*.py"))]
     for name, *words in (
         ("ruff", "check", "--quiet", "--output-format=concise", f"--config={_SETTINGS}"),

@@ -14,6 +14,7 @@ from autograder.authoring.judging import Turn, judge_all, warm_up
 from autograder.authoring.readiness import still_to_do
 from autograder.cards.text import card_text
 from autograder.verdict import to_json
+from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -199,7 +200,7 @@ def _is_in_step(exercise_id: str, tell: Callable[[str], object]) -> bool:
         return True
     tell(
         "The recording is of another solution or another scenario. "
-        f"If the change is meant, run `./course record {exercise_id}`, "
+        f"If the change is meant, run `{COMMAND} record {exercise_id}`, "
         "look at the difference, and try again."
     )
     return False

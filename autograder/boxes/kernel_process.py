@@ -40,6 +40,7 @@ _PRELOADED = (
     "autograder.notebook.robot.starting",
     "autograder.cards.bundle",
 )
+_MAGIC = "autograder.notebook.cells.program_files"
 _PREPARED = ("autograder.cards.bundle",)
 """The modules of these that have a function ``prepare`` to be called."""
 
@@ -167,6 +168,7 @@ def _kernel_app(key: bytes, address: str, given: Mapping[int, int]) -> IPKernelA
     # No history file: it would be one more thing to write, and nobody will press the up key.
     config.HistoryManager.hist_file = ":memory:"
     config.HistoryManager.enabled = False
+    config.InteractiveShellApp.extensions = [_MAGIC]
     app = _GivenSockets.instance(config=config)
     app.key, app.address, app.given = key, address, given
     return app

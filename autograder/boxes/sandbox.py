@@ -283,10 +283,7 @@ def why_impossible() -> str:
     Found out by making one.
     """
     if shutil.which("bwrap") is None:
-        return (
-            "bubblewrap is not installed: ./course setup installs it as root on Debian or Ubuntu, "
-            "otherwise type: sudo apt-get install -y bubblewrap"
-        )
+        return "bubblewrap is not installed. On Debian or Ubuntu, type: sudo apt-get install -y bubblewrap"
     with HeldFolder("autograder-try-") as held:
         folder = held.path
         supervisors = ForkServer(BESIDE, SUPERVISOR_MODULE, folder / "supervisors")

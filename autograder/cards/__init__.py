@@ -1,4 +1,4 @@
-"""The looks of a verdict: an HTML card for notebooks and its plain-text twin for terminals.
+"""Show a verdict: as an HTML card in notebooks, and as the same card in plain text in terminals.
 
-Nothing in here knows ROS, notebooks or the judge; it reads ``autograder.verdict`` only.
+This part knows nothing of ROS, notebooks or the judge; it reads only ``autograder.verdict``.
 """

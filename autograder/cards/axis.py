@@ -1,4 +1,4 @@
-"""The place of a moment from left to right: at its time, or in its turn where time stood still."""
+"""Place moments from left to right: by time, or one after the other if time stood still."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ if TYPE_CHECKING:
     from autograder.cards.traffic import Part
 
 CHARACTER = 6.7
-"""Pixels of one character of the 11-pixel monospaced label font; a lane's name is set one pixel larger."""
+"""Pixels of one character of the 11-pixel monospaced label font; lane names are one pixel larger."""
 MARGIN = 10.0
 SHORTEST = 0.002
-"""Seconds that an axis covers at least."""
+"""Least length of an axis, in seconds."""
 TURNS = "one after the other"
 """The label of an axis without seconds."""
 
@@ -31,9 +31,9 @@ class Tick:
 
 @dataclass(frozen=True)
 class Axis:
-    """Maps a place to pixels: ``start`` to the margin, ``end`` to ``right``.
+    """Maps a position to pixels: ``start`` to the margin, ``end`` to ``right``.
 
-    A place is a time in seconds or, where ``seconds`` is not set, the number of a moment.
+    A position is a time in seconds or, if ``seconds`` is not set, the number of a moment.
     """
 
     start: float
@@ -44,12 +44,12 @@ class Axis:
 
     @classmethod
     def of(cls, part: Part, lengths: Sequence[float], width: int) -> Axis:
-        """An axis on which the label of every moment fits between its mark and the right edge.
+        """Return an axis on which the label of every moment fits between its mark and the right edge.
 
         Args:
-            part: What is drawn.
-            lengths: Pixels of each moment's label, as drawn.
-            width: Pixels of the picture.
+            part: The part of the traffic to draw.
+            lengths: The length of each moment's label, in pixels.
+            width: The width of the picture, in pixels.
         """
         places = places_of(part)
         first, last = min(places), max(places)
@@ -67,11 +67,11 @@ class Axis:
         return cls(start, end, right, width, seconds=not part.stands_still)
 
     def x(self, place: float) -> float:
-        """Pixels from the left."""
+        """Return the pixels from the left."""
         return MARGIN + (place - self.start) / (self.end - self.start) * (self.right - MARGIN)
 
     def ticks(self) -> Iterator[Tick]:
-        """Round values that cover the axis, also right of the last moment."""
+        """Yield round values that cover the axis, including the space right of the last moment."""
         if not self.seconds:
             yield Tick(0.0, TURNS, "start")
             return
@@ -87,13 +87,13 @@ class Axis:
 
 
 def places_of(part: Part) -> list[float]:
-    """For each moment of a part its place on the axis."""
+    """Return the position of each moment of a part on the axis."""
     if part.stands_still:
         return [float(number) for number in range(len(part.moments))]
     return [moment.t for moment in part.moments]
 
 
 def round_step(step: float) -> float:
-    """The next of 1, 2, 5 times a power of ten."""
+    """Return the next larger of 1, 2 and 5 times a power of ten."""
     power = 10.0 ** math.floor(math.log10(step))
     return next(factor * power for factor in (1, 2, 5, 10) if factor * power >= step * (1 - 1e-9))

@@ -1,8 +1,8 @@
-"""A verdict as the MIME bundle that a notebook displays: its text, and one self-contained fragment of HTML.
+"""Turn a verdict into the MIME bundle that a notebook displays: its text, and one self-contained piece of HTML.
 
-The fragment holds no script, no id and no address, so several cards share a page and nothing is fetched.
-JupyterLab's sanitiser takes ``<style>``, ``<svg>`` and ``aria-*`` out of a notebook that is not trusted: the
-card is a heading, sentences and tables in the right order without them.
+The HTML contains no script, no id and no URL, so several cards can share a page and nothing is loaded.
+JupyterLab's sanitizer removes ``<style>``, ``<svg>`` and ``aria-*`` from a notebook that is not trusted. Even then the
+card is a heading, sentences and tables in the right order.
 """
 
 from __future__ import annotations
@@ -29,23 +29,23 @@ if TYPE_CHECKING:
 
 _SYMBOLS = {State.PASSED: "✓", State.FAILED: "✗", State.NOT_CHECKED: "?"}
 
-# For the untrusted notebook only, where the style sheet is gone: legible on white and on black.
+# Used only in an untrusted notebook, which has no style sheet: legible on white and on black.
 _PLAIN_COLOURS = {State.PASSED: "#2f8f57", State.FAILED: "#c8641a", State.NOT_CHECKED: "#6482c8"}
 
 
 def mimebundle(verdict: Verdict, **choices: Unpack[Choices]) -> dict[str, str]:
-    """The card for ``display(..., raw=True)``: HTML for the browser, text for what shows no HTML."""
+    """Return the card for ``display(..., raw=True)``: HTML for browsers, text for other front ends."""
     html, text = card_html(verdict, buttons=True, **choices), card_text(verdict, **choices)
     return {"text/html": html, "text/plain": text}
 
 
 def waiting_bundle(title: str, doing: str, *, over: bool = False) -> dict[str, str]:
-    """The placeholder for a card without a result.
+    """Return the placeholder for a card without a result.
 
     Args:
-        title: The exercise.
-        doing: What goes on, or why there is no result.
-        over: Whether the check has ended. JupyterLab ends the card of any other one when its kernel ends.
+        title: The title of the exercise.
+        doing: The present step, or why there is no result.
+        over: True if the check has ended. Otherwise JupyterLab ends the card when the kernel ends.
     """
     css, template = _templates()
     waiting = template.environment.get_template("waiting.html.j2")
@@ -55,17 +55,17 @@ def waiting_bundle(title: str, doing: str, *, over: bool = False) -> dict[str, s
 
 
 def prepare() -> None:
-    """Read what the first card would otherwise wait for: about 40 ms."""
+    """Load the templates in advance, so that the first card appears about 40 ms sooner."""
     _templates()
 
 
 def card_html(verdict: Verdict, *, buttons: bool = False, **choices: Unpack[Choices]) -> str:
-    """Show a verdict in JupyterLab, in nbgrader's feedback or on any page; everything is escaped.
+    """Return a verdict as HTML for JupyterLab, nbgrader's feedback or any page; everything is escaped.
 
     Args:
-        verdict: What the judge found.
-        buttons: With Check, Watch and Next, which only JupyterLab with the course's commands shows.
-        choices: What else is said, or left out.
+        verdict: The verdict.
+        buttons: True to add Check, Watch and Next, which only JupyterLab with the course's commands shows.
+        choices: Further options.
     """
     css, template = _templates()
     card = Card.of(verdict, ON_A_PAGE, **choices)
@@ -84,7 +84,7 @@ def card_html(verdict: Verdict, *, buttons: bool = False, **choices: Unpack[Choi
 
 @dataclass(frozen=True)
 class _Part:
-    """A part of the traffic: its picture, and of each moment its time, place, direction and words for the table."""
+    """A part of the traffic: its picture, and a table row for each moment (time, lane, direction, words)."""
 
     title: str
     label: str
@@ -117,8 +117,8 @@ class _Part:
 
 @cache
 def _templates() -> tuple[Any, Template]:
-    """The style sheet and the card's template, read once."""
-    # Imported on first use: a terminal that only prints text need not pay for it.
+    """Return the style sheet and the card's template; they are read once."""
+    # Imported on first use, because a terminal that only prints text does not need it.
     from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup
 
@@ -129,14 +129,14 @@ def _templates() -> tuple[Any, Template]:
     shapes: Any = environment.get_template("shapes.html.j2").module
     environment.globals |= {"shape": shapes.shape, "wording": wording}
     for name in environment.list_templates(extensions=["j2"]):
-        # Also what the card includes: it would be compiled when the first card is shown.
+        # Compile the included templates, too; otherwise the first card would wait for that.
         environment.get_template(name)
     css = (files("autograder.cards") / "card.css").read_text(encoding="utf-8")
     return Markup(css), environment.get_template("card.html.j2")
 
 
 def _breakable(text: str) -> Any:
-    """``text``, escaped, where a line may be broken behind each slash: names of ROS are long."""
+    """Return ``text`` escaped, with a possible line break after each slash, because ROS names are long."""
     from markupsafe import Markup, escape
 
     return Markup("/<wbr/>").join(escape(part) for part in text.split("/"))

@@ -1,4 +1,4 @@
-"""A verdict as both cards show it, in texts that are safe to read: the HTML card and its twin print this alone."""
+"""Prepare the content of both kinds of card, HTML and text, as strings that are safe to show."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ if TYPE_CHECKING:
     from autograder.verdict import Criterion, State, Verdict
 
 UNFOLDED = 16
-"""Lines up to which a traceback is shown at once: longer ones open on demand."""
+"""Longest traceback that is shown unfolded, in lines."""
 SOLUTION_LINES = 120
 SOLUTION_COLUMNS = 200
-"""Lines and columns that are shown of a piece of the reference solution."""
+"""Limits of a cell of the reference solution, in lines and columns."""
 
 
 @dataclass(frozen=True)
 class Form:
-    """The marks of one kind of card, and how much it shows.
+    """The marks and limits of one kind of card.
 
     Attributes:
-        mark: Stands for what is cut out of a text.
-        nothing: Stands for a text that is empty.
-        moments: Moments of the traffic at most, about.
-        lines: Lines of a traceback or of output.
-        columns: Characters of such a line.
+        mark: Replaces the part that is cut out of a text.
+        nothing: Replaces an empty text.
+        moments: Approximate limit of the moments of the traffic.
+        lines: Limit of a traceback or of output, in lines.
+        columns: Limit of such a line, in characters.
     """
 
     mark: str
@@ -49,10 +49,10 @@ class Solution:
     """The reference solution, which a card offers with full marks only.
 
     Attributes:
-        code: The solution cells, in their order.
-        why: Why it is written so, in one or two sentences.
-        other_way: What another way is good for; empty where none is worth a look.
-        other_code: That way.
+        code: The solution cells, in order.
+        why: The reason why it is written this way, in one or two sentences.
+        other_way: The advantage of another way to write it; empty if there is none worth showing.
+        other_code: The code of that way.
     """
 
     code: tuple[str, ...]
@@ -61,20 +61,20 @@ class Solution:
     other_code: str = ""
 
     def readable(self) -> Solution:
-        """The same as texts that are safe to read."""
+        """Return the solution as strings that are safe to show."""
         code = tuple(_code(cell) for cell in self.code)
         other_way, other_code = paragraph(self.other_way, 600), _code(self.other_code)
         return Solution(code, paragraph(self.why, 600), other_way, other_code)
 
 
 class Choices(TypedDict, total=False):
-    """The choices of whoever shows a card.
+    """Options for showing a card.
 
     Attributes:
-        before: The points of the try before this one, where there was one.
-        notice: Why the card is out of date; it is then dimmed. Empty for one that is not.
-        solution: The reference solution, which is shown with full marks only.
-        short: Leave out all but the points, what happened and what to do next.
+        before: The points of the check before this one, if there was one.
+        notice: Why the card is out of date; the card is then dimmed. Empty if it is up to date.
+        solution: The reference solution, shown only with full marks.
+        short: True to show only the points, what happened and what to do next.
     """
 
     before: float | None
@@ -85,7 +85,7 @@ class Choices(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class Row:
-    """A criterion, with its points in words and as the width of its part of the bar."""
+    """A criterion, with its points in words and as its share of the bar."""
 
     passed: bool
     word: str
@@ -99,7 +99,7 @@ class Row:
 
     @classmethod
     def of(cls, criterion: Criterion, form: Form) -> Row:
-        """The row of a criterion."""
+        """Return the row of a criterion."""
         earned = criterion.points if criterion.passed else 0.0
         pieces = difference(criterion)
         return cls(
@@ -117,18 +117,18 @@ class Row:
 
 @dataclass(frozen=True)
 class Card:
-    """All that a card says; see :class:`autograder.verdict.Verdict`, from which it comes.
+    """The content of a card, made from an :class:`autograder.verdict.Verdict`.
 
     Attributes:
         score_line: The points in words.
-        before: The points of the try before, where they were others; else empty.
-        notice: Why the card is out of date; empty for one that is not.
-        traffic: What was on the wire; its texts are as the subject chose them.
-        traffic_notes: What is left out of it.
-        place: The line of the student's that a traceback is about.
-        unfolded: Whether the detail is short enough to be shown at once.
-        facts: What to quote in a question.
-        solution: Where it is offered.
+        before: The points of the check before, if they were different; otherwise empty.
+        notice: Why the card is out of date; empty if it is not.
+        traffic: The traffic on the wire; its texts come from the subject.
+        traffic_notes: What is left out of the traffic.
+        place: The student's line in which the traceback ends.
+        unfolded: True if the detail is short enough to be shown unfolded.
+        facts: The facts to quote in a question.
+        solution: The reference solution, if it is shown.
     """
 
     state: State
@@ -164,7 +164,7 @@ class Card:
         solution: Solution | None = None,
         short: bool = False,
     ) -> Card:
-        """The card of a verdict in one form; the others are its :class:`Choices`."""
+        """Return the card of a verdict in one form; the other arguments are its :class:`Choices`."""
         mark = form.mark
         advice = wording.advice(verdict)
         shown = traffic(verdict.timeline, at_most=form.moments)
@@ -201,7 +201,7 @@ class Card:
         return card._shortened() if short else card
 
     def _shortened(self) -> Card:
-        """The same without what is only looked up."""
+        """Return the card without its details."""
         return replace(self, criteria=(), remarks=(), traffic=Traffic(()), detail=(), facts=(), solution=None)
 
 

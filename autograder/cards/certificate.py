@@ -1,4 +1,4 @@
-"""The card at the end of a chapter: all points of all its exercises. One drawing that needs nothing beside it."""
+"""Draw the certificate for all points of a chapter, as one self-contained picture."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 WORDS = "Made on your own machine, and checked by the judge there. It is not a grade."
-"""The line on each certificate that says what it is worth."""
+"""The line on each certificate that says what the certificate means."""
 _WIDTH = 42
-"""Characters of the title in a line."""
+"""Limit of a line of the title, in characters."""
 
 
 def certificate_svg(title: str, points: float, finished: float) -> str:
@@ -39,7 +39,7 @@ def certificate_svg(title: str, points: float, finished: float) -> str:
 
 
 def certificate_text(title: str, points: float, finished: float) -> str:
-    """The same in words.
+    """Return the certificate in words.
 
     Args:
         title: The chapter's.

@@ -1,4 +1,4 @@
-"""Two texts that should be the same, as one text with what is missing and what is too much."""
+"""Compare two texts that should be the same, and mark what is missing and what is too much."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from autograder.verdict import Criterion
 
 ALIKE = 0.5
-"""The likeness that two texts must have, from 0 to 1; of two that have little in common a difference says nothing."""
+"""Least similarity of two texts, from 0 to 1; a difference between unlike texts does not help."""
 LONGEST = 120
-"""Characters of a text that is compared: comparing takes time in proportion to the square."""
+"""Limit of a compared text, in characters: the time grows with the square of the length."""
 _QUOTED = re2.compile("“([^“”]*)”")
 _BLANK = "␣"
 _PLACE = "N"
-"""Stands for any whole number in what is expected."""
+"""Stands for any whole number in an expected text."""
 
 
 class DiffTag(StrEnum):
@@ -34,14 +34,14 @@ class DiffTag(StrEnum):
 
 @dataclass(frozen=True)
 class Piece:
-    """Some characters in a row."""
+    """Successive characters of one kind."""
 
     kind: DiffTag
     text: str
 
     @property
     def marked(self) -> str:
-        """With the marks that say without colour what it is: ``[missing]``, ``{too much}``."""
+        """Return the text with marks that show its kind without color: ``[missing]``, ``{too much}``."""
         if self.kind is DiffTag.SAME:
             return self.text
         text = self.text.replace(" ", _BLANK)
@@ -49,9 +49,9 @@ class Piece:
 
 
 def difference(criterion: Criterion) -> tuple[Piece, ...]:
-    """The difference between the first quoted text that was seen and the first that was expected.
+    """Return the difference between the first quoted text that was seen and the first one that was expected.
 
-    Empty where the criterion holds, where either has no such text, where they are equal or have little in common.
+    It is empty if the criterion holds, if either has no such text, or if the texts are equal or unlike.
     """
     if criterion.passed:
         return ()
@@ -62,7 +62,7 @@ def difference(criterion: Criterion) -> tuple[Piece, ...]:
 
 
 def marked(pieces: Iterable[Piece]) -> str:
-    """The whole as one text, such as ``"Hello[,] world[!] 0"``."""
+    """Return all pieces as one text, such as ``"Hello[,] world[!] 0"``."""
     return "".join(piece.marked for piece in pieces)
 
 

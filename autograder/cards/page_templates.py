@@ -1,4 +1,4 @@
-"""Templates of pages: all that is put into them is escaped, and a name that is not there is an error."""
+"""Load templates of pages. Values are escaped, and an undefined name is an error."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 
 def page_templates(package: str) -> Environment:
-    """The templates that are beside a package's modules.
+    """Return the templates in a package's folder.
 
     Args:
-        package: Its name, such as ``"autograder.student"``.
+        package: The name of the package, such as ``"autograder.student"``.
     """
     return Environment(
         loader=PackageLoader(package, ""),

@@ -1,8 +1,8 @@
 r"""Make text that a student's program produced safe and legible to show.
 
-A subject may log anything: colour codes, bidirectional overrides that turn a line around, a megabyte on one
-line. What is shown must be what was said, so nothing is dropped silently: it is written out as an escape that
-a Python programmer knows (``\x1b``), or cut in the middle with a mark.
+A subject may log anything: color codes, bidirectional overrides that reverse a line, a megabyte on one
+line. A card must show what was really said, so nothing is dropped silently: a character is written as an escape that
+a Python programmer knows (``\x1b``), or the text is cut in the middle with a mark.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import unicodedata
 
 import re2
 
-# What ends a colour or style in a terminal; carries no text (ECMA-48, "SGR").
+# Sets a color or style in a terminal and contains no text (ECMA-48, "SGR").
 _COLOUR_CODE = re2.compile(r"\x1b\[[0-9;:]*m")
 
 # Joiners shape Persian words and family emoji; the other format characters are invisible or reorder a line.
@@ -23,12 +23,12 @@ _NAMED_ESCAPES = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
 
 def printable(text: str) -> str:
-    """``text`` with whatever could forge a line or move the cursor shown as an escape; of any length."""
+    """Return ``text`` of any length, with characters that could forge a line or move the cursor as escapes."""
     return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
 
 
 def printable_json(text: str) -> str:
-    """Return JSON in which what would move a cursor or turn a line around is escaped; it reads back the same.
+    """Return JSON in which characters that move the cursor or reverse a line are escaped; its value is the same.
 
     Args:
         text: JSON on one line.
@@ -37,28 +37,28 @@ def printable_json(text: str) -> str:
 
 
 def one_line(text: str, limit: int, *, mark: str = "…") -> str:
-    """``text`` on one line, every control character written as an escape, cut in the middle to ``limit``.
+    """Return ``text`` on one line, with control characters as escapes, cut in the middle to ``limit``.
 
     Args:
-        text: Anything; lone surrogates and NUL included.
-        limit: The most characters to return, the mark included.
-        mark: What stands for the part that was cut out.
+        text: Any text, even with lone surrogates and NUL.
+        limit: Limit of the result in characters, with the mark.
+        mark: Replaces the part that is cut out.
     """
-    # Escaping can only lengthen: cutting first keeps a megabyte from being walked character by character.
+    # Escaping makes a text longer, never shorter. So cut first, instead of escaping a megabyte.
     text = _cut(text, 4 * limit, mark)
-    # Whatever would be escaped is not printable (Python's "isprintable"), and hardly any text has some of it.
+    # All escaped characters are not printable (Python's "isprintable"), and few texts contain any.
     return _cut(text if text.isprintable() else "".join(map(_escaped, text)), limit, mark)
 
 
 def paragraph(text: str, limit: int, *, mark: str = "…") -> str:
-    """``text`` as one paragraph: runs of white space become one blank, the rest is as in `one_line`."""
+    """Return ``text`` as one paragraph: white space becomes one blank, the rest is as in `one_line`."""
     return one_line(" ".join(_cut(text, 8 * limit, mark).split()), limit, mark=mark)
 
 
 def block(text: str, *, max_lines: int, max_columns: int, mark: str = "…") -> list[str]:
-    """The lines of a traceback or of program output, colour codes removed, other control characters escaped.
+    """Return the lines of a traceback or of output, without color codes, with other control characters escaped.
 
-    The first third and the last two thirds are kept when there are more than ``max_lines``: a traceback says
+    Of more than ``max_lines`` lines, some of the first and twice as many of the last are kept: a traceback says
     the most at its end.
     """
     lines = _COLOUR_CODE.sub("", text).replace("\r\n", "\n").strip("\n").split("\n")
@@ -71,16 +71,16 @@ def block(text: str, *, max_lines: int, max_columns: int, mark: str = "…") -> 
 
 
 def width(text: str) -> int:
-    """Columns that ``text`` takes in a fixed-width font: East Asian characters take two, accents none."""
+    """Return the columns of ``text`` in a fixed-width font: East Asian characters take two, accents none."""
     return len(text) if text.isascii() else sum(map(_columns, text))
 
 
 def wrap(text: str, limit: int, first: str = "", later: str = "") -> list[str]:
-    """Break one line into lines of at most ``limit`` columns, at blanks where there are any.
+    """Break one line into lines of at most ``limit`` columns, at blanks if possible.
 
     Args:
         text: A line without control characters.
-        limit: Columns, the indent included; the indents must leave room for a wide character.
+        limit: Columns, with the indent; the indents must leave room for a wide character.
         first: The indent of the first line.
         later: The indent of all others.
     """
@@ -125,7 +125,7 @@ def _escaped(character: str) -> str:
 
 
 def _is_invisible(character: str) -> bool:
-    """True if it is a control, a format character, half a surrogate pair, a line separator or none at all."""
+    """Return True for control and format characters, surrogates, line separators and unassigned characters."""
     code = ord(character)
     if code & 0xFFFE == 0xFFFE or 0xFDD0 <= code <= 0xFDEF:
         return True

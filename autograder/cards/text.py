@@ -1,7 +1,7 @@
-"""A verdict as plain text: for terminals, for logs and to be read aloud.
+"""Show a verdict as plain text: in terminals, in logs and for screen readers.
 
-The twin says what the HTML card says, in the same words and order. Its own marks are ASCII only, so that it
-survives any terminal; every line stands by itself, without columns that a screen reader would tear apart.
+The text says what the HTML card says, in the same words and order. Its marks are ASCII only, so that any
+terminal can show it. It has no columns, which a screen reader would read in the wrong order.
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ def card_text(
     color: bool = False,
     **choices: Unpack[Choices],
 ) -> str:
-    """Show a verdict in a terminal.
+    """Return a verdict as text for a terminal.
 
     Args:
-        verdict: What the judge found.
-        width: Columns of a line; 40 at least. Lines of a traceback may be longer.
-        color: Whether to add ANSI codes (bold, and a colour for the state); they carry no meaning.
-        choices: What else is said, or left out.
+        verdict: The verdict.
+        width: Length of a line in columns, at least 40. Lines of a traceback may be longer.
+        color: True to add ANSI codes (bold, and a color for the state); the text says the same without them.
+        choices: Further options.
 
     Returns:
-        Lines without a newline at the end.
+        The lines, without a newline at the end.
     """
     card = Card.of(verdict, IN_A_TERMINAL, **choices)
     return "\n".join(_Writer(max(width, _NARROWEST), color).card(card))
@@ -166,5 +166,5 @@ class _Writer:
 
 
 def _listing(lines: Iterable[str]) -> Iterator[str]:
-    """Lines of code or output, as they are."""
+    """Return lines of code or output, unchanged."""
     return (f"  | {line}".rstrip() for line in lines)

@@ -1,9 +1,9 @@
-"""The layout of the traffic picture: pure geometry, drawn by ``traffic.html.j2``.
+"""Compute the layout of the traffic picture, which ``traffic.html.j2`` draws.
 
-One picture is one part of the check: a row (lane) for each name on the graph, time from left to right. A mark
-is at its time, also where another one stands; those that would hide each other are drawn one below the other.
-Lengths along the time axis are computed for the narrowest picture and given out as percentages, so that a
-wider card only gets more room; heights are pixels. No label covers another one, and no leader runs through one.
+One picture is one part of the check: a row (lane) for each name on the graph, time from left to right. Marks
+that would cover each other are drawn one below the other.
+Lengths along the time axis are computed for the narrowest picture and stored as percentages, so that a
+wider card only gets more space; heights are pixels. No label covers another label or a leader line.
 """
 
 from __future__ import annotations
@@ -23,24 +23,24 @@ if TYPE_CHECKING:
 WIDTH = 600
 """Pixels of the narrowest picture in which nothing overlaps; narrower windows scroll."""
 HALF_WIDTH = 430
-"""The same where a check has many parts, so that a wide card shows two side by side."""
+"""Like WIDTH, for a check with many parts, so that a wide card shows two pictures side by side."""
 
 _MANY = 8
-"""Moments in a lane beyond which the labels that may be left out stay on one level: a calm lane."""
+"""Number of moments in a lane from which optional labels stay on one level, to keep the lane readable."""
 _LEVELS = 4
 
 _FEW = 5
-"""Moments in a lane up to which labels are long."""
+"""Number of moments in a lane up to which labels are long."""
 _MARK = 11.0
-"""Pixels that a mark takes: nearer ones are drawn one below the other."""
+"""Width of a mark in pixels: nearer marks are drawn one below the other."""
 _ROWS = 3
-"""Rows of marks in a lane; more than that hide each other."""
+"""Limit of the rows of marks in a lane; further marks cover each other."""
 _LEVEL_HEIGHT = 14
 _LANE_HEAD = 8
 _LANE_FOOT = 10
 _AXIS_HEIGHT = 18
 _READING_HEIGHT = 16
-"""Pixels below the axis, where what a mark says appears while one points at it."""
+"""Height below the axis, in pixels, for the text of the mark that the pointer is on."""
 
 
 @dataclass(frozen=True)
@@ -48,13 +48,13 @@ class Mark:
     """One moment in the picture.
 
     Attributes:
-        x: Per cent of the picture's width.
+        x: Percent of the picture's width.
         y: Pixels from the top.
         direction: As in ``Moment``.
         stray: As in ``Moment``.
-        label: What is written beside the mark; empty where there was no room.
+        label: The text next to the mark; empty if there was no space.
         label_y: The label's base line, pixels from the top.
-        to_the_left: Whether the label ends at the mark instead of starting there.
+        to_the_left: True if the label is left of the mark.
         tooltip: The moment in one sentence.
     """
 
@@ -70,9 +70,9 @@ class Mark:
 
 @dataclass(frozen=True)
 class Lane:
-    """One row: its name, the base line of the name and of the row's line (pixels), and its marks.
+    """One row: its name, the base lines of the name and of the row (pixels), and its marks.
 
-    ``stray`` says that all of it was beside the point, such as a topic that nobody asked for.
+    ``stray`` is True if the task asks for none of it, such as a wrong topic.
     """
 
     name: str
@@ -88,13 +88,13 @@ class Picture:
 
     Attributes:
         lanes: Its rows, from the top.
-        ticks: The ticks of its axis, their x in per cent of the width.
-        axis_y: Pixels from the top down to the axis.
-        width: Pixels that it needs at least.
-        height: Pixels that it has.
+        ticks: The ticks of its axis, with x in percent of the width.
+        axis_y: Pixels from the top to the axis.
+        width: Least width in pixels.
+        height: Height in pixels.
         summary: The picture in words.
-        breaks: Where left-out moments belong, per cent.
-        reading_y: The base line of what a mark says while one points at it.
+        breaks: The positions of left-out moments, in percent.
+        reading_y: The base line of the text of the mark that the pointer is on.
     """
 
     lanes: tuple[Lane, ...]
@@ -111,8 +111,8 @@ def picture(part: Part, width: int = WIDTH) -> Picture:
     """Lay out one part of the traffic.
 
     Args:
-        part: What to draw; it has moments.
-        width: Pixels of the narrowest picture.
+        part: The part to draw; it must have moments.
+        width: Width of the narrowest picture, in pixels.
     """
     moments = part.moments
     labels = _labels(part)
@@ -145,7 +145,7 @@ def _lane(
     labels: Sequence[str],
     xs: Sequence[float],
 ) -> tuple[Lane, float]:
-    """One lane, and the pixel at which it ends."""
+    """Return one lane, and the pixel at which it ends."""
     moments = part.moments
     placed = _flags([_Wish(labels[i], xs[i], needed=moments[i].key) for i in members])
     text = one_line(name, 60)
@@ -174,7 +174,7 @@ def _lane(
 
 
 def _rows(xs: Sequence[float]) -> list[int]:
-    """For each mark of a lane the row in which it hides no other; the last one where there is none."""
+    """Return for each mark of a lane a row in which it covers no other mark, or else the last row."""
     taken = [-1000.0] * _ROWS
     rows = []
     for x in xs:
@@ -185,7 +185,7 @@ def _rows(xs: Sequence[float]) -> list[int]:
 
 
 def _labels(part: Part) -> list[str]:
-    """The labels as drawn: short, and in a full lane without the words they share with the one before."""
+    """Return the labels to draw: short, and in a full lane without the words of the label before."""
     counts = {lane: sum(moment.lane == lane for moment in part.moments) for lane in part.lanes}
     before: dict[tuple[str, str], str] = {}
     labels = []
@@ -199,7 +199,7 @@ def _labels(part: Part) -> list[str]:
 
 
 def _continued(previous: str, label: str) -> str:
-    """``label`` without the words it shares with ``previous``: none at all where both are the same."""
+    """Return ``label`` without the words it shares with ``previous``; empty if both are equal."""
     if label == previous:
         return ""
     shared = next((i for i, (a, b) in enumerate(zip(previous, label, strict=False)) if a != b), len(previous))
@@ -213,7 +213,7 @@ def _percent(x: float, width: int) -> float:
 
 @dataclass(frozen=True)
 class _Wish:
-    """A label that wants a place: its text, the mark's x in pixels, and whether it may not be left out."""
+    """A label to place: its text, the mark's x in pixels, and whether it must be shown."""
 
     label: str
     x: float
@@ -222,7 +222,7 @@ class _Wish:
 
 @dataclass(frozen=True)
 class _Flag:
-    """A label in its place: a leader ``level`` rows high at ``pole``, text from ``left`` to ``right``."""
+    """A placed label: a leader line ``level`` rows high at ``pole``, text from ``left`` to ``right``."""
 
     level: int
     pole: float
@@ -230,7 +230,7 @@ class _Flag:
     right: float
 
     def clear_of(self, other: _Flag) -> bool:
-        """True if the two texts do not touch and neither leader runs through the other's text."""
+        """Return True if the two texts do not touch and neither leader line crosses the other's text."""
         if self.level == other.level:
             return self.right + 4 <= other.left or other.right + 4 <= self.left
         upper, lower = (self, other) if self.level > other.level else (other, self)
@@ -238,15 +238,15 @@ class _Flag:
 
 
 def _length(label: str) -> float:
-    """Pixels from a mark to the end of its label."""
+    """Return the pixels from a mark to the end of its label."""
     return 5 + readable.width(label) * CHARACTER
 
 
 def _flags(wishes: Sequence[_Wish]) -> list[_Flag | None]:
-    """Give each label of a lane, in order of x, a place, or None where there is none.
+    """Return a position for each label of a lane, in order of x, or None if there is no space.
 
-    From right to left: an earlier label then rises above the later ones and its leader crosses none of them. So a
-    place can always be found for those that are needed, which come first.
+    Labels are placed from right to left: an earlier label is then above the later ones and its leader crosses none.
+    So labels that must be shown, which are placed first, always find a position.
     """
     many = len(wishes) > _MANY
     found: list[_Flag | None] = [None] * len(wishes)
@@ -256,7 +256,7 @@ def _flags(wishes: Sequence[_Wish]) -> list[_Flag | None]:
             wish = wishes[index]
             if not wish.label or wish.needed is not needed:
                 continue
-            # The first one gets a row of its own where it needs it: the others continue its words.
+            # The first label may get a row of its own, because the others continue its words.
             levels = len(wishes) + 1 if needed else (1 if many else _LEVELS) + (index == 0)
             before = wishes[index - 1].x if index else 0.0
             flag = _place(wish, levels, placed, free_left=0.0 if many else wish.x - before)
@@ -267,7 +267,7 @@ def _flags(wishes: Sequence[_Wish]) -> list[_Flag | None]:
 
 
 def _place(wish: _Wish, levels: int, placed: Sequence[_Flag], *, free_left: float) -> _Flag | None:
-    """The lowest free place right of the mark, else the lowest within ``free_left`` pixels left of it."""
+    """Return the lowest free position right of the mark, or else within ``free_left`` pixels left of it."""
     x, long = wish.x, _length(wish.label)
     for left in (x, x - long) if long < free_left and not wish.needed else (x,):
         for level in range(levels):

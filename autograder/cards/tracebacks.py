@@ -1,4 +1,4 @@
-"""The line of the student's that a traceback is about."""
+"""Find the student's line in which a traceback ends."""
 
 from __future__ import annotations
 
@@ -10,27 +10,27 @@ TRACEBACK = "Traceback (most recent call last)"
 _FRAME = re2.compile(r'^ +File "(?P<file>[^"]*)", line (?P<line>\d+)')
 _LIBRARIES = ("/site-packages/", "/lib/python3", "/opt/ros/", "<frozen")
 _BUILT = re2.compile(r"/install/(?:[^/.]+/)?lib/python3[^/]*/site-packages/")
-"""The folder into which a build installs the modules of a workspace: they are the student's own."""
+"""The folder into which a build installs a workspace's modules, which the student wrote."""
 _CALLED_BY_ROS = "/rclpy/task.py"
-"""The file of rclpy that is below a line that spins, where a callback went wrong and not that line."""
+"""The rclpy file that follows a line that spins in a traceback, if a callback failed and not that line."""
 _CANNOT_BE_READ = ("SyntaxError", "IndentationError", "TabError")
-"""Errors that Python tells without a traceback, as nothing of the program has run."""
+"""Errors without a traceback, because Python cannot start the program."""
 _SCRIPT = re2.compile(r"/lib/[^/]+/[^/.]+$")
-"""The file that a build makes of an entry point, which ``ros2 run`` starts: nobody wrote its lines."""
+"""The generated file of an entry point, which ``ros2 run`` starts: the student did not write it."""
 _CALLED_WITH = "Invoked with: "
 _FORM_OF_CALL = re2.compile(r"\d+\. \(")
-"""The last lines of an error of pybind11: what was called with, and above that the forms that it has."""
+"""One of the possible signatures that an error of pybind11 lists."""
 _CELLS = ("/ipykernel_", "<ipython-input")
 
 
 @dataclass(frozen=True)
 class Place:
-    """The place where a program went wrong.
+    """The line in which a program failed.
 
     Attributes:
-        where: ``"Line 11 of your cell"``, or of a file.
-        quote: That line as it is there, without its indentation; empty where it is not known.
-        error: What was raised, such as ``"AttributeError: 'Talker' object has no attribute 'nmae'"``.
+        where: ``"Line 11 of your cell"``, or the line of a file.
+        quote: The text of the line without its indentation; empty if it is not known.
+        error: The exception, such as ``"AttributeError: 'Talker' object has no attribute 'nmae'"``.
     """
 
     where: str
@@ -39,15 +39,15 @@ class Place:
 
 
 def last_error(detail: str) -> str:
-    """The last line of a text that is not empty: at the end of a traceback, what was raised."""
+    """Return the last line that is not empty: the exception, if the text is a traceback."""
     told = (line.strip() for line in reversed(detail.splitlines()) if not line.startswith(_CALLED_WITH))
     return next((line for line in told if line and not _FORM_OF_CALL.match(line)), "")
 
 
 def place(detail: str) -> Place | None:
-    """The last line of the student's in the last traceback of a text.
+    """Return the student's last line in the last traceback of a text.
 
-    None where there is none, and where that line only spins: the mistake is in what it calls back.
+    None if there is none, or if that line only spins: the mistake is in a callback then.
     """
     lines = detail.splitlines()
     error = last_error(detail)

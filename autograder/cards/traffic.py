@@ -1,7 +1,7 @@
-"""The moments of a check that a card shows, in groups.
+"""Choose the moments of a check that a card shows, and group them by part.
 
-A judge may have seen hundreds of messages; a card shows a few dozen. Every part of the check keeps a fair
-share, and what was left out is counted, never hidden.
+A judge may have seen hundreds of messages; a card shows a few dozen. Every part of the check gets an equal
+share, and the card says how many moments are left out.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
     from autograder.verdict import Moment
 
 OTHER_LANES = "other names"
-"""The lane that collects what happened where least did, in a part with more than `MAX_LANES` lanes."""
+"""The lane for the moments of the emptiest lanes, in a part with more than `MAX_LANES` lanes."""
 
 OWN_LANE = "your code"
-"""The lane of what the program itself did, such as to end."""
+"""The lane of the program's own events, such as its end."""
 
 MAX_LANES = 8
 _MAX_PARTS = 12
 _LAST = {OTHER_LANES: 1, "log": 2, "printed": 3, OWN_LANE: 4}
 _TOGETHER = 3
-"""Moments of a lane at one simulated time beyond which the clock was not what made them happen."""
+"""Limit of moments of a lane at one simulated time; if there are more, the clock did not cause them."""
 
 
 @dataclass(frozen=True)
@@ -35,10 +35,10 @@ class Part:
     """One part of the check on one axis.
 
     Attributes:
-        title: The part's name; empty where the check has one part only.
-        simulated: Whether the times are simulated seconds.
-        moments: In order of time.
-        gaps: Index of a moment -> how many are left out behind it.
+        title: The part's name; empty if the check has only one part.
+        simulated: True if the times are simulated seconds.
+        moments: The moments in order of time.
+        gaps: The number of moments left out after a moment, by its index.
     """
 
     title: str
@@ -48,47 +48,47 @@ class Part:
 
     @property
     def left_out(self) -> int:
-        """The number of moments that are not among ``moments``."""
+        """The number of moments left out."""
         return sum(self.gaps.values())
 
     @property
     def lanes(self) -> tuple[str, ...]:
-        """The lanes: names on the graph in order of their first moment, then what was said of it."""
+        """The lanes: names on the graph in order of their first moment, then logged and printed lines."""
         found = dict.fromkeys(moment.lane for moment in self.moments)
         return tuple(sorted(found, key=lambda lane: _LAST.get(lane, 0)))
 
     @property
     def kind_of_time(self) -> str:
-        """The name of what its axis shows."""
+        """What the axis shows, in words."""
         return "simulated time" if self.simulated else "time"
 
     @functools.cached_property
     def stands_still(self) -> bool:
-        """True if time says nothing about the order: all at once or, by a clock that was moved, nearly so."""
+        """True if times do not show the order, because all moments are at (nearly) the same time."""
         if len({moment.t for moment in self.moments}) == 1:
             return True
         together = Counter((one.lane, one.t) for one in self.moments if one.direction != "expected")
         return self.simulated and max(together.values(), default=0) > _TOGETHER
 
     def when(self, index: int) -> str:
-        """The time of a moment: ``"0.500 s"``; its turn, such as ``"no. 3"``, where time stood still."""
+        """Return the time of a moment, ``"0.500 s"``, or its number, ``"no. 3"``, if time stood still."""
         if self.stands_still and len(self.moments) > 1:
             return f"no. {index + 1}"
         return f"{self.moments[index].t:.3f} s"
 
     @property
     def is_worth_a_picture(self) -> bool:
-        """True if anything was on the graph or in the log: that a program ended is told elsewhere."""
+        """True if anything was on the graph or in the log. The card tells the end of a program elsewhere."""
         return any(moment.lane != OWN_LANE for moment in self.moments)
 
 
 @dataclass(frozen=True)
 class Traffic:
-    """All that a card shows of the traffic.
+    """The traffic that a card shows.
 
     Attributes:
-        parts: In order of appearance.
-        parts_left_out: Parts beyond those, of which nothing is shown.
+        parts: The parts, in order.
+        parts_left_out: The number of parts that are not shown.
     """
 
     parts: tuple[Part, ...]
@@ -96,7 +96,7 @@ class Traffic:
 
     @property
     def left_out(self) -> int:
-        """Moments that are not shown in the parts that are."""
+        """The number of moments left out of the shown parts."""
         return sum(part.left_out for part in self.parts)
 
     @property
@@ -109,7 +109,7 @@ def traffic(timeline: Sequence[Moment], *, at_most: int) -> Traffic:
     """Group a timeline by part and keep about ``at_most`` of its moments."""
     groups: dict[tuple[str, bool], list[Moment]] = {}
     for moment in timeline:
-        # One axis has one kind of time: a part that mixes both becomes two.
+        # One axis shows one kind of time, so a part with both kinds is split.
         groups.setdefault((moment.part, moment.simulated), []).append(_with_finite_time(moment))
     shown = list(groups.items())[:_MAX_PARTS]
     total = sum(len(moments) for _, moments in shown)
@@ -122,9 +122,9 @@ def traffic(timeline: Sequence[Moment], *, at_most: int) -> Traffic:
 
 def _part(title: str, simulated: bool, moments: list[Moment], share: int) -> Part:
     ordered = _few_lanes(sorted(moments, key=lambda moment: moment.t))
-    if len(ordered) <= share + 2:  # to leave out one or two saves nothing
+    if len(ordered) <= share + 2:  # leaving out one or two is not worth it
         return Part(title, simulated, tuple(ordered))
-    # The beginning shows the pattern and the end how it went out; the middle repeats, but for what the story is about.
+    # The beginning shows the pattern and the end shows the outcome. The middle repeats, except for important moments.
     tail = share // 3
     head = share - tail
     kept: list[Moment] = []

@@ -1,4 +1,4 @@
-"""The words both cards share, so that the HTML card and its plain-text twin never say different things."""
+"""The words of both kinds of card, so that HTML and text never say different things."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ CRITERION_WORDS = {True: "PASS", False: "NOT YET"}
 DIFFERENCE = "the difference ([ ] is missing, { } is too much)"
 
 SOLUTION = "The reference solution, and why it is written so"
-"""The heading of what is folded up."""
+"""The heading of the folded reference solution."""
 OTHER_WAY = "Another way"
-"""The heading of an alternative to it."""
+"""The heading of an alternative to the reference solution."""
 
 _BLAMELESS = (
     "The checker itself had trouble: the missing result is not your mistake, and no points were counted."
@@ -47,9 +47,9 @@ class Advice:
     """The prominent block of a card: what happened, and what to do now.
 
     Attributes:
-        heading: Such as ``"What happened"``; empty where the text needs none.
+        heading: Such as ``"What happened"``; empty if the text needs none.
         text: One to three sentences.
-        next_step: What to do now, in the imperative; empty when nothing is left to do.
+        next_step: What to do now, as a command; empty if there is nothing left to do.
     """
 
     heading: str
@@ -58,7 +58,7 @@ class Advice:
 
 
 def advice(verdict: Verdict) -> Advice:
-    """The advice that a student should read first, also where the judge named no known mistake."""
+    """Return the advice that a student should read first, even if the judge knows no name for the mistake."""
     if verdict.state is State.PASSED:
         return Advice("", "Well done: your code did everything that was asked for.")
     diagnosis = verdict.diagnosis
@@ -80,26 +80,26 @@ def _start_with(criterion: Criterion | None) -> str:
 
 
 def points(value: float) -> str:
-    """A number of points without needless zeros: ``"7.5"``, ``"10"``."""
+    """Return a number of points without unnecessary zeros: ``"7.5"``, ``"10"``."""
     return f"{value:.2f}".rstrip("0").rstrip(".")
 
 
 def unit(value: float) -> str:
-    """The word behind a number of points."""
+    """Return the word after a number of points: point or points."""
     return "point" if value == 1 else "points"
 
 
 def points_of(earned: float, possible: float) -> str:
-    """``"7.5 of 10 points"``."""
+    """Return ``"7.5 of 10 points"``."""
     return f"{points(earned)} of {points(possible)} {unit(possible)}"
 
 
 def score_line(verdict: Verdict, before: float | None = None) -> str:
-    """The points in words; what could not be checked has none, not zero.
+    """Return the points in words. A check that could not be made has no points, which is not zero.
 
     Args:
-        verdict: What the judge found.
-        before: The points of the try before this one, where there was one.
+        verdict: The verdict.
+        before: The points of the check before this one, if there was one.
     """
     if verdict.state is State.NOT_CHECKED:
         return f"no points counted (of {points(verdict.max_score)})"
@@ -108,14 +108,14 @@ def score_line(verdict: Verdict, before: float | None = None) -> str:
 
 
 def points_before(verdict: Verdict, before: float | None) -> str:
-    """The points of the try before, where they were others; else empty."""
+    """Return the points of the check before, if they were different; otherwise empty."""
     if before is None or verdict.state is State.NOT_CHECKED or before == verdict.score:
         return ""
     return points(before)
 
 
 def tally(verdict: Verdict) -> str:
-    """The number of criteria that hold, such as ``"3 of 4 criteria hold"``; empty when there are none."""
+    """Return the number of criteria that hold, such as ``"3 of 4 criteria hold"``; empty if there are none."""
     if not verdict.criteria:
         return ""
     held = sum(criterion.passed for criterion in verdict.criteria)
@@ -128,7 +128,7 @@ def tally(verdict: Verdict) -> str:
 
 
 def fine_print(verdict: Verdict) -> list[str]:
-    """The facts to quote in a question or an appeal: the exercise's id, the diagnosis, the seed, the check's time."""
+    """Return the facts to quote in a question or an appeal: exercise id, diagnosis, seed and time of the check."""
     parts = [verdict.exercise]
     if verdict.diagnosis:
         parts.append(verdict.diagnosis.key)  # docs/mistakes.md explains each
@@ -140,19 +140,19 @@ def fine_print(verdict: Verdict) -> list[str]:
 
 
 def duration(seconds: float) -> str:
-    """``"0.84 s"``, ``"12.3 s"``."""
+    """Return a time such as ``"0.84 s"`` or ``"12.3 s"``."""
     return f"{seconds:.2f} s" if seconds < 10 else f"{seconds:.1f} s"
 
 
 def detail_heading(detail: str) -> str:
-    """The heading of the detail, with its most telling line: the exception at the end of a traceback."""
+    """Return the heading of the detail, with its most important line: the exception of a traceback."""
     if TRACEBACK in detail:
         return f"The traceback, ending in: {last_error(detail)}"
     return "The last lines of output"
 
 
 def traffic_notes(shown: Traffic) -> str:
-    """Notes on the traffic that is shown: its kind of time, and what is left out."""
+    """Return notes on the shown traffic: its kind of time, and what is left out."""
     notes = []
     if shown.simulated:
         notes.append("Simulated time: the judge moved your node's clock, so these seconds pass faster.")
@@ -166,16 +166,16 @@ def traffic_notes(shown: Traffic) -> str:
 
 
 def direction(key: str) -> str:
-    """A moment's direction in words."""
+    """Return a moment's direction in words."""
     return DIRECTION_WORDS.get(key) or one_line(key, 40)
 
 
 def moment_in_words(moment: Moment, when: str) -> str:
-    """``"at 0.500 s on chatter, from your code: Hello, world! 0"``.
+    """Return a moment as ``"at 0.500 s on chatter, from your code: Hello, world! 0"``.
 
     Args:
-        moment: What happened.
-        when: Its time, or its turn where time stood still.
+        moment: The moment.
+        when: The time of the moment, or its number if time stood still.
     """
     where = one_line(moment.lane, 60)
     at = when if when.startswith("no.") else f"at {when}"
@@ -183,7 +183,7 @@ def moment_in_words(moment: Moment, when: str) -> str:
 
 
 def part_in_words(part: Part) -> str:
-    """A picture of the traffic in words, a sentence for each lane."""
+    """Return a picture of the traffic in words, one sentence for each lane."""
     return " ".join(_lane_in_words(part, lane) for lane in part.lanes)
 
 

@@ -1,7 +1,7 @@
-"""The ``autograder`` command. Thin: each command hands over to the part that does the work.
+"""Define the ``autograder`` command. Each command calls the part that does the work.
 
-Exit codes: 0 all is well, 1 the answer is no (a failed check, stale notebooks), 2 it could not be done (bad
-input, or trouble of the grader's own). Imports are inside the commands: ``check`` must answer at once.
+Exit codes: 0 success, 1 the answer is no (a failed check, notebooks out of date), 2 it could not be done (bad
+input, or an error of the grader). Imports are inside the commands, so that ``check`` starts fast.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The commands about one student's checks: list them, write one down, judge it again; and its messages in a file."""
+"""The commands about one student's checks: list them, save one, judge it again, and save its messages."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import click
 
 from autograder.cards.readable import printable
 from autograder.cli.ending import fail, grading_errors
+from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -21,13 +22,13 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 _MAX_COLUMNS = 4_000
-"""Characters of a printed line; one that quotes an expected and a seen text in full has half of that."""
+"""Limit of a printed line, in characters; a line with an expected and a seen text in full has half of that."""
 _MAX_LINES = 100
-"""Printed differences, and printed notes; each criterion has one at most, and no exercise a third as many criteria."""
+"""Limit of the printed differences, and of the notes; no exercise has a third as many criteria."""
 
 
 def _fail(message: str) -> NoReturn:
-    """End with a message in which there may be something that somebody else wrote."""
+    """End with a message that may contain text of another person."""
     fail(_shown(message))
 
 
@@ -35,7 +36,7 @@ def _fail(message: str) -> NoReturn:
 @click.argument("folder", type=click.Path(path_type=Path))
 @click.argument("student")
 def attempts(folder: Path, student: str) -> None:
-    """Say what came of each time that STUDENT was graded in the class FOLDER."""
+    """List the results of each time that STUDENT was graded in the class FOLDER."""
     from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory
 
@@ -55,13 +56,13 @@ def attempts(folder: Path, student: str) -> None:
     "-o",
     "--output",
     type=click.Path(path_type=Path),
-    help="The file; FOLDER/appeals/STUDENT-EXERCISE.json where not given.",
+    help="The file to write. The default is FOLDER/appeals/STUDENT-EXERCISE.json.",
 )
 def appeal(folder: Path, student: str, exercise: str, output: Path | None) -> None:
-    """Write down all about the check of EXERCISE by STUDENT in the class FOLDER.
+    """Save everything about the check of EXERCISE by STUDENT in the class FOLDER.
 
-    What the student wrote, what was expected, what the judge saw, what it decided, and with which course. The file is
-    JSON to read, and `./course replay` judges it again.
+    The student's code, the expected output, the judge's evidence and verdict, and the course's version. The file is
+    JSON to read, and `replay` judges it again.
     """
     from autograder.grading.appeal import write_appeal
 
@@ -70,7 +71,7 @@ def appeal(folder: Path, student: str, exercise: str, output: Path | None) -> No
 
 
 def _shown(line: str) -> str:
-    """A line as it can be printed: whoever wrote the file may have put anything into it, of any length."""
+    """Return a line that is safe to print: the file may contain any text of any length."""
     return printable(line if len(line) <= _MAX_COLUMNS else f"{line[:_MAX_COLUMNS]}…")
 
 
@@ -87,9 +88,9 @@ def _shown(line: str) -> str:
 def replay(file: Path, mcap: Path | None, bag: Path | None) -> None:
     """Judge the check in an appeal FILE again, from what was seen then and with the course as it is now.
 
-    Nothing of the student's is run, and no ROS node is started.
+    No code of the student is run, and no ROS node is started.
 
-    A file proves nothing by itself: anybody can write one. Have `./course appeal` write it from the class.
+    A file proves nothing by itself: anybody can write one. Have `appeal` write it from the class.
 
     Exit code 0: the same verdict; 1: another one; 2: it cannot be judged again.
     """
@@ -108,7 +109,7 @@ def replay(file: Path, mcap: Path | None, bag: Path | None) -> None:
         lines = list(_lines(appeal, again))
     except (appeal_file.BadAppeal, replaying.CannotReplay) as error:
         _fail(str(error))
-    except Exception as error:  # whoever wrote the file may have put anything anywhere
+    except Exception as error:  # the file may contain anything
         _fail(
             f"{file} is not as an appeal file is ({type(error).__name__}: {error}). It was edited, or comes from "
             "another version of the course: use that one."
@@ -119,13 +120,13 @@ def replay(file: Path, mcap: Path | None, bag: Path | None) -> None:
 
 
 def check_name(path: Path) -> None:
-    """End with exit code 2 where a file of messages has another ending than all of them."""
+    """End with exit code 2 if the name of a file of messages does not end in .mcap."""
     if path.suffix != ".mcap":
         _fail(f"messages are written into a file such as check.mcap: {path.name} has another ending")
 
 
 def save_messages(seen: Kept, path: Path) -> str:
-    """Write the messages of a check as MCAP; a line that says so. Ends with exit code 2 where that cannot be."""
+    """Write the messages of a check as MCAP, and return a line about it. End with exit code 2 if that fails."""
     from autograder.appeals.messages_seen import write_messages
 
     try:
@@ -137,7 +138,7 @@ def save_messages(seen: Kept, path: Path) -> str:
 
 
 def save_bag(seen: Kept, path: Path) -> str:
-    """Write the messages of topics for ``ros2 bag play``; a line that says so. Exit code 2 where that cannot be."""
+    """Write the messages of topics for ``ros2 bag play``, and return a line about it. Exit code 2 if that fails."""
     from autograder.appeals.messages_seen import write_bag
 
     try:
@@ -150,7 +151,7 @@ def save_bag(seen: Kept, path: Path) -> str:
 
 
 def _lines(appeal: Appeal, again: Replay) -> Iterator[str]:
-    """The result of a replay in lines, the answer first."""
+    """Yield the result of a replay in lines, the answer first."""
     then = again.then
     at = datetime.fromtimestamp(appeal.seen.at, tz=UTC)
     yield f"{then.exercise} by {appeal.student}, checked {at:%Y-%m-%d %H:%M:%S} UTC with course {appeal.course[:8]}"
@@ -162,7 +163,7 @@ def _lines(appeal: Appeal, again: Replay) -> Iterator[str]:
     else:
         yield "the same verdict, points and diagnosis"
     yield from (f"note: {note}" for note in again.notes[:_MAX_LINES])
-    yield "note: the file proves nothing by itself, anybody can write one; `./course appeal` writes it from the class"
+    yield f"note: the file proves nothing by itself, anybody can write one; `{COMMAND} appeal` writes it from the class"
 
 
 def _told(verdict: Verdict) -> str:

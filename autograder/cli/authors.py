@@ -8,14 +8,13 @@ from pathlib import Path
 import click
 
 from autograder.cli.ending import NO, fail
+from environment.installation import COMMAND
 
 
 @click.command()
-@click.option(
-    "--check", "only_check", is_flag=True, help="Write nothing; fail where a notebook is out of step."
-)
+@click.option("--check", "only_check", is_flag=True, help="Write nothing; fail if a notebook is out of date.")
 def build(only_check: bool) -> None:
-    """Derive the chapter notebooks from their masters."""
+    """Build the chapter notebooks from their masters."""
     from autograder import course
     from autograder.masters.chapters import build_command
 
@@ -27,7 +26,7 @@ def build(only_check: bool) -> None:
 @click.option(
     "--jobs",
     type=click.IntRange(min=1),
-    help="Notebooks at once; as many as processors and memory allow where not given.",
+    help="Notebooks at once. The default is as many as processors and memory allow.",
 )
 @click.option(
     "--reports", type=click.Path(path_type=Path), help="Keep the pages about failed notebooks in this folder."
@@ -47,9 +46,9 @@ def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) 
 
 @click.command()
 @click.argument("exercises", nargs=-1, metavar="[EXERCISE]...")
-@click.option("--check", "only_check", is_flag=True, help="Write nothing; fail where a recording differs.")
+@click.option("--check", "only_check", is_flag=True, help="Write nothing; fail if a recording differs.")
 def record(exercises: tuple[str, ...], only_check: bool) -> None:
-    """Record what the reference solutions do on the wire: the grader expects that from then on."""
+    """Record what the reference solutions do on the wire. The grader compares answers with it."""
     from autograder.authoring import recording
 
     try:
@@ -62,7 +61,7 @@ def record(exercises: tuple[str, ...], only_check: bool) -> None:
 @click.command("new-exercise")
 @click.argument("exercise")
 @click.option("--recipe", default="publisher", show_default=True, help="The kind of subject that it judges.")
-@click.option("--chapter", help="The folder of its chapter in solutions/; the last one where not given.")
+@click.option("--chapter", help="The folder of its chapter in solutions/. The default is the last one.")
 @click.option(
     "--interface",
     "interfaces",
@@ -74,7 +73,7 @@ def new_exercise(exercise: str, recipe: str, chapter: str | None, interfaces: tu
     """Make the folder of a new lab with one EXERCISE that works, for you to change.
 
     \b
-    ./course new-exercise lab_8_1.battery --recipe publisher
+    new-exercise lab_8_1.battery --recipe publisher
     """  # noqa: D301 (to click, the backspace keeps the lines below it apart)
     from autograder import course
     from autograder.authoring import new_exercise as making
@@ -86,7 +85,7 @@ def new_exercise(exercise: str, recipe: str, chapter: str | None, interfaces: tu
         fail(str(error))
     for file in made:
         click.echo(f"written    {file.relative_to(root)}")
-    click.echo(f"\nNow: ./course try-exercise {exercise}")
+    click.echo(f"\nNow: {COMMAND} try-exercise {exercise}")
 
 
 @click.command("try-exercise")
@@ -99,17 +98,17 @@ def new_exercise(exercise: str, recipe: str, chapter: str | None, interfaces: tu
     "--repeat",
     type=click.IntRange(min=1),
     default=1,
-    help="Judge each answer so many times, each time with other random inputs.",
+    help="Judge each answer this many times, each time with different random inputs.",
 )
 @click.option(
     "--transcript",
     type=click.Path(path_type=Path, file_okay=False),
-    help="Write all that was seen of each answer into this folder.",
+    help="Write the evidence of each answer into this folder.",
 )
 def try_exercise(
     exercise: str, only: tuple[str, ...], jobs: int, repeat: int, transcript: Path | None
 ) -> None:
-    """Record EXERCISE where it is new, judge its right and wrong answers, and show what is not as expected."""
+    """Record EXERCISE if it is new, judge its right and wrong answers, and show unexpected results."""
     from autograder import exercises
     from autograder.authoring import recording, trying
     from autograder.authoring.answer_tables import BadTable
@@ -148,7 +147,7 @@ def try_exercise(
     "--to",
     "folder",
     type=click.Path(path_type=Path, file_okay=False),
-    help="The folder of the pages; site/ if not given.",
+    help="The folder of the pages. The default is site/.",
 )
 @click.option("--quick", is_flag=True, help="Do not execute the notebooks: the pages have no outputs.")
 @click.option("--files", default="", metavar="URL", help="Where readers find the files of the repository.")

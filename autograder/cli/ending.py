@@ -1,4 +1,4 @@
-"""The end of a command: its exit code, and a clear line where it could not be done."""
+"""End a command: with an exit code, and with a clear line if it could not be done."""
 
 from __future__ import annotations
 

@@ -11,6 +11,7 @@ import click
 from autograder.cards.readable import printable, printable_json
 from autograder.cli.ending import INTERRUPTED, fail, grading_errors
 from autograder.kit.in_words import counted
+from environment.installation import COMMAND
 
 _class_folder = click.argument("folder", type=click.Path(path_type=Path))
 _only_assignments = click.option(
@@ -39,10 +40,10 @@ def _known_zone(_context: click.Context, _option: click.Parameter, name: str) ->
 @click.option(
     "--with-solutions",
     is_flag=True,
-    help="Cards with full marks offer the reference solution. Students can find it earlier, in the folder exercises.",
+    help="Show the reference solution on cards with full marks. Students can find it earlier, in the folder exercises.",
 )
 def hand_out(place: Path, assignments: tuple[str, ...], as_zip: bool, with_solutions: bool) -> None:
-    """Make in PLACE what a class is handed: notebooks and judge, no solution, no answer, no grader."""
+    """Make in PLACE the hand-out for a class: notebooks and judge, without solutions, answers and grader."""
     from autograder import course
     from autograder.student import handing_out
 
@@ -53,7 +54,7 @@ def hand_out(place: Path, assignments: tuple[str, ...], as_zip: bool, with_solut
     except (handing_out.CannotHandOut, OSError) as error:
         fail(str(error))
     click.echo(
-        f"{made.place}: {made.files} files, {made.size / 1e6:.1f} MB. Try it: ./course lab, in that folder"
+        f"{made.place}: {made.files} files, {made.size / 1e6:.1f} MB. Try it: {COMMAND} lab, in that folder"
     )
 
 
@@ -65,7 +66,7 @@ def hand_out(place: Path, assignments: tuple[str, ...], as_zip: bool, with_solut
     default="",
     callback=_known_zone,
     metavar="Europe/Berlin",
-    help="The time zone of due dates; this machine's by default.",
+    help="The time zone of due dates. The default is this machine's.",
 )
 def new_class(folder: Path, assignments: tuple[str, ...], timezone: ZoneInfo | None) -> None:
     """Make an nbgrader course directory in FOLDER, ready for submissions."""
@@ -81,13 +82,16 @@ def new_class(folder: Path, assignments: tuple[str, ...], timezone: ZoneInfo | N
 @_class_folder
 @_only_assignments
 def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
-    """Bring the sources of the class FOLDER to what the course says now; the old ones are kept."""
+    """Update the sources of the class FOLDER to the present course; the old ones are kept."""
     from autograder import course
     from autograder.grading.classes.new_class import renew
 
     with grading_errors():
         for line in renew(folder, course.root(), assignments):
             click.echo(line)
+
+
+_as_json = click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
 
 
 @click.command()
@@ -106,15 +110,18 @@ def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
 @click.option(
     "--from",
     "form",
-    type=click.Choice(["moodle", "canvas", "blackboard", "brightspace", "google", "github", "gradescope"]),
+    type=click.Choice(
+        ["moodle", "canvas", "blackboard", "brightspace", "google", "github", "gradescope", "sakai", "ilias"]
+    ),
     default=None,
-    help="Which system it is from, where names do not show it. Google's names are read only with it.",
+    help="Which system it is from, if names do not show it. Google's and ILIAS's names are read only with it.",
 )
 @click.option(
-    "--times",
-    multiple=True,
-    type=click.Path(path_type=Path),
-    help="A list that says when work was handed in (columns id, handed_in, assignment), also of what is there already.",
+    "--names",
+    default="",
+    metavar="'{id}-{last}_{assignment}'",
+    help="What names say: id, email, login, number, name, first, last, assignment, time, file, any; or a column of "
+    "students.csv.",
 )
 @click.option(
     "--handed-in",
@@ -122,16 +129,16 @@ def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
     metavar="2026-01-31T12:00",
     help="When that was, of which nothing else says it.",
 )
-@click.option("--settled", multiple=True, metavar="NAME", help="This file has no place and needs none.")
+@_as_json
 def collect(
     folder: Path,
     files: tuple[Path, ...],
     assignment: str,
     timezone: ZoneInfo | None,
     form: str | None,
-    times: tuple[Path, ...],
+    names: str,
     handed_in: str,
-    settled: tuple[str, ...],
+    as_json: bool,
 ) -> None:
     """Put FILES that an LMS let you download into the class directory FOLDER.
 
@@ -140,24 +147,22 @@ def collect(
 
     Exit code 0: everything has its place; 2: the lines say what has not, and why.
     """
+    import msgspec
+
     from autograder.grading.collecting import collect as collecting
     from autograder.grading.collecting.forms import read_time
     from autograder.grading.collecting.showing import show
 
-    if not (files or times or settled):
-        fail("name what is to be collected: ./course collect FOLDER submissions.zip")
     when = read_time(handed_in) if handed_in else None
     if handed_in and when is None:
         fail(f"--handed-in {handed_in} is no time. One looks like 2026-01-31T12:00.")
     with grading_errors():
-        unknown = collecting.settle(folder, settled) if settled else []
-        if unknown:
-            fail(f"nothing without a place is called {', '.join(unknown)}: ./course grade lists the names")
-        if not (files or times):
-            return
         report = collecting.collect(
-            folder, files, assignment=assignment, zone=timezone, form=form or "", times=times, handed_in=when
+            folder, files, assignment=assignment, zone=timezone, form=form or "", names=names, handed_in=when
         )
+    if as_json:
+        click.echo(printable_json(msgspec.json.encode(report, enc_hook=str).decode()))
+    else:
         show(report)
     sys.exit(report.exit_code)
 
@@ -173,7 +178,7 @@ def collect(
     type=click.IntRange(min=1),
     help="Notebooks at once; as many as processors and memory allow where not given.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
+@_as_json
 @click.option(
     "--unsafe-no-sandbox",
     is_flag=True,
@@ -185,7 +190,9 @@ def collect(
     help="Have the workers of this Dask scheduler run the submissions (see `autograder worker`).",
 )
 @click.option(
-    "--dry-run", is_flag=True, help="Enter nothing: run what has changed and say who would get other points."
+    "--dry-run",
+    is_flag=True,
+    help="Change no grade: run what has changed and show whose points would change.",
 )
 def grade(
     folder: Path,
@@ -199,7 +206,7 @@ def grade(
     scheduler: str | None,
     dry_run: bool,
 ) -> None:
-    """Grade what was submitted in the class directory FOLDER."""
+    """Grade the submissions in the class directory FOLDER."""
     from autograder.grading import batch
     from autograder.grading.running import sandboxing
 
@@ -239,7 +246,9 @@ def grade(
 @_class_folder
 @click.option(
     "--to",
-    type=click.Choice(["canvas", "moodle", "gradescope", "csv", "xlsx"]),
+    type=click.Choice(
+        ["canvas", "moodle", "gradescope", "blackboard", "brightspace", "sakai", "ilias", "csv", "xlsx"]
+    ),
     required=True,
     help="Whose form.",
 )
@@ -261,11 +270,12 @@ def grade(
     "--absent",
     type=click.Choice(["blank", "zero"]),
     default="blank",
-    help="What is written for who has handed in nothing; nothing where not given.",
+    help="The entry for students without a submission. The default is an empty cell.",
 )
 @click.option(
-    "--output", type=click.Path(path_type=Path), help="Where to write; FOLDER/export where not given."
+    "--output", type=click.Path(path_type=Path), help="The folder to write to. The default is FOLDER/export."
 )
+@_as_json
 def export(
     folder: Path,
     to: str,
@@ -275,8 +285,9 @@ def export(
     columns: tuple[str, ...],
     absent: str,
     output: Path | None,
+    as_json: bool,
 ) -> None:
-    """Write the gradebook's points, and the feedback as a zip, in the form that an LMS takes."""
+    """Write the points and the feedback (as a zip) in the format that an LMS imports."""
     from autograder.grading.exporting.export_files import export as write_files
 
     pairs = (one.partition("=") for one in columns)
@@ -294,6 +305,13 @@ def export(
             columns=named,
             sections=sections,
         )
+    if as_json:
+        import msgspec
+
+        files = [{"path": str(file), "purpose": purpose} for file, purpose in done.files]
+        said = msgspec.json.encode({"files": files, "notices": done.notices})
+        click.echo(printable_json(said.decode()))
+        return
     for file, purpose in done.files:
         click.echo(f"{printable(str(file))}\n    {printable(purpose)}")
     for notice in done.notices:
@@ -305,28 +323,38 @@ def export(
 @_only_sections
 @click.option("--without-names", is_flag=True, help="Call students by numbers, without links to their pages.")
 @click.option(
-    "--output", type=click.Path(path_type=Path), help="The page; FOLDER/report.html where not given."
+    "--output", type=click.Path(path_type=Path), help="The page to write. The default is FOLDER/report.html."
 )
-def report(folder: Path, sections: tuple[str, ...], without_names: bool, output: Path | None) -> None:
-    """Write one page about the class FOLDER: points, mistakes, exercises, who is where."""
+@_as_json
+def report(
+    folder: Path, sections: tuple[str, ...], without_names: bool, output: Path | None, as_json: bool
+) -> None:
+    """Write one page about the class FOLDER: points, mistakes, exercises and each student's progress."""
+    from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.report_page.page import write_report
+    from autograder.grading.reporting.report import table_json
+    from autograder.grading.table.class_table import read_table
 
+    if as_json and without_names:
+        fail("--json has the ids of students: leave out --json or --without-names.")
     with grading_errors():
-        click.echo(write_report(folder, names=not without_names, to=output, sections=sections))
+        page = write_report(folder, names=not without_names, to=output, sections=sections)
+        said = table_json(page, read_table(ClassDirectory(folder), sections)) if as_json else b""
+    click.echo(printable_json(said.decode()) if as_json else page)
 
 
 @click.command()
 @_class_folder
 @click.argument("assignment", required=False, default="")
 @click.option(
-    "--output", type=click.Path(path_type=Path), help="The page; FOLDER/similar.html where not given."
+    "--output", type=click.Path(path_type=Path), help="The page to write. The default is FOLDER/similar.html."
 )
 def similar(folder: Path, assignment: str, output: Path | None) -> None:
     """Find pairs of submissions in the class FOLDER that are closer than the task explains.
 
-    A pair is a hint, not a proof. Only ASSIGNMENT is looked at where it is named.
+    A pair is a hint, not a proof. If ASSIGNMENT is named, only that one is compared.
 
-    Exit code 0: all was compared; 2: the lines say what was not, and why.
+    Exit code 0: everything was compared; 2: the lines say what was not, and why.
     """
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.errors import clear_disk_errors
@@ -348,7 +376,7 @@ def similar(folder: Path, assignment: str, output: Path | None) -> None:
 @click.argument("before", required=False, default="")
 @click.argument("after", required=False, default="")
 def compare(folder: Path, before: str, after: str) -> None:
-    """Say who has other points after the last run of the class FOLDER than before it.
+    """Show whose points the last run of the class FOLDER has changed.
 
     BEFORE and AFTER are runs, by the times in the first line that this prints.
     """
@@ -366,16 +394,16 @@ def compare(folder: Path, before: str, after: str) -> None:
 @click.command()
 @click.argument("scheduler", required=False, metavar="[tcp://HOST:PORT]")
 @click.option(
-    "--jobs", type=click.IntRange(min=1), help="Submissions at once; as many as cores where not given."
+    "--jobs", type=click.IntRange(min=1), help="Submissions at once. The default is the number of cores."
 )
-@click.option("--name", help="What messages call this worker; host and process where not given.")
+@click.option("--name", help="The name of this worker in messages. The default is host and process.")
 @click.option(
     "--unsafe-no-sandbox",
     is_flag=True,
-    help="Also where no sandbox is possible. Submissions then run with all your rights.",
+    help="Work even if no sandbox is possible. Submissions then run with all your rights.",
 )
 def worker(scheduler: str | None, jobs: int | None, name: str | None, unsafe_no_sandbox: bool) -> None:
-    """Work for `./course grade --scheduler`, until Ctrl-C or until the scheduler ends."""
+    """Work for `grade --scheduler`, until Ctrl-C or until the scheduler ends."""
     from autograder.grading.cluster import connection
 
     with grading_errors():

@@ -1,4 +1,4 @@
-"""The commands of students: check a program, open the course, see what is reached and what is missing."""
+"""The commands of students: check a program, open the course, show progress and what is missing."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _notebooks = click.option(
     "--folder",
     type=click.Path(path_type=Path),
-    help="The folder of your notebooks, where it is not chapters.",
+    help="The folder of your notebooks. The default is chapters.",
 )
 
 
@@ -31,9 +31,12 @@ _notebooks = click.option(
 @click.argument("exercise", required=False)
 @click.argument("command", nargs=-1, type=click.UNPROCESSED)
 @click.option("--json", "as_json", is_flag=True, help="Print the verdict as one JSON object.")
-@click.option("--seed", help="Draw the random inputs from this: the same seed gives the same inputs.")
+@click.option("--seed", help="The seed of the random inputs: the same seed gives the same inputs.")
 @click.option(
-    "--box", "boxed", is_flag=True, help="Run COMMAND in a box as a class would: it sees this folder only."
+    "--box",
+    "boxed",
+    is_flag=True,
+    help="Run COMMAND in a sandbox, as a class does: it sees only this folder.",
 )
 @click.option(
     "--mcap", type=click.Path(path_type=Path), help="Write the messages that the judge saw into this file."
@@ -57,7 +60,7 @@ def check(
     """  # noqa: D301 (to click, the backspace keeps the lines below it apart)
     from autograder import course, exercises
 
-    if not boxed:  # the folder of a program in a box is a student's
+    if not boxed:  # the folder of a program in a sandbox belongs to a student
         course.use_the_one_around(Path.cwd())
     if exercise is None:
         list_exercises()
@@ -81,7 +84,7 @@ def check(
             verdict, evidence = check_and_keep(exercise, command, seed=seed, box=box)
     except CommandNotFound as error:
         fail(str(error))
-    if not boxed:  # what somebody else wrote is no progress of the user's
+    if not boxed:  # another person's program is not the user's progress
         from autograder.student import journal
 
         journal.note_check(verdict)
@@ -103,7 +106,7 @@ def _box(command: Sequence[str]) -> Iterator[OneCommandBox]:
 
     why = why_impossible()
     if why:
-        fail(f"no box is possible here: {why}")
+        fail(f"no sandbox is possible here: {why}")
     with HeldFolder("autograder-box-") as scratch:
         try:
             box = OneCommandBox(scratch.path, Path.cwd(), command)
@@ -114,7 +117,7 @@ def _box(command: Sequence[str]) -> Iterator[OneCommandBox]:
 
 
 def list_exercises() -> None:
-    """One line for each exercise: id, points, what is asked for."""
+    """Print one line for each exercise: id, points and task."""
     from autograder import exercises
 
     for exercise_id in exercises.all_ids():
@@ -160,7 +163,7 @@ def lab(folder: Path | None, arguments: tuple[str, ...]) -> None:
 @click.option("--json", "as_json", is_flag=True, help="Print it as one JSON object.")
 @_notebooks
 def progress(as_json: bool, folder: Path | None) -> None:
-    """Say which points you have reached, and where to go on. It is no grade."""
+    """Show which points you have reached, and where to go on. This is not a grade."""
     from autograder import course, exercises
     from autograder.student import journal
     from autograder.student.course_page import standing_json, standing_text
@@ -179,7 +182,7 @@ def progress(as_json: bool, folder: Path | None) -> None:
 @click.argument("notebook")
 @_notebooks
 def reset(notebook: str, folder: Path | None) -> None:
-    """Begin NOTEBOOK anew, such as lab_1_2: the released one is put back, and yours is kept as a copy beside it."""
+    """Reset NOTEBOOK, such as lab_1_2: restore the released one, and keep a copy of yours next to it."""
     from autograder import course
     from autograder.student import resetting
 
@@ -195,7 +198,7 @@ def reset(notebook: str, folder: Path | None) -> None:
 
 
 def _notebooks_and_journal(root: Path, folder: Path | None) -> tuple[Path, Path | None]:
-    """The folder of the notebooks, and its journal."""
+    """Return the folder of the notebooks, and its journal."""
     from autograder import course
     from autograder.student import journal
     from autograder.student.lab import NOTEBOOKS_VARIABLE
@@ -209,7 +212,7 @@ def _notebooks_and_journal(root: Path, folder: Path | None) -> tuple[Path, Path 
 @click.command()
 @click.option("--json", "as_json", is_flag=True, help="Print the findings as JSON.")
 def doctor(as_json: bool) -> None:
-    """Say what is there, what is missing and how to get it."""
+    """Show what is installed, what is missing and how to get it."""
     from environment import doctor as probes
 
     sys.exit(probes.main(["--json"] if as_json else []))

@@ -13,6 +13,7 @@ from autograder.grading.errors import GradingError, clear_disk_errors, clear_pla
 from autograder.judge.verdicts import reference
 from autograder.judge.verdicts.keeping import NoEvidence, unpack
 from autograder.regular_files import write_whole
+from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -40,7 +41,7 @@ def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = N
     try:
         task = exercises.get(exercise_id).task
     except (exercises.UnknownExercise, exercises.BrokenExercise) as error:
-        raise GradingError(f"{error} `./course check` lists the exercises.") from error
+        raise GradingError(f"{error} `{COMMAND} check` lists the exercises.") from error
     with clear_disk_errors(directory.path), ClassStore(directory) as store:
         content = dump(_appeal(directory, store, student, exercise_id, task))
         to = (to or directory.path / FOLDER / f"{student}-{exercise_id}.json").absolute()

@@ -23,7 +23,7 @@ from autograder.grading.classes.class_directory import ClassDirectory, Refused, 
 from autograder.grading.classes.configuration import check_configuration, limits_of
 from autograder.grading.classes.origins import news
 from autograder.grading.classes.timestamps import handed_in_at
-from autograder.grading.collecting.tidying import Tidied, tidy
+from autograder.grading.collecting.beside_its_place import beside_their_place, put_right
 from autograder.grading.entering.gradebook_reading import (
     SubmissionEntry,
     gradebook_file,
@@ -44,6 +44,7 @@ from autograder.grading.table.roster import enter_roster, read_roster
 from autograder.grading.table.true_rows import true_rows
 from autograder.grading.table.what_counts import read_what_counts
 from autograder.grading.work import AskedFor, Work, find_work, without_grade, would_change
+from environment.installation import COMMAND
 
 # Modules that only grading needs are imported inside functions: importing nbgrader takes a second.
 
@@ -183,16 +184,16 @@ class _Batch:
         asked = {name: found for name, found in self._cells.items() if not assignments or name in assignments}
         if asked or not assignments:
             check_release(self._directory, asked)
-        tidied = Tidied()
         if not self._dry_run:
             enter_roster(self._directory)
-            tidied = tidy(self._directory)
-        self._notices += tidied.notices
+            self._notices += put_right(self._directory)
+        beside, notices = beside_their_place(self._directory)
+        self._notices += notices
         for text in news(self._directory, self._store, assignments or self._cells):
             self._notices.append(text)
             plain_line(self._console, f"note: {text}")
         found = find_work(
-            self._directory, self._asked, self._released, self._roster, self._fingerprints, tidied.refused
+            self._directory, self._asked, self._released, self._roster, self._fingerprints, beside
         )
         self._works, self._others, self._refused = found.works, found.others, found.refused
         self._notices += found.notices
@@ -212,8 +213,8 @@ class _Batch:
         )
         if older:
             self._notices.append(
-                f"{older} submissions had been graded with another version of the course; `./course compare` says "
-                "whose points have changed since; `./course grade --dry-run` lists them before a run"
+                f"{older} submissions had been graded with another version of the course; `{COMMAND} compare` says "
+                f"whose points have changed since; `{COMMAND} grade --dry-run` lists them before a run"
             )
         if again:
             self._store.forget_results(work.submission for work in self._works)

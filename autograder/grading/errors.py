@@ -7,7 +7,7 @@ import errno
 import shlex
 from typing import TYPE_CHECKING
 
-from autograder import course
+from environment.installation import COMMAND, IS_CLONE, ROOT, installing
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 
 def course_command(*words: object, inside: Path | None = None) -> str:
-    """A command of ``./course`` as messages print it: a shell takes each word, a path with blanks too, as one.
+    """Return a command as messages print it: a shell takes each word, a path with blanks too, as one.
 
     Args:
-        words: The words behind ``./course``.
+        words: The words behind ``./course``, or behind ``autograder`` where the wheel is installed.
         inside: The folder in which it has to be typed, as nbgrader's own commands ask for; any where not given.
     """
-    program = course.root() / "course" if inside else "./course"
+    program = ROOT / COMMAND if inside and IS_CLONE else COMMAND
     command = shlex.join(map(str, (program, *words)))
     return f"{shlex.join(['cd', str(inside)])} && {command}" if inside else command
 
@@ -49,7 +49,7 @@ class NotAClass(GradingError):
     def __init__(self, path: Path, missing: str) -> None:
         super().__init__(
             f"{path} is not a class directory: {missing}. "
-            f"Name the folder that `./course new-class` made, or make one: {course_command('new-class', path)}"
+            f"Name the folder that `{COMMAND} new-class` made, or make one: {course_command('new-class', path)}"
         )
 
 
@@ -179,7 +179,7 @@ def clear_disk_errors(path: Path) -> Iterator[None]:
         if isinstance(error, ModuleNotFoundError) and str(error.name).startswith("psycopg"):
             raise GradingError(
                 f"The gradebook of {path} is in PostgreSQL, and there is nothing here to speak with it. "
-                "Type: ./course setup --with postgresql"
+                f"Type: {installing('postgresql', clone='--with postgresql')}"
             ) from error
         said = said_by_database(error)
         if said:

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import Refused
 from autograder.grading.classes.timestamps import handed_in_at, is_not_believed
-from autograder.grading.collecting.outcomes import WaitingList
+from autograder.grading.collecting.table import NAME, Table
 from autograder.grading.entering.gradebook_reading import CellEntry, SubmissionEntry, read_due_dates
-from autograder.grading.errors import MasterUnusable, check_known
+from autograder.grading.errors import MasterUnusable, check_known, course_command
 from autograder.grading.reporting.rows import LATE, Row
 from autograder.grading.table.point_differences import Difference
+from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -118,7 +119,7 @@ def find_work(
     released: Released,
     roster: Roster,
     fingerprints: Fingerprints,
-    untidy: Iterable[Refused],
+    beside: Iterable[Refused],
 ) -> FoundWork:
     """Find what was handed in, and what of it was asked for.
 
@@ -128,7 +129,7 @@ def find_work(
         released: The cells with points of the class.
         roster: The students of the class.
         fingerprints: Those of the class as it is now.
-        untidy: Files beside their place that were not moved there.
+        beside: Files in ``submitted`` that are not at their place.
 
     Raises:
         MasterUnusable: An assignment that was asked for by name cannot be graded.
@@ -136,7 +137,7 @@ def find_work(
     """
     submissions, refused = directory.submissions()
     found = FoundWork([], [], refused, [])
-    found.refused.extend([*untidy, *_unusable(directory, asked, released), *_unplaced(directory, asked)])
+    found.refused.extend([*beside, *_unusable(directory, asked, released), *_unplaced(directory, asked)])
     submissions = [one for one in submissions if one.assignment in released.cells]
     check_known(asked.assignments, directory.assignments(), "assignment")
     there = {submission.student for submission in submissions}
@@ -149,8 +150,9 @@ def find_work(
         if is_not_believed(submission.folder):
             found.notices.append(
                 f"{submission.student}/{submission.assignment}: its timestamp.txt was not written by "
-                "`./course collect`, as the others of this class were, and is not believed: say when it was handed "
-                "in with ./course collect --times FILE"
+                f"`{COMMAND} collect`, as the others of this class were, and is not believed: type "
+                f"{course_command('collect', directory.path)}, write the time under handed_in in the line of this "
+                f"work in {NAME}, and type it again"
             )
         (found.works if asked.has(*work.key) else found.others).append(work)
     return found
@@ -171,10 +173,13 @@ def _unusable(directory: ClassDirectory, asked: AskedFor, released: Released) ->
 
 def _unplaced(directory: ClassDirectory, asked: AskedFor) -> Iterator[Refused]:
     """Collected files without a place, named to the instructor until they have one."""
-    for one in WaitingList(directory).read():
+    table = Table(directory)
+    for one in table.waiting():
         if asked.has(one.student, one.assignment) or not (one.student and one.assignment):
-            student = f"{one.student}: " if one.student else ""
-            yield Refused(Path(one.label), f"not placed: {student}{one.reason}")
+            yield Refused(Path(one.label), f"not placed: {one.sentence}")
+    if table.is_edited:
+        path = directory.path
+        yield Refused(path / NAME, f"it was edited since: type {course_command('collect', path)}")
 
 
 def would_change(

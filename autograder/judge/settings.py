@@ -1,8 +1,8 @@
-"""The environment that a judge's or a subject's process needs before ROS is imported.
+"""Set the environment that a judge's or a subject's process needs before it imports ROS.
 
-Measured on Fast DDS of Jazzy: a participant announces itself every 3 s, so one that is older than about a second often
-meets a new process only seconds later. The profile beside this file lets the judge's participants announce themselves
-every 100 ms; no subject needs it.
+Measured on Jazzy's Fast DDS: a participant announces itself every 3 s, so one that is older than about a second often
+discovers a new process only seconds later. With the profile next to this file, the judge's participants announce
+themselves every 100 ms. Subjects do not need it.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ OF_THE_JUDGE = {
 
 
 def ros_environment() -> dict[str, str]:
-    """Variables that both sides of a check share: loopback only, plain logs, messages over UDP.
+    """Return the variables that judge and subject share: loopback only, plain logs, messages over UDP.
 
-    Messages do not go through shared memory, which two boxes do not have in common. With discovery on this machine
-    only, rmw_fastrtps makes segments of it all the same (:mod:`autograder.judge.serving.domain`).
+    Messages do not use shared memory, because two sandboxes do not share it. If discovery is limited to this
+    machine, rmw_fastrtps creates shared memory all the same (:mod:`autograder.judge.serving.domain`).
     """
     return {
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
@@ -40,20 +40,20 @@ def ros_environment() -> dict[str, str]:
 
 
 def boxed_ros_environment() -> dict[str, str]:
-    """The variables for two sides in boxes that share a network of their own, and nothing else.
+    """Return the variables for judge and subject in sandboxes that share only a network.
 
-    The discovery range must not be restricted there: rmw_fastrtps then sets up transports itself, shared memory among
-    them, whatever ``FASTDDS_BUILTIN_TRANSPORTS`` says (participant.cpp). The two would discover each other and
-    exchange nothing. Nobody else is on such a network.
+    The discovery range must not be limited there. Otherwise rmw_fastrtps chooses transports itself, shared memory among
+    them, whatever ``FASTDDS_BUILTIN_TRANSPORTS`` says (participant.cpp): the two would discover each other and
+    exchange no message. No other program is on such a network.
     """
     return {**ros_environment(), "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
 
 
 def prepare_judge(*, boxed: bool = False) -> None:
-    """Set this process up as a judge. Must run before rclpy is imported.
+    """Set this process up as a judge; call it before rclpy is imported.
 
     Args:
-        boxed: On a network with nobody on it but its subject.
+        boxed: True if only the judge and its subject are on this network.
     """
     os.environ.update(boxed_ros_environment() if boxed else ros_environment())
     os.environ.update(OF_THE_JUDGE)
@@ -62,20 +62,20 @@ def prepare_judge(*, boxed: bool = False) -> None:
 
 
 def subject_environment(domain_id: int, *, boxed: bool = False) -> dict[str, str]:
-    """The environment of a command that is a subject: the user's own, on the check's domain."""
+    """Return the environment of a command that is a subject: the user's own, on the domain of the check."""
     environment = {name: value for name, value in os.environ.items() if name not in OF_THE_JUDGE}
     if typed := environment.pop(TYPED_PYTHONPATH, ""):
         environment["PYTHONPATH"] = os.pathsep.join(filter(None, (typed, environment.get("PYTHONPATH"))))
     environment.update(boxed_ros_environment() if boxed else ros_environment())
     environment["ROS_DOMAIN_ID"] = str(domain_id)
     environment["PYTHONUNBUFFERED"] = "1"
-    # A Python program that hangs can be asked where: it prints its stacks when it is aborted.
+    # A Python program that hangs prints its stacks when it is aborted.
     environment["PYTHONFAULTHANDLER"] = "1"
     return environment
 
 
 def provide_log_folder() -> None:
-    """Make a folder for ROS's logs, unless ``ROS_LOG_DIR`` names one; it goes when this process ends.
+    """Create a folder for ROS logs, unless ``ROS_LOG_DIR`` names one; it is removed when this process ends.
 
     Without a folder rclpy fails to start, with "Failed opening file" from rcl_logging_spdlog.
     """
@@ -85,5 +85,5 @@ def provide_log_folder() -> None:
 
         @atexit.register
         def remove() -> None:
-            if os.getpid() == owner:  # and not in a fork, which ends as well
+            if os.getpid() == owner:  # a fork that exits must not remove it
                 folder.remove()

@@ -13,6 +13,7 @@ from autograder.kit.crashes import CRASHES, OTHER_CRASHES, traceback_of
 from autograder.kit.giving_up import ended_at_once
 from autograder.kit.hangs import something_spins
 from autograder.kit.model import Advice, Mistake, mistake
+from autograder.kit.texts_said import said_first_after
 from autograder.kit.workspace_report import report_of
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
 
 __all__ = [
+    "AWAITS_IN_VAIN",
     "CRASHES",
     "NEVER_CONSTRUCTED",
     "NOTHING_THERE",
@@ -33,7 +35,6 @@ __all__ = [
     "everything_twice",
     "message_type",
     "never_spun",
-    "one_is_missing",
     "only_if_ended",
     "qos_mismatch",
     "servers",
@@ -49,14 +50,6 @@ _WORD = {
     "service": ("serves", "service"),
     "action_client": ("asks for the action", "action"),
     "action_server": ("serves the action", "action"),
-}
-_MADE_BY = {
-    "publisher": "create_publisher",
-    "subscription": "create_subscription",
-    "client": "create_client",
-    "service": "create_service",
-    "action_client": "ActionClient",
-    "action_server": "ActionServer",
 }
 _KEY = {"topic": "topic_name", "service": "service_name", "action": "action_name"}
 STEP_MISSING = (
@@ -107,25 +100,6 @@ def message_type(role: str) -> Mistake:
         )
 
     return Mistake("message_type", recognise, certain=True)
-
-
-def one_is_missing(*roles: str) -> Mistake:
-    """Some of the expected endpoints are there, and others are not."""
-
-    def recognise(evidence: Evidence) -> Advice | None:
-        made = {role: evidence.main.endpoints(role) for role in roles}
-        missing = [
-            (role, name) for role in roles for name in sorted(_wanted(evidence, role).keys() - made[role])
-        ]
-        if evidence.main.ending is not None or not missing or not any(made.values()):
-            return None
-        role, name = missing[0]
-        return Advice(
-            f"Your node has nothing that {_WORD[role][0]} {name}; the rest is there.",
-            STEP_MISSING,
-        )
-
-    return Mistake("not_written", recognise)
 
 
 def qos_mismatch(role: str) -> Mistake:
@@ -218,15 +192,44 @@ def went_deaf(role: str) -> Mistake:
         if not _silent_node(evidence, role) or not (_worked(part, role) or something_spins(part)):
             return None
         return Advice(
-            "Your node did its work once and then received nothing more: something took it away from the executor "
-            "that spun it."
-            if _worked(part, role)
-            else "Your program spins, but not this node: it was taken away from the executor, or never added to it.",
+            "Your node receives nothing any more: something took it away from its executor, it was never added to one, "
+            "or a callback that is an `async def` awaits what never comes.",
             "Spin a node in one place only. rclpy.spin_once or spin_until_future_complete, called in a callback or "
-            "beside another executor, takes the node away from that one for good.",
+            "beside another executor, takes the node away from that one for good. In a callback, await nothing that "
+            "needs another callback of the same group.",
         )
 
     return Mistake("node_taken_from_executor", recognise)
+
+
+def _awaits_in_vain(evidence: Evidence) -> bool:
+    """Return whether the subject spins, and made nothing of the last answer in a run that did not end."""
+    return any(part.ending is None and something_spins(part) and _left_an_answer(part) for part in evidence)
+
+
+def _left_an_answer(part: Part) -> bool:
+    # A client that sends a goal, and asks for nothing more, spins on without a fault as long as its node answers.
+    answers = part.of("response") + (part.of("goal_answered") if part.of("unanswered") else [])
+    if not answers:
+        return False
+    last = max(answers, key=part.events.index)
+    later = part.events[part.events.index(last) :]
+    acts = {"request", "goal", "cancel", "result_request", "message"}
+    return not said_first_after(last, part) and acts.isdisjoint(event.kind for event in later)
+
+
+AWAITS_IN_VAIN = mistake(
+    "await_in_same_group",
+    _awaits_in_vain,
+    "An answer came, and your node spins, but the code that waits for the answer never goes on: it waits for "
+    "rclpy.spin(...), which does not come back, or it awaits inside a callback of the same callback group that the "
+    "answer needs.",
+    "Outside of callbacks, write rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0) in place of "
+    "rclpy.spin(your_node): it comes back with the answer. In a callback, give the client a callback group of its own "
+    "(ReentrantCallbackGroup or another MutuallyExclusive one), or go on in a function that you give to the "
+    "add_done_callback(...) of the future.",
+)
+"""To be asked after the hangs, and before anything is said of a node that is not spun."""
 
 
 def _silent_node(evidence: Evidence, role: str) -> bool:
@@ -354,30 +357,21 @@ def only_if_ended(mistake: Mistake) -> Mistake:
 
 
 def _not_written(evidence: Evidence) -> Advice | None:
+    """Its code runs, and an end that is asked for is not there: none at all, the other one, or one of several."""
     part = evidence.main
     if part.ending is not None and part.ending.name == "exited" and part.had_node:
         return None  # a program may be gone before the graph tells of its endpoints
     nodes = any(survey.data.get("nodes") for survey in part.of("interface"))
     returned_silently = part.returned is not None and not part.said()
-    if not (nodes or returned_silently) or any(part.endpoints(role) for role in _WORD):
+    wanted = evidence.reference.interface
+    missing = [
+        f"{verb} {name}"
+        for role, (verb, _) in _WORD.items()
+        for name in sorted(wanted.get(role, {}).keys() - part.endpoints(role))
+    ]
+    if not (nodes or returned_silently) or not missing:
         return None
-    return Advice(
-        "Your code runs, but it has no publisher, subscription, client or server yet.",
-        STEP_MISSING,
-    )
-
-
-def _other_end(evidence: Evidence) -> Advice | None:
-    """It has none of the ends that are asked for, and has another one: it publishes where it should subscribe."""
-    wanted = sorted((role, name) for role in _WORD for name in evidence.reference.interface.get(role, {}))
-    made = sorted((role, name) for role in _WORD for part in evidence for name in part.endpoints(role))
-    if not wanted or not made or {role for role, _ in wanted} & {role for role, _ in made}:
-        return None
-    (asked, name), (role, other) = wanted[0], made[0]
-    return Advice(
-        f"Your node {_WORD[role][0]} {other}, and nothing of it {_WORD[asked][0]} {name}, as the task asks.",
-        f"Use {_MADE_BY[asked]} in place of {_MADE_BY[role]}; the lab's text says what stands between its parentheses.",
-    )
+    return Advice(f"Your code runs, but nothing of it {missing[0]} yet.", STEP_MISSING)
 
 
 def _returned_silently(evidence: Evidence) -> Advice | None:
@@ -399,7 +393,7 @@ def _returned_silently(evidence: Evidence) -> Advice | None:
 
 def _returned_at_once(evidence: Evidence) -> Advice | None:
     """The same, and it waited for nobody either, although it was told how long it may: the rest is not there at all."""
-    asked = any(part.of(kind) for part in evidence for kind in ("called", "spared", "willing"))
+    asked = any(part.of("called") or part.of("looked") for part in evidence)
     return None if asked or not all(map(ended_at_once, evidence)) else _returned_silently(evidence)
 
 
@@ -463,7 +457,6 @@ NOTHING_THERE = (
         for found in (_surely_without_node, _without_node)
     ),
     Mistake("not_written", _not_written),
-    Mistake("not_written", _other_end),
     Mistake("ended_too_early", ended_too_early),
 )
 """The mistakes that are asked about last, when nothing more exact fits."""

@@ -12,9 +12,7 @@ from autograder.kit.evidence import is_cut_off
 from autograder.kit.known_crashes import KNOWN, NOT_SPUN_WHILE_CALLING
 from autograder.kit.model import Advice, Mistake
 from autograder.kit.python_errors import meaning
-from autograder.kit.python_names import MARKS
-from autograder.kit.quoted_names import Name, is_a_library, names, own_line
-from autograder.kit.workspace_report import report_of
+from autograder.kit.quoted_names import MARKS, Name, is_a_library, names, own_line
 
 if TYPE_CHECKING:
     from autograder.code_of_elsewhere import Elsewhere
@@ -181,7 +179,7 @@ _NO_PACKAGE = re2.compile(r"^Package (?:'(?P<name>[^']*)' )?not found")
 
 
 def _package_not_found(evidence: Evidence) -> Advice | None:
-    """`ros2 run` says that it knows no such package, and ends: nothing of the student's has run."""
+    """`ros2` says that it knows no such package, and ends: nothing of the student's has run."""
     said = [line for part in evidence if part.ending and not part.had_node for line in part.said()]
     found = next(filter(None, map(_NO_PACKAGE.search, said)), None)
     if found is None:
@@ -194,31 +192,6 @@ def _package_not_found(evidence: Evidence) -> Advice | None:
     )
 
 
-_MISSING_PART = re2.compile(
-    r"ModuleNotFoundError: No module named '(?P<package>\w+)\.(?P<folder>\w+)(?:\.\w+)*'"
-)
-
-
-def _not_installed(evidence: Evidence) -> Advice | None:
-    """A folder of a package's modules that its setup.py does not install: it is in the sources, and nowhere else."""
-    traceback, report = traceback_of(evidence), report_of(evidence.main)
-    found = _MISSING_PART.search(traceback)
-    if found is None or report is None:
-        return None
-    folder = f"{found['package']}/{found['folder']}/"
-    files = (
-        file for package in report.packages if package.name == found["package"] for file in package.modules
-    )
-    if not any(file.startswith(folder) for file in files):
-        return None
-    return Advice(
-        f"The folder {folder} is in your package, but setup.py does not install it.",
-        "In setup.py write packages=find_packages(exclude=['test']), and import it: from setuptools import "
-        "find_packages, setup. It takes each folder that has an __init__.py in it. Then check again: the judge builds.",
-        traceback,
-    )
-
-
 def _only_slips(mistake: Mistake) -> Mistake:
     def recognise(evidence: Evidence) -> Advice | None:
         return None if meant(traceback_of(evidence)) else mistake.recognise(evidence)
@@ -228,7 +201,6 @@ def _only_slips(mistake: Mistake) -> Mistake:
 
 CRASHES: tuple[Mistake, ...] = (
     Mistake("call_never_spun", _answer_not_taken),
-    Mistake("module_not_found", _not_installed, certain=True),
     *map(_recogniser, code_of_elsewhere.ROWS),
     *map(_recogniser, KNOWN),
     Mistake(code_of_elsewhere.KEY, _never_awaited, certain=True),

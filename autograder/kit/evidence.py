@@ -9,6 +9,8 @@ from typing import Any
 
 import re2
 
+from environment.installation import COMMAND
+
 
 @dataclass(frozen=True)
 class Event:
@@ -68,6 +70,11 @@ class Part:
             found |= survey.data.get(role, {})
         return found
 
+    def real_name(self, name: str) -> str:
+        """Return the subject's name for what the task calls ``name``: another one if the subject misnamed it."""
+        event = self.first("misnamed", name)
+        return name if event is None else str(event.data["real"])
+
     @property
     def had_node(self) -> bool:
         """True if a node of the subject's was there, for however short a time."""
@@ -96,13 +103,24 @@ class Part:
         # Stream by stream, and program by program below a launch: lines of one may come between those of another.
         streams: dict[str, list[str]] = {}
         for event in self.of("output"):
-            program, line = _LAUNCHED.fullmatch(event.data["text"]).groups()
-            streams.setdefault(f"{event.name} {program}", []).append(line)
+            stream, line = _stream_and_line(event)
+            streams.setdefault(stream, []).append(line)
         return next(filter(None, (_traceback_in(streams[name]) for name in sorted(streams))), "")
 
 
 _LAUNCHED = re2.compile(r"(?s)(\[[\w.]+-\d+\] )?(.*)")
 """A line of output, behind what a launch puts before the lines of its programs, such as ``[talker-1]``."""
+
+
+def _stream_and_line(event: Event) -> tuple[str, str]:
+    """The stream of an output line, with the program below a launch that wrote it, and the line without its prefix."""
+    text = str(event.data["text"])
+    if not text.startswith("["):
+        return event.name, text
+    program, line = _LAUNCHED.fullmatch(text).groups()
+    return f"{event.name} {program}" if program else event.name, line
+
+
 _ENDINGS = ("exited", "returned", "raised")
 _OF_A_NOTEBOOK = ("started", "constructed", "never_constructed", "returned", "raised")
 INTERRUPTED = "Ctrl-C"
@@ -138,11 +156,11 @@ def without_tracebacks(events: Sequence[Event]) -> Iterator[tuple[int, Event]]:
     inside: dict[str, bool] = {}
     for place, event in enumerate(events):
         if event.kind == "output":
-            line = str(event.data["text"])
+            stream, line = _stream_and_line(event)
             if line.startswith(_OF_A_TRACEBACK) or (line[:1].isspace() and _FRAME.match(line)):
                 continue
-            if inside.get(event.name) or line.startswith(_TRACEBACK):
-                inside[event.name] = line.startswith(("Traceback", " ", "\t")) or not line
+            if inside.get(stream) or line.startswith(_TRACEBACK):
+                inside[stream] = line.startswith(("Traceback", " ", "\t")) or not line
                 continue
         yield place, event
 
@@ -291,7 +309,9 @@ class Reference:
         for part in self.parts:
             if part.name == name:
                 return part
-        raise KeyError(f"the reference output of {self.exercise} has no part {name!r}: run `./course record`")
+        raise KeyError(
+            f"the reference output of {self.exercise} has no part {name!r}: run `{COMMAND} record`"
+        )
 
     def only(self, role: str) -> tuple[str, str]:
         """The name and type of the one endpoint of a role.

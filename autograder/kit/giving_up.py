@@ -1,28 +1,25 @@
 """Clients whose server is late or does not come: how long they wait, what they say meanwhile, and how they give up.
 
-One rule holds for every client of the course. A client that ends and says why has given up well; a bare number, an
-error that nobody meant, or words that it also says where the server is there are no such report. A client that says
-again and again that it waits may go on, with a remark on the card about limits. A client that is silent, or says
-something once and is silent then, does neither. A function that is told how long to wait, by a parameter
-``patience_sec``, keeps that time.
+One rule holds for every client of the course. A client that ends and reports :data:`NOT_AVAILABLE` has given up well.
+A client that says again and again that it waits may go on, with a remark on the card about limits. A function that is
+told how long to wait, by a parameter ``patience_sec``, keeps that time.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from decimal import Decimal
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.crashes import last_line_of, meant, on_purpose
-from autograder.kit.model import mistake
+from autograder.kit.model import Advice, Pace, mistake
+from autograder.kit.outcomes import Outcome, all_lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from autograder.kit.evidence import Evidence, Part
-    from autograder.kit.model import Bench, Finding, Mistake
+    from autograder.kit.model import Bench, Mistake
 
 PATIENCE = "patience_sec"
 """The parameter by which a notebook's function is told how long to wait; also its name among a part's inputs."""
@@ -33,6 +30,10 @@ LATENESS = 1.5
 PATIENCES = (6.5, 6.95)
 """Between which the seconds are drawn that a function is told to wait. No usual constant, such as 5 or 10, is taken for
 one of these: it may differ from its patience by what is below."""
+PATIENCES_WITHOUT_A_SERVER = {Pace.FAST: (0.33, 0.37), Pace.REAL_TIME: PATIENCES}
+"""The same for a run without a server, in which all of the patience is waited. No constant that is long enough for a
+late server is taken for the short one. A function that needs longer, as one that waits in whole seconds may, is told
+the long one in a second look."""
 TOO_LONG = 2.0
 """Seconds that a function may need on top of its patience: to make its node, to take it away, to be slow."""
 SLACK = 3.0
@@ -41,19 +42,16 @@ TOO_SHORT = 0.5
 """The share of its patience that a function must at least wait."""
 PART_OF_A_WAIT = 1.0
 """Seconds that a function may leave out at the end of a longer patience: it may wait in whole seconds."""
-SILENT = "ended without saying so"
-"""The objection to a client that says nothing of what it misses."""
-_SHUT_DOWN = "rclpy.executors.ExternalShutdownException"
-_NUMBER = re2.compile(r"-?\d+(?:\.\d+)?")
-_NUMBER_OR_NONE = re2.compile(rf"{_NUMBER.pattern}|\bNone\b")
-_VALUE = re2.compile(rf"{_NUMBER_OR_NONE.pattern}|\b(?:True|False)\b")
-_SIGNS = re2.compile(r"[^\pL\pN#]+")
+NOT_AVAILABLE = Outcome("not available")
+"""What a client has to say when its service or server is missing."""
+WAITING = Outcome("not available", "waiting")
+"""What one has to say again and again that goes on waiting."""
 AGAIN_AND_AGAIN = 3
 """The number of times that a client says that it waits, to have said it again and again."""
 SAYS_SO_TO = 8.0
 """Seconds after which it must still say so: who says it every four seconds does, and who tried three times does not."""
 _CLIENTS = ("client", "action_client")
-_AT_WORK = ("log", "spared", "called", "willing")
+_AT_WORK = ("log", "called", "looked")
 """The kinds of events that show a node at work, or a function that waits, also where the graph tells of neither."""
 MOMENT = 0.5
 """Seconds: what is said within these is said once. A log line comes on two ways, and a loop may be in a hurry."""
@@ -62,22 +60,11 @@ MOMENT = 0.5
 # --- time ----------------------------------------------------------------------------------------------------
 
 
-def spared(part: Part) -> float:
-    """Seconds of waiting for a server that a notebook has left out of a run so far."""
-    return sum(float(event.data["seconds"]) for event in part.of("spared"))
-
-
-def willing(part: Part, call: int) -> float:
-    """Seconds that a subject is known to wait for the answer to one of its calls, at least; 0 where nobody tells."""
-    told = [event for event in part.of("willing") if event.data["call"] == call]
-    return max((float(event.data["seconds"]) for event in told), default=0.0)
-
-
 def waited(part: Part) -> float:
-    """Seconds from a subject's start to its end, with those that it was spared; to the last event where it goes on."""
+    """Seconds from a subject's start to its end, or to the last event if it goes on."""
     start = part.first("subject", "started")
     end = part.ending or (part.events[-1] if part.events else None)
-    return (end.t if end else 0.0) - (start.t if start else 0.0) + spared(part)
+    return (end.t if end else 0.0) - (start.t if start else 0.0)
 
 
 def patience(part: Part) -> float | None:
@@ -93,48 +80,31 @@ def drawn_patience(bench: Bench, between: tuple[float, float] = PATIENCES) -> fl
 
 
 def await_it(bench: Bench) -> None:
-    """Wait until a subject without a server has given up, or could have; what it was spared counts as waited."""
-    bench.wait_until(lambda seen: spared(seen.main) >= GIVE_UP_LIMIT, GIVE_UP_LIMIT)
+    """Wait until a subject without a server has given up, or could have."""
+    bench.await_end(GIVE_UP_LIMIT)
 
 
 # --- without a server ----------------------------------------------------------------------------------------
 
 
 def says_that_it_waits(part: Part) -> bool:
-    """True if the subject says the same, but for numbers and signs, again and again, and not only at the beginning.
+    """True if the subject says that it waits again and again, and not only at the beginning.
 
     The beginning is where its client was seen: on a busy machine a program may need seconds to come so far.
     """
     looks = (event.t for event in part.of("interface") if any(map(event.data.get, _CLIENTS)))
     late = (next(looks, 0.0) + SAYS_SO_TO) / MOMENT
-    return any(len(times) >= AGAIN_AND_AGAIN and max(times) >= late for times in _moments(part).values())
+    times = _moments(part, WAITING)
+    return len(times) >= AGAIN_AND_AGAIN and max(times) >= late
 
 
-def _moments(part: Part) -> dict[str, set[int]]:
-    """The moments at which it said each line; lines that differ in their numbers, or in signs alone, are one."""
-    moments: dict[str, set[int]] = {}
-    passed = 0.0
-    for event in part.events:
-        if event.kind == "spared":
-            passed += float(event.data["seconds"])
-        for line in filter(str.strip, replace(part, events=[event]).said()):
-            moments.setdefault(_in_letters(line), set()).add(int((event.t + passed) / MOMENT))
-    return moments
-
-
-def _in_letters(line: str) -> str:
-    """The shape of a line without its signs: a row of dots that grows, or a bar that turns, says nothing new."""
-    return _SIGNS.sub(" ", shape(line)).strip()
-
-
-def shape(line: str) -> str:
-    """A line with a place for each number or other bare value, so that it can be compared with another line."""
-    return _VALUE.sub("#", line)
-
-
-def answer_shape(line: str) -> str:
-    """The shape of a line that reports an answer: "found: False" says something else than "found: True" does."""
-    return _NUMBER_OR_NONE.sub("#", line)
+def _moments(part: Part, outcome: Outcome) -> set[int]:
+    """The moments at which it said the word of an outcome."""
+    return {
+        int(event.t / MOMENT)
+        for event in part.events
+        if any(map(outcome.is_said_in, replace(part, events=[event]).said()))
+    }
 
 
 def goes_on_waiting(part: Part) -> bool:
@@ -147,70 +117,81 @@ def waits_in_silence(part: Part) -> bool:
     return bool(part.events) and part.ending is None and not goes_on_waiting(part)
 
 
-def hides_its_end(part: Part, finding: Finding) -> str:
-    """The value that it returned as if that were the answer, or :data:`SILENT`; empty where it says what it misses.
+def served_otherwise(
+    served: Sequence[Part], absent: Part, asked: Callable[[Part], bool], looks_elsewhere: bool
+) -> list[Part]:
+    """The runs in which the subject had its server, so that what it says there is no report of a missing one.
+
+    In the first run the server comes late, so a client may say once that it is missing, unless it never asks there.
 
     Args:
-        part: The run without a server.
-        finding: The criterion on that run.
+        served: The runs with a server; in the first one the server comes late.
+        absent: The run without one.
+        asked: Whether the subject asked the server for something in a run.
+        looks_elsewhere: Whether it looks for a server of another name.
     """
-    if finding.passed:
-        return ""
-    return returned_answer(part) or (SILENT if finding.seen == SILENT else "")
+    late, *others = served
+    found = [part for part in others if asked(part)]
+    return [*found, late] if absent.events and not (asked(late) or looks_elsewhere) else found
 
 
-def objection(
-    part: Part, usual: Sequence[Part] = (), *, is_report: Callable[[str], bool] = lambda _: False
-) -> str:
+def objection(part: Part, others: Sequence[Part] = (), role: str = "") -> str:
     """The fault of a client that finds no server, in words; empty where it behaves well.
 
     Args:
         part: The run without a server.
-        usual: Runs in which it met its server at once and did its work: what it says there, too, tells of no trouble.
-        is_report: Whether a line has the words in which the subject reports an answer.
+        others: Runs in which it had its server.
+        role: The endpoint of a client that waits for its server, such as ``"client"``.
     """
     if not part.events:
         return "not reached"
     if part.ending is None:
+        if role and not part.endpoints(role):
+            return "looks for no server"
         return "" if goes_on_waiting(part) else f"still waiting after {GIVE_UP_LIMIT:g} s"
     if value := returned_answer(part):
         return f"returned {value}, as if that were the answer"
-    if not (_failed_aloud(part) or any(not is_report(line) for line in _telling(part, usual))):
-        return SILENT
-    return broken_patience(part)
+    return _unsaid(part, others) or broken_patience(part)
+
+
+def _unsaid(part: Part, others: Sequence[Part]) -> str:
+    # What is said again and again may be said once where the machine is slow to show the server.
+    times = _moments(part, NOT_AVAILABLE)
+    said_again = bool(times) and max(times) - min(times) > 1
+    return "" if said_again else NOT_AVAILABLE.missing(part, others)
+
+
+def silent_end(part: Part, others: Sequence[Part], noun: str) -> Advice | None:
+    """The diagnosis of a client that ends without a server and does not report it, or returns an answer all the same.
+
+    Args:
+        part: The run without a server.
+        others: Runs in which it had its server.
+        noun: What is missing, such as ``"service"``.
+    """
+    if part.ending is None:
+        return None
+    if value := returned_answer(part):
+        return Advice(
+            f"When the {noun} is not there, your function returns {value}: who calls it takes that for the answer.",
+            "Raise TimeoutError instead, with a message that contains the words `not available`.",
+        )
+    if not _unsaid(part, others):
+        return None
+    return NOT_AVAILABLE.advice(
+        part,
+        others,
+        f"There was no {noun}",
+        f"Before your client ends, log an error such as “{noun} not available”, or raise a TimeoutError with these "
+        "words.",
+    )
 
 
 def returned_answer(part: Part) -> str:
     """The number or text that a function returned; empty where it returned nothing that looks like an answer."""
     value = part.returned or ""
-    return value if re2.fullmatch(r"-?\d+|['\"].*\pL.*", value) else ""
-
-
-def _telling(part: Part, usual: Sequence[Part]) -> list[str]:
-    """Its lines with words that it does not say where its server is there, or says again and again."""
-    said = replace(part, events=[event for event in part.events if event.kind != "subject"]).said()
-    lines = {line for line in said if re2.search(r"\pL", _VALUE.sub("", line))}
-    if len(lines) > MOST_LINES:
-        return sorted(lines)
-    known = [words for other in usual for words in _said(other)[:MOST_LINES]]
-    again = {line for line, times in _moments(part).items() if max(times) - min(times) > 1}
-    return [
-        line
-        for line in lines
-        if _in_letters(line) in again
-        or not any(_in_words(part, line).says_the_same_as(words) for words in known)
-    ]
-
-
-def _failed_aloud(part: Part) -> bool:
-    """True if it has shown what went wrong, by an exception that somebody may have meant.
-
-    A thread that spins while the program calls ``rclpy.shutdown()`` shows a traceback at every end, also at a good one.
-    """
-    lines = part.traceback.strip().splitlines()
-    if not lines:
-        return part.ending is not None and part.ending.name == "raised"
-    return on_purpose(part.traceback) and (meant(part.traceback) or not lines[-1].startswith(_SHUT_DOWN))
+    is_answer = re2.fullmatch(r"-?\d+|['\"].*\pL.*", value) and not NOT_AVAILABLE.is_said_in(value)
+    return value if is_answer else ""
 
 
 def broken_patience(part: Part) -> str:
@@ -269,9 +250,6 @@ def remark(absent: str) -> Callable[[Evidence], str]:
 
 # --- with a server -------------------------------------------------------------------------------------------
 
-MOST_LINES = 200
-"""Different lines of a run that are compared one by one; nobody says more of a server that is not there."""
-
 
 def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool]) -> bool:
     """True if the subject ended before it had met a server that was there.
@@ -290,9 +268,9 @@ def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool])
     ended = [part for part in served if part.ending and not asked(part)]
     if served[0] in ended and any(asked(part) for part in served):
         return True
-    told = _parting_words(absent)
-    # In each of them: a sum that the subject has added up itself may happen to be one of the run's own numbers.
-    return bool(absent.ending and told and ended) and all(_same(_parting_words(part), told) for part in ended)
+    told = set(all_lines(absent))
+    alike = all(NOT_AVAILABLE.lines(part) or set(all_lines(part)) == told for part in ended)
+    return bool(absent.ending and told and ended) and alike
 
 
 def _looked_for_nobody(parts: Iterable[Part]) -> bool:
@@ -341,94 +319,10 @@ def not_forgotten(
 def _gives_up_where_served(
     served: Sequence[Part], absent: Part, role: str, asked: Callable[[Part], bool]
 ) -> str:
-    """The words with which a client ends where its server is there, and not where it is absent; empty for none.
-
-    Empty also where it gives up well without a server: what it says where there is one is then about something else.
-    """
-    if not (served and absent.events and objection(absent, served)):
+    """The line by which a client reports a missing server where its server is there, and not where it is absent."""
+    if not (served and absent.events) or NOT_AVAILABLE.lines(absent):
         return ""
     if any(asked(part) or not (part.ending and part.endpoints(role)) for part in served):
         return ""
-    usual = {line.shape for line in _parting_words(absent)}
-    told = [
-        [line for line in _last_words(part) if _in_words(part, line).shape not in usual] for part in served
-    ]
+    told = [NOT_AVAILABLE.lines(part) for part in served]
     return told[0][-1] if all(told) else ""
-
-
-def _last_words(part: Part) -> list[str]:
-    """Its lines, and the exception that it ended with where it raised that itself."""
-    raised = last_line_of(part.traceback) if meant(part.traceback) else ""
-    return list(filter(str.strip, [*part.said(), raised]))
-
-
-@dataclass(frozen=True)
-class _Words:
-    """A line that a subject said, so that it can be compared with a line of another run, which had other inputs.
-
-    Attributes:
-        shape: The line with a place for each number.
-        numbers: The numbers in these places, as they were said.
-        own: Of each number, whether it is one of the run's inputs.
-    """
-
-    shape: str
-    numbers: tuple[str, ...]
-    own: tuple[bool, ...]
-
-    def says_the_same_as(self, other: _Words) -> bool:
-        """True if the lines differ in nothing but the inputs of their runs. A number may be an input by chance."""
-        return self.shape == other.shape and all(
-            mine == theirs or (own and others)
-            for mine, theirs, own, others in zip(
-                self.numbers, other.numbers, self.own, other.own, strict=True
-            )
-        )
-
-
-def _same(words: set[_Words], others: set[_Words]) -> bool:
-    if max(len(words), len(others)) > MOST_LINES:
-        return words == others
-    return _all_within(words, others) and _all_within(others, words)
-
-
-def asks_nowhere(absent: Part, served: Part, role: str) -> bool:
-    """True if it is no client of anything, or ends with the same words whether there is a server or not.
-
-    Args:
-        absent: The run without a server.
-        served: One in which it did not ask its server either.
-        role: The client's endpoint, such as ``"client"``.
-    """
-    if not absent.endpoints(role):
-        return True
-    alike = (absent.ending is None) is (served.ending is None)
-    return alike and _same(_parting_words(absent), _parting_words(served))
-
-
-def _all_within(words: set[_Words], others: set[_Words]) -> bool:
-    return all(any(line.says_the_same_as(other) for other in others) for line in words)
-
-
-def _parting_words(part: Part) -> set[_Words]:
-    """Its lines, each once: a log line may come on two ways."""
-    last = [_in_words(part, line) for line in part.traceback.splitlines()[-1:] if line.strip()]
-    return {*_said(part), *last}
-
-
-def _said(part: Part) -> list[_Words]:
-    return [_in_words(part, line) for line in part.said() if line.strip()]
-
-
-def _in_words(part: Part, line: str) -> _Words:
-    for text in part.inputs.values():
-        if isinstance(text, str) and text:
-            line = line.replace(text, "(an input)")
-    own = {_value(number) for number in _NUMBER.findall(str(list(part.inputs.values())))}
-    numbers = _NUMBER.findall(line)
-    return _Words(_NUMBER.sub("#", line), tuple(numbers), tuple(_value(number) in own for number in numbers))
-
-
-def _value(number: str) -> Decimal:
-    """Without its sign: who says ``1-2`` may mean two numbers."""
-    return abs(Decimal(number))

@@ -5,28 +5,28 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from autograder.kit.crashes import meant, on_purpose, what_and_where
-from autograder.kit.giving_up import SILENT, gave_up, not_forgotten, patience_not_kept
+from autograder.kit.giving_up import gave_up, not_forgotten, patience_not_kept, silent_end
 from autograder.kit.goal_reports import (
     ABORTED,
-    ABOUT_A_REFUSED_GOAL,
     ABSENT,
-    CANCELED,
     LATE,
     MANY_REQUESTS,
     NO_GOAL,
     NOT_AWAITED,
+    NOT_ENDED,
     REFUSED,
+    REJECTED,
     SERVED,
+    WAS_ABORTED,
     aborted_as_seen,
+    all_but,
     asked_for,
-    called_accepted,
     given_up,
     goals_as_seen,
+    had_server,
     left_at_once,
-    miscalled,
     refused_as_seen,
     reports_result,
-    returned_instead,
     said_of_result,
     unshown_feedback,
 )
@@ -91,7 +91,7 @@ ORDER_NEVER_FILLED = mistake(
 
 def _wrong_order(evidence: Evidence) -> str:
     wrong = goals_as_seen(evidence)
-    return "" if wrong in (NOT_AWAITED, CANCELED) or wrong.startswith(NO_GOAL) else wrong
+    return "" if wrong == NOT_AWAITED or wrong.startswith(NO_GOAL) else wrong
 
 
 WRONG_ORDER = mistake(
@@ -100,26 +100,8 @@ WRONG_ORDER = mistake(
     "The judge got {}; the task asks for one goal of the given order.",
     "Send one goal, once, with the order that your function or program was given (sys.argv[1] on a command line; 0 "
     "is an order like any other). "
-    "If a timer sends the goal, switch the timer off after that, with its cancel().",
+    "If a timer sends the goal, switch the timer off after that, with its cancel(). Do not cancel the goal.",
     certain=True,
-)
-CANCELED_UNASKED = mistake(
-    "goal_canceled",
-    lambda evidence: goals_as_seen(evidence) == CANCELED,
-    "Your client asked the server to cancel its goal, on its way.",
-    "The task asks for the whole goal: leave out cancel_goal_async(), and wait for the result.",
-    certain=True,
-)
-NEVER_SPUN = mistake(
-    "never_spun",
-    lambda evidence: (
-        asked_for(evidence.part(LATE))
-        and evidence.part(LATE).of("unanswered")
-        and not evidence.part(LATE).first("result_request")
-    ),
-    "Your client sent its goal, but it receives no answer: none of its callbacks is called any more.",
-    "Spin it while it waits: rclpy.spin(your_node) or rclpy.spin_until_future_complete(your_node, your_future, "
-    "timeout_sec=5.0), in one place.",
 )
 
 
@@ -172,47 +154,29 @@ def crashed_by_refusal(evidence: Evidence) -> Advice | None:
 
 
 CRASHED_BY_REFUSAL = Mistake("refused_goal_used", crashed_by_refusal)
-GOES_ON_AFTER_REFUSAL = mistake(
-    "refused_goal_used",
-    called_accepted,
-    "The goal was rejected, and your client said “{}”: it went on as if the goal had been accepted.",
-    "Stop where `accepted` of the goal handle is False: below the line that says so, end with `return`.",
-)
 STAYS_AFTER_REFUSAL = mistake(
     "never_ended",
-    lambda evidence: refused_as_seen(evidence) == "said so, and did not end",
+    lambda evidence: refused_as_seen(evidence) == NOT_ENDED,
     "Your client says that the goal was rejected, and then waits for ever for a result that will not come.",
     "End there, too. In a notebook, raise an error or return where `accepted` of the goal handle is False. In a "
     "program, say so there, call rclpy.shutdown() and return.",
 )
 
 
-def _says_nothing_of_refusal(evidence: Evidence) -> str:
-    seen = refused_as_seen(evidence)
-    if seen.endswith(ABOUT_A_REFUSED_GOAL):
-        return f": it said {seen.removesuffix(ABOUT_A_REFUSED_GOAL)}."
-    if seen != "nothing was said of it":
-        return ""
-    return (
-        ": it still waits for what a rejected goal never sends."
-        if evidence.part(REFUSED).ending is None
-        else "."
+def _refusal_not_reported(evidence: Evidence) -> Advice | None:
+    part, others = evidence.part(REFUSED), all_but(evidence, REFUSED)
+    if not part.first("goal") or not REJECTED.missing(part, others):
+        return None
+    return REJECTED.advice(
+        part,
+        others,
+        "The goal was rejected",
+        "Look at `accepted` of the goal handle when the answer to the goal is there. Where it is False, log an error "
+        "with the word `rejected`, and stop: there is no result to wait for.",
     )
 
 
-REFUSAL_NOT_REPORTED = mistake(
-    "refusal_not_reported",
-    _says_nothing_of_refusal,
-    "The goal was rejected, and your client did not say so{}",
-    "Look at `accepted` of the goal handle when the answer to the goal is there, and log an error where it is False.",
-)
-REFUSAL_RETURNED = mistake(
-    "result_not_returned",
-    lambda evidence: not refused_as_seen(evidence) and returned_instead(evidence.part(REFUSED), []),
-    "The goal was rejected, your function said so, and then it returned {}.",
-    "Where the goal is rejected there is no sequence: `return []`, an empty list.",
-)
-
+REFUSAL_NOT_REPORTED = Mistake("refusal_not_reported", _refusal_not_reported)
 # --- what comes back ----------------------------------------------------------------------------------------------
 
 
@@ -253,44 +217,6 @@ RESULT_REPEATED = mistake(
 )
 
 
-def _feedback_for_result(evidence: Evidence) -> bool:
-    part = evidence.part(LATE)
-    feedback = part.of("feedback")
-    if part.first("result") is None or reports_result(part) or not feedback:
-        return False
-    return mentions(said_of_result(part), feedback[-1].data["fields"]["partial_sequence"][-1])
-
-
-WRONG_RESULT_REPORTED = mistake(
-    "wrong_result_reported",
-    _feedback_for_result,
-    "Your client reported the last feedback as if it were the result; the result was another sequence.",
-    "Take the sequence from what the future of get_result_async() holds: its result().result.sequence.",
-)
-
-
-def _returns_another(evidence: Evidence) -> str:
-    part = evidence.part(LATE)
-    result = part.first("result")
-    said = result is not None and reports_result(part)
-    return returned_instead(part, result.data["fields"]["sequence"]) if result and said else ""
-
-
-RESULT_NOT_RETURNED = mistake(
-    "result_not_returned",
-    _returns_another,
-    "Your function logged the sequence of the result, and returned {}.",
-    "End it with `return list(...)`, with the sequence of the result between the parentheses: whoever calls it wants "
-    "the numbers.",
-)
-STATUS_MISREPORTED = mistake(
-    "status_misreported",
-    lambda evidence: miscalled(evidence.part(LATE)),
-    "The goal succeeded (status 4), but your client said “{}”.",
-    "Look the number up in GoalStatus (from action_msgs.msg): 4 is SUCCEEDED, 5 is CANCELED, 6 is ABORTED.",
-)
-
-
 def _result_not_reported(evidence: Evidence) -> Advice | None:
     """The result came and was not said."""
     part = evidence.part(LATE)
@@ -320,21 +246,24 @@ RESULT_NOT_REPORTED = Mistake("result_not_reported", _result_not_reported)
 
 
 def _abort_not_reported(evidence: Evidence) -> Advice | None:
-    part, wrong = evidence.part(ABORTED), aborted_as_seen(evidence)
-    if part.first("result_request") is None or not wrong:
+    part, others = evidence.part(ABORTED), all_but(evidence, ABORTED)
+    if part.first("result_request") is None or not aborted_as_seen(evidence):
         return None
-    return not_filled_in(said_of_result(part)) or Advice(
-        f"The goal was aborted (status 6), and your client does not say so: {wrong}.",
-        "Look at the status that comes with the result: say its name, ABORTED, or compare it with "
-        "GoalStatus.STATUS_SUCCEEDED (from action_msgs.msg).",
+    return not_filled_in(said_of_result(part)) or WAS_ABORTED.advice(
+        part,
+        others,
+        "The goal was aborted (status 6)",
+        "Look at the status that comes with the result: log its name, or its number behind the word `status`.",
     )
 
 
 ABORT_NOT_REPORTED = Mistake("abort_not_reported", _abort_not_reported)
-SILENT_END = mistake(
+SILENT_END = Mistake(
     "silent_end",
-    lambda evidence: given_up(evidence) == SILENT and asked_for(evidence.part(LATE)),
-    "When there is no action server, your client ends and does not say so.",
-    "Log an error that says so (or raise TimeoutError) before you return.",
+    lambda evidence: (
+        silent_end(evidence.part(ABSENT), had_server(evidence), "server")
+        if asked_for(evidence.part(LATE)) and given_up(evidence)
+        else None
+    ),
 )
 PATIENCE_NOT_KEPT = patience_not_kept(ABSENT)

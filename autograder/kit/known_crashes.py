@@ -5,11 +5,27 @@ The patterns are what rclpy 7.1 and Python say; each was reproduced. The order m
 
 from __future__ import annotations
 
-from autograder.kit.field_crashes import FIELDS, Crash
-from autograder.kit.python_names import MARKS
+from dataclasses import dataclass
+
+from autograder.kit.quoted_names import MARKS
 from autograder.verdict import ASKS_FOR_INPUT
 
-__all__ = ["KNOWN", "NOT_SPUN_WHILE_CALLING", "Crash"]
+
+@dataclass(frozen=True)
+class Crash:
+    """A known traceback.
+
+    Attributes:
+        key: The mistake's name.
+        pattern: Found in the traceback (multi-line search); its groups may be named in ``text``.
+        text: What happened and why.
+        next_step: What to do now.
+    """
+
+    key: str
+    pattern: str
+    text: str
+    next_step: str
 
 
 NOT_SPUN_WHILE_CALLING = (
@@ -23,8 +39,9 @@ _CALLED_BY_RCLPY = (
     r"(?:\A|rclpy/(?:executors|task|event_handler|action/client|action/server)\.py\".*\n(?: .*\n){1,2})"
 )
 """Before what is raised where rclpy calls a callback; a notebook's traceback leaves rclpy's own lines out."""
-
-_WITHOUT_NAME = r"TypeError: Node\.__init__\(\) missing 1 required positional argument: 'node_name'"
+_UNKNOWN_KEYWORD = r"Invalid arguments passed to constructor: '?(?P<keyword>\w+(?:, \w+)*)"
+_CALLED = r"\n(?: .*\n)*"
+"""From a line of code to what Python says of it: a program's traceback has the lines of the message's own module."""
 
 KNOWN = (
     Crash(
@@ -48,12 +65,6 @@ KNOWN = (
     ),
     Crash(
         "not_initialized",
-        r"load_entry_point.*\n(?:[ ~^]*\n)? +File .*, in __init__\n(?:.*\n)*.*NotInitializedException",
-        "The entry point names the class of your node, so nothing has called rclpy.init().",
-        "In setup.py, let the entry point end in :main. This function starts ROS, makes the node and spins it.",
-    ),
-    Crash(
-        "not_initialized",
         r"NotInitializedException|rclpy\.init has not been called|context (?:must be initialized|is not valid)"
         # An executor that was made before: spinning makes one.
         r"|guard_condition\.py\".*\n.*self\._context\.handle",
@@ -63,37 +74,13 @@ KNOWN = (
     ),
     Crash(
         "super_init_missing",
-        rf"\bsuper\.__init__\(.*{MARKS}TypeError: descriptor '__init__'",
-        "The parentheses after super are missing.",
-        "Write super().__init__('your_node_name'): one pair of parentheses after super, and one with the name.",
-    ),
-    Crash(
-        "super_init_missing",
         r"no attribute '_(?:Node__\w+|default_callback_group|parameters|parameter_overrides|context|logger|handle)'"
         r"|rclpy/node\.py\".*\n(?: .*\n){1,2}AttributeError: '\w+' object has no attribute '_"
-        r"|descriptor '__init__' (?:requires|of) .*'super'",
-        "The class uses the Node before the Node was set up: super().__init__('a_name') is missing or comes too late.",
-        "Make super().__init__('your_node_name') the first line of __init__.",
-    ),
-    Crash(
-        "super_init_missing",
-        rf"__init__\(.*{MARKS}{_WITHOUT_NAME}",
-        "The node has no name: __init__ of Node is called without one.",
-        "Write the name between the parentheses: super().__init__('your_node_name').",
-    ),
-    Crash(
-        "crashed",
-        rf"\bNode\(.*{MARKS}{_WITHOUT_NAME}",
-        "The node has no name: Node is called without one.",
-        "Write the name between its parentheses: Node('your_node_name'). In the class of a node, "
-        "super().__init__('your_node_name') makes the node, and no other is needed.",
-    ),
-    Crash(
-        "super_init_missing",
-        _WITHOUT_NAME,
-        "The node has no name: its class has no method __init__ that gives it one.",
-        "Write def __init__(self): in the class, indented by four spaces, with two underscores on each side of init. "
-        "Its first line is super().__init__('your_node_name').",
+        r"|TypeError: descriptor '__init__' |TypeError: Node\.__init__\(\) missing .*'node_name'",
+        "The class uses the Node before the Node was set up: super().__init__('a_name') is missing, has no name, or "
+        "comes too late.",
+        "Write def __init__(self): in the class, with two underscores on each side, and make "
+        "super().__init__('your_node_name') its first line.",
     ),
     Crash(
         "handle_overwritten",
@@ -110,16 +97,11 @@ KNOWN = (
         "Give your attribute another name, for example my_{name} or {name}_.",
     ),
     Crash(
-        "field_type",
-        r"^ +.*[,=] *(?P<depth>[\"']\d+[\"'])\).*\n(?:.*\n)*.*Expected QoSProfile or int",
-        "The depth, how many messages wait in the queue, is a number, and {depth} is a string.",
-        "Write it without quotation marks, as in create_publisher(Type, 'topic', 10).",
-    ),
-    Crash(
         "qos_arguments_swapped",
         r"Expected QoSProfile or int",
-        "The arguments of create_publisher or create_subscription are in the wrong order.",
-        "The order is create_publisher(Type, 'topic', 10) and create_subscription(Type, 'topic', callback, 10).",
+        "Where the depth belongs, a number such as 10, rclpy got something else: a string, or another argument.",
+        "Write create_publisher(Type, 'topic', 10) or create_subscription(Type, 'topic', callback, 10), in this order, "
+        "the 10 without quotation marks.",
     ),
     Crash(
         "qos_depth_missing",
@@ -130,45 +112,24 @@ KNOWN = (
     ),
     Crash(
         "builtin_callback",
-        r"(?:create_subscription\([^,\n]*,[^,\n]*, *(?:callback *= *)?(?P<called>[\w.]+)(?:.*\n)+)?"
-        r".*no signature found for builtin",
+        r"no signature found for builtin",
         "A builtin such as list.append or deque.append was given as a callback; rclpy cannot look at its arguments.",
-        "Wrap it: lambda message: {called:your_list.append}(message).",
-    ),
-    Crash(
-        "callback_signature",
-        r"TypeError: (?:[\w.<>]+\.)?(?P<class>\w+)\.(?P<method>\w+)\(\) takes 0 positional arguments but \d+ w",
-        "The method {method} of {class} has no parameter self, but Python hands the object itself to every method.",
-        "Write self first between its parentheses: def {method}(self).",
+        "Wrap it: lambda message: your_list.append(message).",
     ),
     Crash(
         "callback_signature",
         r"^ +.*(?:add_done_callback\(|create_(?:timer|subscription|service)\(|ActionServer\(|\w*callback=)(?:.*[ (=])?"
-        r"(?P<called>(?:\w+\.)+\w+)\(\)[,)].*\n"
-        r"(?:[ ~^]*\n)?TypeError: (?:[\w.<>]+\.)?(?P<method>\w+)\(\) missing \d+ required positional arguments?: ",
+        rf"(?P<called>(?:\w+\.)+\w+)\(\)[,)].*{MARKS}TypeError: (?:[\w.<>]+\.)?(?P<method>\w+)\(\) missing",
         "The parentheses after {method} call it at once, without the arguments that ROS would give it.",
         "Write only its name, {called}, without parentheses: ROS calls the method when it is time.",
     ),
     Crash(
         "callback_signature",
-        r"create_subscription\([^,\n]*,[^,\n]*, *(?:callback *= *)?(?P<name>[\w.]+)\(\)(?:.*\n)+"
-        r".*callback should be either",
-        "{name}() calls the method at once, so the subscription got what the method returned, and not the method.",
-        "Pass the method itself, without parentheses after it: {name}.",
-    ),
-    Crash(
-        "callback_signature",
-        r"create_subscription\([^,\n]*,[^,\n]*, *(?:callback *= *)?self\.(?P<name>\w+) *[,)](?:.*\n)+"
-        r".*callback should be either",
-        "The callback {name} takes the wrong number of arguments: a subscription hands it the message.",
-        "Write one parameter for the message besides self: def {name}(self, message).",
-    ),
-    Crash(
-        "callback_signature",
         rf"{_CALLED_BY_RCLPY}TypeError: (?P<what>.*positional argument.*)",
         "A callback takes the wrong number of arguments: {what}.",
-        "Change what is between its parentheses where it is defined. Besides self, a timer's callback takes nothing, a "
-        "service's takes request and response, and any other takes one thing: the message, the goal, the future.",
+        "Change what is between its parentheses where it is defined. First comes self; besides, a timer's callback "
+        "takes nothing, a service's takes request and response, and any other takes one thing: the message, the goal, "
+        "the future.",
     ),
     Crash(
         "callback_signature",
@@ -186,26 +147,13 @@ KNOWN = (
     ),
     Crash(
         "message_type",
-        r"The (?P<kind>service|message) type provided is not valid \(<class '[\w.]+\.(?P<type>\w+?)"
-        r"(?P<part>_(?:Request|Response|Goal|Result|Feedback))?'>",
-        "{type}{part} is not the type of a {kind}.",
-        "For a service write the service itself, such as AddTwoInts, without .Request or .Response. A topic takes a "
-        "message, such as String.",
-    ),
-    Crash(
-        "message_type",
-        r"AttributeError: type object 'type' has no attribute '_TYPE_SUPPORT'",
-        "The type of a message or a service is needed here, and your code gives a class that is none, such as Python's "
-        "own str or int.",
-        "Import the type of ROS, and write its name there: String of std_msgs.msg in place of str.",
-    ),
-    Crash(
-        "message_type",
-        r"AttributeError: type object '(?P<got>\w+)' has no attribute '_TYPE_SUPPORT'",
-        "The type of a message or a service is needed here, and your code gives a value of the type {got}.",
+        r"The (?:service|message) type provided is not valid|AttributeError: type object '\w+' has no attribute "
+        r"'_TYPE_SUPPORT'",
+        "The type of a message, a service or an action is needed here, and your code gives something else.",
         "Import the type, and write its name without quotation marks, before that of the topic, service or action (in "
         "ROS 1 the name comes first): create_publisher(String, 'topic', 10), create_service(AddTwoInts, "
-        "'add_two_ints', self.add), ActionServer(self, Fibonacci, 'fibonacci', ...).",
+        "'add_two_ints', self.add), ActionServer(self, Fibonacci, 'fibonacci', ...). Python's own str is not String, "
+        "and AddTwoInts.Request is only a part of AddTwoInts.",
     ),
     Crash(
         "request_not_instantiated",
@@ -215,41 +163,11 @@ KNOWN = (
     ),
     Crash(
         "raw_value_published",
-        r"TypeError: Expected <class '[\w.]+'>, got <class '[\w.]+\.Metaclass_(?P<type>\w+)'>",
-        "What your code published is the type {type} itself; a message of this type is expected.",
-        "Write parentheses after the type where you make the message: message = {type}(). In a notebook, then choose "
-        "Kernel, Restart Kernel and Run All Cells: a field that was set on the type itself stays there.",
-    ),
-    Crash(
-        "raw_value_published",
-        r"TypeError: Expected <class '[\w.]+\.msg\.\w+\.(?P<type>\w+)'>, got <class '(?:\w+\.)*(?P<got>\w+)'>",
-        "What your code published is of the type {got}; a message of the type {type} is expected.",
-        "Make a message first, message = {type}(), fill its field and publish that: publish(message).",
-    ),
-    Crash(
-        "raw_value_published",
-        r"publish_feedback\((?:.*\n)+TypeError:?\s*\z",
-        "A bare value was sent where feedback is expected, or the type itself, without parentheses.",
-        "Make the feedback first, with parentheses: feedback = Fibonacci.Feedback(). Then fill its field and send it.",
-    ),
-    Crash(
-        "raw_value_published",
-        r"send_goal(?:_async)?\((?:.*\n)+TypeError:?\s*\z",
-        "A bare value was sent where a goal is expected, or the type itself, without parentheses.",
-        "Make the goal first, with parentheses: goal = Fibonacci.Goal(). Then fill its field and send it.",
-    ),
-    Crash(
-        "raw_value_published",
-        r"call(?:_async)?\((?:.*\n)+TypeError:?\s*\z",
-        "A bare value was sent where a request is expected, or the type itself, without parentheses.",
-        "Make the request first, with parentheses: request = AddTwoInts.Request(). Then fill its fields and send it.",
-    ),
-    Crash(
-        "raw_value_published",
-        r"[Ee]xpected (?:<class )?'?[\w.]*(?:String|Int\d+|Message)\b.*got|TypeError: Expected [\w/.<>' ]+, got"
-        r"|publish\((?:.*\n)+TypeError:?\s*\z",
-        "A bare value was sent where a message is expected.",
-        "Make the message first, fill its field and send that.",
+        r"TypeError: Expected <class '[\w.]+\.msg\.\w+\.(?P<type>\w+)'>, got <class '(?:\w+\.)*(?P<got>\w+)'>"
+        r"|(?:publish(?:_feedback)?|send_goal(?:_async)?|call(?:_async)?)\((?:.*\n)+TypeError:?\s*\z",
+        "A bare value was sent, or the type itself, where a {type:message, request or goal} is expected.",
+        "Make the object first, with parentheses, fill its field, and send that: message = String(), request = "
+        "AddTwoInts.Request(), goal = Fibonacci.Goal() or feedback = Fibonacci.Feedback().",
     ),
     Crash(
         "result_missing",
@@ -257,10 +175,69 @@ KNOWN = (
         "The execute callback of an action server returned no result.",
         "End it with `return result`, a Fibonacci.Result() with its field filled, also where the goal is canceled.",
     ),
-    *FIELDS,
+    Crash(
+        "field_type",
+        r"AssertionError: (?P<what>The '\w+' (?:field|numpy\.ndarray) must .*)|bad argument type for built-in operation"
+        r"|SystemError: <(?:function|class|built-in).*returned (?:a result with an exception|NULL)"
+        rf"|publish\(msg\){MARKS}AttributeError: '(?:float|int)' object has no attribute 'x'",
+        "A field of a message got a value that it cannot take: {what:another type, or a number that is too large}.",
+        "Print the value, and its type(...), above the line that assigns it. int(...) makes a whole number of it, "
+        "float(...) a number with a point, and str(...) a string. A part with three numbers takes one by one: "
+        "command.linear.x = 0.5.",
+    ),
+    Crash(
+        "field_type",
+        r"AttributeError: '(?P<type>\w+)' object attribute '(?P<field>\w+)' is read-only",
+        "The field {field} was set on the type {type} itself, by this code or by an older version of it. Now no object "
+        "of this type can be filled any more.",
+        "Write parentheses after each type that makes an object, as in {owner:message} = String(). Then choose Kernel, "
+        "Restart Kernel and Run All Cells: only this makes the type whole again.",
+    ),
+    Crash(
+        "callback_signature",
+        # What each node has, and no message.
+        rf"\bself\.(?:get_logger|get_clock|create_\w+)\b.*{MARKS}AttributeError: '(?P<type>String|Twist|U?Int\d+"
+        r"|\w+_(?:Request|Response|Goal|FeedbackMessage)|ServerGoalHandle|Future)' object has no attribute "
+        r"'(?:get_logger|get_clock|create_\w+)'",
+        "self is of the type {type} here: Python gives the node to the first name between the parentheses after def.",
+        "Write self first, and then the others, as in def on_message(self, message) or def add(self, request, "
+        "response).",
+    ),
+    Crash(
+        "field_typo",
+        r"AttributeError: 'Twist' object has no attribute '\w+'|^NameError: name '(?:linear|angular)' is not defined",
+        "A Twist has two parts, linear and angular, and each has the numbers x, y and z.",
+        "Name the message and the part: {owner:command}.linear.x = 0.5 drives straight ahead, "
+        "{owner:command}.angular.z turns to the left.",
+    ),
+    Crash(
+        "field_typo",
+        r"AttributeError: '\w+_FeedbackMessage' object has no attribute '(?P<name>\w+)'",
+        "The message has no field called {name}.",
+        "In an action's feedback callback the fields are one level down: {owner:message}.feedback.partial_sequence. "
+        "The handle of the goal is not in it: the node that has sent the goal keeps it, as in self.goal_handle.",
+    ),
+    Crash(
+        "field_typo",
+        r"AttributeError: '(?P<type>\w+_(?:Request|Response|Goal|Result|Feedback))' object has no attribute "
+        rf"'(?P<name>\w+)'|\b(?P<made>\w+\.(?:Request|Response|Goal|Result|Feedback))\(.*{_CALLED}.*{_UNKNOWN_KEYWORD}",
+        "{type}{made} has no field called {name}{keyword}.",
+        "`ros2 interface show` lists the fields of each part: a and b of the Request and sum of the Response of "
+        "AddTwoInts; order, sequence and partial_sequence of the Goal, Result and Feedback of Fibonacci. A service's "
+        "callback is given the request first, then the response: def add(self, request, response).",
+    ),
+    Crash(
+        "field_typo",
+        r"AttributeError: '(?P<type>String|U?Int\d+|Float\d+|Bool|Vector3)' object has no attribute '(?P<name>\w+)'"
+        rf"|{_UNKNOWN_KEYWORD}",
+        "The message has no field called {name}{keyword}.",
+        "`ros2 interface show` lists the fields of a type: write the name exactly as it is there. A String has a "
+        "single field, data.",
+    ),
     Crash(
         "callback_returned_none",
-        r"(?:rclpy/service\.py\".* in send_response|service_send_response)(?:.*\n)+TypeError",
+        # A notebook leaves rclpy's own lines out, so that nothing but the last line is there.
+        r"(?:rclpy/service\.py\".* in send_response|service_send_response)(?:.*\n)+TypeError|\A\s*TypeError\s*\z",
         "A service callback returned no response: nothing at all, a field of it, or a type without parentheses.",
         "End the callback with `return` and the whole response that it was given, such as `return response`.",
     ),
@@ -282,12 +259,6 @@ KNOWN = (
         "function that you give to {owner:your_future}.add_done_callback(...).",
     ),
     Crash(
-        "callback_signature",
-        r"^ +.*add_done_callback\((?P<called>[\w.]+)\(.*\n(?:.*\n)+.*'NoneType' object has no attribute",
-        "In add_done_callback(...), {called} has parentheses of its own: so it is called before the answer is there.",
-        "Write only its name between the parentheses: add_done_callback({called}).",
-    ),
-    Crash(
         "result_read_too_early",
         r"^ +(?:.*[^\w.)])?[A-Za-z_][\w.]*\.(?:accepted|cancel_goal_async|get_result_async)\b.*\n"
         r"(?:[ ~^]*\n)?AttributeError: 'NoneType' object has no attribute '(?:accepted|cancel_goal_async"
@@ -296,13 +267,6 @@ KNOWN = (
         "the answer had arrived, or the function that should give it returns nothing.",
         "Wait until the future of send_goal_async is done, then keep its result in {owner:it}. Where another function "
         "keeps the handle, such as the send_goal of a lab, call that one first, and read the handle where it keeps it.",
-    ),
-    Crash(
-        "call_never_spun",
-        rf"\.call\(.*\btimeout_sec\b.*{MARKS}AttributeError: 'NoneType' object has no attribute",
-        "A call with timeout_sec gives None when its time is over: no answer came in this time, or nothing spun the "
-        "node while it waited, so that the node did not take the answer.",
-        NOT_SPUN_WHILE_CALLING,
     ),
     Crash(
         "result_read_too_early",

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.kit.giving_up import LATENESS, spared
+from autograder.kit.giving_up import LATENESS
 from autograder.kit.model import mistake
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ def _waited_since(part: Part, beginning: Event | None, seconds: float) -> bool:
         return False
     # A process may take its time to end; what it says of its end comes before that.
     last = next((event for event in reversed(part.events) if event.kind in ("output", "log")), part.ending)
-    return last.t - beginning.t + spared(part) >= seconds
+    return last.t - beginning.t >= seconds
 
 
 def await_goal(bench: Bench, server: ActionCounterpart, within: float) -> bool:

@@ -131,17 +131,14 @@ class Bench(Protocol):
         """In a second look: take over a part of the first one in which the subject came to its own end.
 
         For parts in which nothing depends on the pace. False where there is nothing to take over, where the subject was
-        spared some of its waiting, or was told how long to wait.
+        told how long to wait.
         """
 
     def start(self, *arguments: Any, **options: Any) -> None:
         """Start the subject; a class is made but not yet spun, a command or function runs at once.
 
         ``options`` are keyword arguments that only a notebook's function understands (a command ignores
-        them); for a class, ``threads`` says how many threads spin it. Two options are for the notebook itself: it
-        multiplies what its subject sleeps in this run with ``sleep_factor``, which is 1 or less, and it leaves
-        ``spare`` seconds out of ``wait_for_service`` and ``wait_for_server``, and reports that, in runs in which the
-        judge knows that no server comes so soon.
+        them); for a class, ``threads`` says how many threads spin it.
         """
 
     def release(self) -> None:
@@ -303,17 +300,8 @@ class Bench(Protocol):
             quiet: Give up earlier when nothing at all happened for so many seconds.
         """
 
-    def let_wait(self, seconds: float, *, call: int = 0) -> None:
-        """Let the subject wait for a server, or for an answer, that is kept from it; or until it has ended.
-
-        A late server takes ``seconds`` of wall time, less what the subject was spared. An answer is held back longer
-        while the machine is crowded, so that a subject that hardly waits has had time to say so; and hardly at all
-        where a notebook tells that its subject would wait as long.
-
-        Args:
-            seconds: From now on.
-            call: Which of the subject's calls waits for its answer, from 1 on; 0 where it waits for a server.
-        """
+    def let_wait(self, seconds: float) -> None:
+        """Let the subject wait ``seconds`` of wall time for a server that comes late, or until the subject ends."""
 
     def watch_graph(self, condition: Callable[[Evidence], bool], within: float) -> bool:
         """The same for what the graph tells of, which is asked again and again: endpoints, and whose they are."""

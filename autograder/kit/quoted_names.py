@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import re2
 
+MARKS = r"\n(?:[ ~^]*\n)?"
+"""From a line of code to what Python says of it: perhaps a line of marks below the code."""
 _FRAME_WITH_CODE = re2.compile(r'(?m)^ {2}File "(?P<file>[^"]*)", line \d+.*\n {4,}(?P<code>\S.*)$')
 """A frame of a traceback, with the line of code that is quoted below it."""
 _LIBRARY = re2.compile(r"/lib/python3(?:\.\d+)?/|/(?:site|dist)-packages/|^/opt/ros/|^<frozen")

@@ -6,9 +6,9 @@ how things are.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from math import isclose
+from math import isclose, isnan
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from autograder.kit.in_words import counted
@@ -24,6 +24,17 @@ if TYPE_CHECKING:
 Thing = TypeVar("Thing")
 Made = TypeVar("Made")
 Row = Sequence[Any]
+
+
+class _SomeText:
+    """Any text that is not blank."""
+
+    def __str__(self) -> str:
+        return "a text"
+
+
+SOME_TEXT = _SomeText()
+"""Stands in an expected reply for a text in the student's own words."""
 
 
 def value(event: Event) -> Any:
@@ -67,11 +78,11 @@ class Rule:
         """
         given, made, usual = self.given(seen), self.made(seen), self.given(expected)
         if not given:
-            return Finding(False, f"such as {_in_words(self.rule(usual))}", _in_words(made))
+            return Finding(False, f"such as {in_words(self.rule(usual))}", in_words(made))
         due = self.rule(given)
         if len(given) < len(usual):
-            return Finding(False, f"{_in_words(due)}, and more after that", _in_words(made))
-        return Finding(_same(made, due), _in_words(due), _in_words(made))
+            return Finding(False, f"{in_words(due)}, and more after that", in_words(made))
+        return Finding(same(made, due), in_words(due), in_words(made))
 
     def taken_for(self, *wrong: Callable[[Row], Row]) -> Callable[[Part, Part], bool]:
         """A mistake: all that it made is what one of these wrong rules makes, and not what the right one does.
@@ -81,7 +92,7 @@ class Rule:
 
         def recognise(seen: Part, _: Part) -> bool:
             given, made = self.given(seen), self.made(seen)
-            right, *others = (_same(made, rule(given)[: len(made)]) for rule in (self.rule, *wrong))
+            right, *others = (same(made, rule(given)[: len(made)]) for rule in (self.rule, *wrong))
             return bool(made) and not right and any(others)
 
         return recognise
@@ -121,11 +132,11 @@ class StateRule:
 
         def judge(seen: Part, expected: Part) -> Finding:
             mine, theirs = (list(self._decided(part, holds)) for part in (seen, expected))
-            many, wrong = counted(len(mine), "message"), [pair for pair in mine if not _same(*pair)]
+            many, wrong = counted(len(mine), "message"), [pair for pair in mine if not same(*pair)]
             if wrong:
                 due, said = wrong[0]
-                return Finding(False, _in_words([due]), f"{_in_words([said])} in {len(wrong)} of {many}")
-            usual = _in_words(list(dict.fromkeys(_in_words([due]) for due, _ in mine or theirs)))
+                return Finding(False, in_words([due]), f"{in_words([said])} in {len(wrong)} of {many}")
+            usual = in_words(list(dict.fromkeys(in_words([due]) for due, _ in mine or theirs)))
             enough = bool(mine) and 4 * len(mine) >= len(theirs)
             return Finding(enough, usual, usual if enough else f"{many} at such times")
 
@@ -137,7 +148,7 @@ class StateRule:
         def recognise(seen: Part, _: Part) -> bool:
             said = list(self._said(seen))
             right, *others = (
-                all(any(_same(what, rule(given)) for given in views) for what, views in said)
+                all(any(same(what, rule(given)) for given in views) for what, views in said)
                 for rule in (self.rule, *wrong)
             )
             return not right and any(others)
@@ -153,7 +164,7 @@ class StateRule:
         """What is due and what is said where only one thing is due, and something holds without a doubt."""
         for what, views in self._said(part):
             due, *others = map(self.rule, views)
-            if all(map(holds, views)) and all(_same(due, other) for other in others):
+            if all(map(holds, views)) and all(same(due, other) for other in others):
                 yield due, what
 
     def _said(self, part: Part) -> Iterator[tuple[Any, list[list[Given]]]]:
@@ -179,16 +190,24 @@ def _moment(event: Event) -> float:
     return event.moment - (on_its_way if event.sim is None else 0.0)
 
 
-def _same(one: Any, other: Any) -> bool:
-    """True if two contents, or rows of such, are the same but for rounding."""
+def same(one: Any, other: Any, tolerance: float = 1e-6) -> bool:
+    """Return whether two contents, or rows of contents, are equal.
+
+    Numbers with a point may differ by ``tolerance`` (absolute, or relative to the larger one). NaN equals NaN, and
+    :data:`SOME_TEXT` equals every text that is not blank.
+    """
+    if one is SOME_TEXT or other is SOME_TEXT:
+        text = other if one is SOME_TEXT else one
+        return isinstance(text, str) and bool(text.strip())
     if {type(one), type(other)} in ({float}, {float, int}):
-        return isclose(one, other, rel_tol=1e-6, abs_tol=1e-6)
-    if isinstance(one, dict) and isinstance(other, dict):
-        return one.keys() == other.keys() and all(_same(one[key], other[key]) for key in one)
+        return (isnan(one) and isnan(other)) or isclose(one, other, rel_tol=tolerance, abs_tol=tolerance)
+    if isinstance(one, Mapping) and isinstance(other, Mapping):
+        return one.keys() == other.keys() and all(same(one[key], other[key], tolerance) for key in one)
     if isinstance(one, (list, tuple)) and isinstance(other, (list, tuple)):
-        return len(one) == len(other) and all(map(_same, one, other))
+        return len(one) == len(other) and all(same(a, b, tolerance) for a, b in zip(one, other, strict=True))
     return bool(one == other)
 
 
-def _in_words(made: Sequence[object]) -> str:
+def in_words(made: Sequence[object]) -> str:
+    """Return a row of contents as the card shows it."""
     return ", ".join(f"{one:.10g}" if isinstance(one, float) else str(one) for one in made) or "nothing"

@@ -163,27 +163,23 @@ def reports_the_sum(evidence: Evidence) -> Finding:
 def gives_up_in_time(evidence: Evidence) -> Finding:
     """Without a service it gives up, or goes on, as the one rule for all clients says."""
     part = evidence.part(ABSENT)
-    # Who ends at once whether there is a service or not has not given up. But one that looks under another name has.
-    # A client that gives up at once may or may not have called in the other runs: timing decides.
-    asked = bool(requests(evidence.part(LATE)) or giving_up.looks_elsewhere(evidence, part, "client"))
     numbers = part.inputs.get("numbers", ())
     # Who names the sum has not given up, but added up by itself; a sum that is one of the numbers shows nothing.
     if numbers and sum(numbers) not in numbers and mentions(part.said(), sum(numbers)):
         wrong = "named a sum that no service gave"
-    elif part.events and not asked and giving_up.asks_nowhere(part, evidence.part(LATE), "client"):
-        wrong = "does the same, without a call, where the service is only late"
     else:
-        usual = [other for other in Client(evidence).served if other.name != LATE and reports(other)]
-        reported = {giving_up.answer_shape(line) for other in usual for line in _reporting(other)}
-        wrong = giving_up.objection(
-            part, usual, is_report=lambda line: giving_up.answer_shape(line) in reported
-        )
+        wrong = giving_up.objection(part, served_otherwise(evidence), "client")
     seen = "says again and again that it waits" if giving_up.goes_on_waiting(part) else "it did"
-    return Finding(not wrong, "says so and ends by itself", wrong or seen)
+    return Finding(not wrong, f"says {giving_up.NOT_AVAILABLE} and ends by itself", wrong or seen)
 
 
-def _reporting(part: Part) -> list[str]:
-    return [line for line in new_words(part) if mentions([line], answers(part)[-1])]
+def served_otherwise(evidence: Evidence) -> list[Part]:
+    """The runs in which the client had its service."""
+    absent = evidence.part(ABSENT)
+    elsewhere = giving_up.looks_elsewhere(evidence, absent, "client")
+    return giving_up.served_otherwise(
+        Client(evidence).served, absent, lambda part: bool(requests(part)), elsewhere
+    )
 
 
 no_limit = giving_up.remark(ABSENT)

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit import giving_up
-from autograder.kit.hangs import stacks
 from autograder.kit.model import Advice, Mistake, mistake
 from autograder.kit.service_calls import (
     ABSENT,
+    LATE,
     Client,
     answers,
     ended_before_its_answer,
@@ -21,6 +21,7 @@ from autograder.kit.service_calls import (
     reports,
     requests,
     returns_another,
+    served_otherwise,
 )
 from autograder.kit.texts_said import mentions
 
@@ -28,46 +29,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from autograder.kit.evidence import Evidence, Part
-
-
-def _has_no_answer_taken(evidence: Evidence) -> bool:
-    return any(
-        part.ending is None
-        and part.of("response")
-        and not new_words(part)
-        and len(requests(part)) <= Client(evidence.reference).calls
-        for part in Client(evidence).served
-    )
-
-
-CALL_NEVER_SPUN = mistake(
-    "call_never_spun",
-    _has_no_answer_taken,
-    "The service answered, but your client never took the answer: nothing spins it while it waits. call() blocks for "
-    "ever then, and so does any wait inside a callback of the same callback group.",
-    "Outside of callbacks, use call_async and rclpy.spin_until_future_complete(your_node, your_future, "
-    "timeout_sec=5.0), or spin the node in a background executor while you use call().",
-    certain=True,
-)
-
-
-def _spins_and_awaits(evidence: Evidence) -> bool:
-    stuck = [p for p in Client(evidence).served if p.ending is None and p.of("response") and stacks(p)]
-    return bool(stuck) and not new_words(stuck[0])
-
-
-AWAITS_IN_VAIN = mistake(
-    "await_in_same_group",
-    _spins_and_awaits,
-    "The service answered, and your node spins, but the code that waits for the answer never goes on: it waits for "
-    "rclpy.spin(...), which does not come back, or it awaits inside a callback of the same callback group that the "
-    "answer needs.",
-    "Outside of callbacks, write rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0) in place of "
-    "rclpy.spin(your_node): it comes back with the answer. In a callback, give the client a callback group of its own "
-    "(ReentrantCallbackGroup or another MutuallyExclusive one), or go on in a function that you give to the "
-    "add_done_callback(...) of the future.",
-    certain=True,
-)
 
 
 def _does_not_wait_for_answers(evidence: Evidence) -> bool:
@@ -204,24 +165,16 @@ PATIENCE_NOT_KEPT = giving_up.patience_not_kept(ABSENT)
 
 
 def _silent_end(evidence: Evidence) -> Advice | None:
-    found = giving_up.hides_its_end(evidence.part(ABSENT), gives_up_in_time(evidence))
-    if not found:
+    part = evidence.part(ABSENT)
+    if gives_up_in_time(evidence).passed or not requests(evidence.part(LATE)):
         return None
-    if (value := str(evidence.part(ABSENT).returned)) and re2.match(r"\w+(?:Error|Exception)\(", value):
+    if (value := str(part.returned)) and re2.match(r"\w+(?:Error|Exception)\(", value):
         return Advice(
             f"When the service is not there, your function returns the exception {value}, and does not raise it.",
             "Write raise in place of return before it: only an exception that is raised reaches who called your "
             "function.",
         )
-    if found != giving_up.SILENT:
-        return Advice(
-            f"When the service is not there, your function returns {found}: who calls it takes that for the sum.",
-            "Raise TimeoutError instead, with a few words on what was missing.",
-        )
-    return Advice(
-        "When the service is not there, your client ends and does not say so.",
-        "Log an error (or raise TimeoutError) before you return, so that its user knows why there is no sum.",
-    )
+    return giving_up.silent_end(part, served_otherwise(evidence), "service")
 
 
 SILENT_END = Mistake("silent_end", _silent_end, certain=True)

@@ -57,19 +57,6 @@ def _unreadable(evidence: Evidence) -> tuple[str, WorkspaceReport] | None:
     return report.line.partition(": ")[0], report
 
 
-def _not_sourced(evidence: Evidence) -> Advice | None:
-    for event in evidence.main.of("output"):
-        text = str(event.data["text"])
-        if found := re2.search(r"Package '([^']+)' not found|package '([^']+)' not found", text):
-            name = found[1] or found[2]
-            return Advice(
-                f"ros2 does not find the package {name}: it is not built, or this terminal has not sourced it.",
-                "In the workspace: `colcon build`, then `source install/setup.bash`, in this very terminal. Every new "
-                "terminal must source it again.",
-            )
-    return None
-
-
 BUILD = (
     mistake(
         "no_workspace",
@@ -103,5 +90,4 @@ BUILD = (
     Mistake("build_failed", _build_failed, certain=True),
 )
 """A workspace that cannot be built."""
-NOT_SOURCED = Mistake("module_not_found", _not_sourced, certain=True)
 """A package that the environment of a command does not hold."""

@@ -157,6 +157,12 @@ def report_of(part: Part, phase: str = "built") -> WorkspaceReport | None:
     return next((report for _, report in _reports(part) if report.phase == phase), None)
 
 
+def tells_of_a_build(line: str) -> bool:
+    """True if a line of output is the report of a build that has ended."""
+    report = _parsed(line.removeprefix(MARK)) if line.startswith(MARK) else None
+    return report is not None and report.phase == "built"
+
+
 def build_ended(part: Part) -> float:
     """Seconds after the beginning of a part at which the workspace was built; 0 where nothing was built in it."""
     return next((event.t for event, report in _reports(part) if report.phase == "built"), 0.0)

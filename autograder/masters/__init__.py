@@ -1,6 +1,6 @@
-"""From a MyST Markdown master to the nbgrader source notebook and to the chapter notebook that students open.
+"""Turn a MyST Markdown master into nbgrader's source notebook and into the chapter notebook for students.
 
 ``docs/writing-a-master.md`` is the author's guide to the format.
 
-Nothing is imported here: who wants one of the modules would get all, and nbgrader with them.
+This file imports nothing, so that importing one module does not import all of them, and nbgrader.
 """

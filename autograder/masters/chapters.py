@@ -1,4 +1,4 @@
-"""Derive every chapter notebook and each solution to read from its master, or say which of them are out of step."""
+"""Build every chapter notebook and solution file from its master, or report which are out of date."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from autograder.masters.release import release_text
 from autograder.masters.solutions import solution_files
 from autograder.masters.source import Points, named_cells, notebook_of
 from autograder.regular_files import write_whole
+from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,14 +28,14 @@ NOTEBOOK = ".ipynb"
 
 @dataclass(frozen=True)
 class BuildReport:
-    """The result of a build, done or, in check mode, foreseen: chapter notebooks, then solutions to read.
+    """The result of a build, or of a check without writing: chapter notebooks, then solution files.
 
     Attributes:
-        written: Written just now.
-        unchanged: In step with their masters already.
-        stale: Check mode only: missing, or out of step with their masters.
-        edited: Not overwritten because somebody has written into them.
-        orphans: There although no master, or no reason, stands for them. They are never deleted.
+        written: Files that were written.
+        unchanged: Files that were already up to date.
+        stale: In check mode, files that are missing or out of date.
+        edited: Files that were not overwritten because a person has changed them.
+        orphans: Files without a master or a reason. They are never deleted.
     """
 
     written: tuple[Path, ...] = ()
@@ -45,19 +46,19 @@ class BuildReport:
 
     @property
     def in_step(self) -> bool:
-        """True if the chapters are now exactly what the masters say."""
+        """True if the chapters are now up to date."""
         return not (self.stale or self.edited or self.orphans)
 
 
 def build(root: Path, *, check: bool = False, points: Points = exercise_points) -> BuildReport:
-    """Derive the chapters of the course in ``root`` from its masters.
+    """Build the chapters of the course in ``root`` from its masters.
 
-    Every master is read before the first notebook is written, so one bad master changes nothing.
+    All masters are read before the first notebook is written, so one bad master changes nothing.
 
     Args:
         root: The folder that holds ``solutions`` and ``chapters``.
-        check: Write nothing; report what is stale.
-        points: Gives the points of an exercise; the exercises themselves by default.
+        check: True to write nothing and report what is out of date.
+        points: Returns the points of an exercise; by default from the exercise itself.
 
     Raises:
         MasterError: A master cannot be used, or there is none.
@@ -76,7 +77,7 @@ def build(root: Path, *, check: bool = False, points: Points = exercise_points) 
 
 
 def _settle(path: Path, text: str, *, check: bool) -> str:
-    """Bring one file in step with its master; returns what was done, in a word."""
+    """Bring one file up to date, and return in one word what was done."""
     if path.exists() and path.read_bytes() == text.encode():
         return "unchanged"
     if path.suffix == NOTEBOOK and holds_work(path):
@@ -90,10 +91,10 @@ def _settle(path: Path, text: str, *, check: bool) -> str:
 def build_command(
     root: Path, *, check: bool = False, console: Console | None = None, points: Points = exercise_points
 ) -> int:
-    """Build or check, say in a few lines what came of it, and give the exit code.
+    """Build or check, print the result in a few lines, and return the exit code.
 
     Returns:
-        0 when the chapters are in step, 1 when they are not, 2 when a master cannot be used.
+        0 if the chapters are up to date, 1 if they are not, 2 if a master cannot be used.
     """
     console = console or Console()
     try:
@@ -113,18 +114,18 @@ def build_command(
 def _lines(report: BuildReport) -> list[tuple[str, tuple[Path, ...], str]]:
     return [
         ("written", report.written, ""),
-        ("stale", report.stale, "— run: ./course build"),
+        ("stale", report.stale, f"— run: {COMMAND} build"),
         ("edited", report.edited, "— somebody's work is in it: move it away, then build again"),
         ("orphan", report.orphans, "— no master stands for it: write one, or delete it"),
     ]
 
 
 def holds_work(path: Path) -> bool:
-    """True if the notebook has work of a person in it, beyond what a build once wrote.
+    """Return True if a person has changed the notebook since a build wrote it.
 
     A release carries the checksum of each code cell, and of each question, in its metadata: a cell that no longer
-    matches was edited, code without one was added. The output of cells is no work. A file that is no notebook counts
-    as work: better to ask than to overwrite it.
+    matches was edited, code without one was added. The output of cells does not count. A file that is not a notebook
+    counts as changed: it is better to ask than to overwrite it.
     """
     if not path.exists():
         return False

@@ -1,4 +1,4 @@
-"""A check cell's exercise, read from its one line of code, and the points of that."""
+"""Read a check cell: its exercise, from its one line of code, and the exercise's points."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ FORM = (
 
 @dataclass(frozen=True)
 class CheckCall:
-    """``check("<exercise>", <subject>)`` and where it stands.
+    """The call ``check("<exercise>", <subject>)`` in a master.
 
     Attributes:
-        master: The file.
-        line: In that file, counted from 1.
+        master: The file of the master.
+        line: The line in that file, counted from 1.
         exercise: The exercise's id.
-        subject: As Python writes it: the name of a class or function, or a text in quotation marks.
-        is_path: The subject is a text, the path of what the student made in the file system.
+        subject: The Python text of the subject: the name of a class or function, or a quoted string.
+        is_path: True if the subject is a string: the path of the student's files.
     """
 
     master: Path
@@ -82,7 +82,7 @@ def _call(master: Path, cell: Cell) -> tuple[str, str, bool]:
 
 
 def exercise_points(check: CheckCall) -> float:
-    """The points of the exercise that a check cell names.
+    """Return the points of the exercise that a check cell names.
 
     Raises:
         MasterError: There is no such exercise, it is broken, or it is worth nothing.

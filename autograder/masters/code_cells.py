@@ -1,4 +1,4 @@
-"""The text of a code cell: the region that the student writes, and IPython's magics that make a file or a script of it.
+"""Read a code cell: the region that the student writes, and magics that make it a file or a script.
 
 A solution cell of a master looks like this::
 
@@ -9,11 +9,11 @@ A solution cell of a master looks like this::
         return 2 * number
         ### END SOLUTION
 
-The comment that opens the region is the stub. It is what remains of the region in the chapter notebook. The
+The comment that opens the region is the stub: the part that remains in the chapter notebook. The
 two markers are nbgrader's own, so that a stock nbgrader still finds and clears the region. In a file of XML each of the
 three lines is a comment by itself: ``<!-- ### BEGIN SOLUTION -->``.
 
-A workspace of ROS is made of files, so what a student writes in one may be a file instead of a definition::
+A ROS workspace consists of files, so a student may write a file instead of a definition::
 
     %%writefile ros2_ws/src/my_robot_pkg/my_robot_pkg/simple_node.py
     import rclpy
@@ -32,13 +32,15 @@ from autograder.masters.master_errors import CellError
 BEGIN = "### BEGIN SOLUTION"
 END = "### END SOLUTION"
 TODO = "# TODO: "
+COPIED = "# copied from this notebook: "
+"""Begins the stub of a region that the cell itself fills (:mod:`autograder.notebook.cells.program_files`)."""
 ONE_THING = "One cell asks for one thing: split it into two cells."
 MAGIC = re.compile(r"%%(?P<name>\w+)[ \t]*(?P<rest>.*)")
 
 
 @dataclass(frozen=True)
 class Region:
-    """A solution cell, taken apart; each part is a tuple of lines, the two markers are in none of them."""
+    """A solution cell, split into parts; each part is a tuple of lines without the two markers."""
 
     before: tuple[str, ...]
     stub: tuple[str, ...]
@@ -47,22 +49,22 @@ class Region:
 
     @property
     def unsolved(self) -> str:
-        """The cell as the student gets it."""
+        """Return the cell as the student gets it."""
         return "\n".join((*self.before, *self.stub, *self.after))
 
     @property
     def solved(self) -> str:
-        """The cell with its solution, as whoever has solved it has it."""
+        """Return the cell with its solution."""
         return "\n".join((*self.before, *self.answer, *self.after))
 
 
 def mentions_a_region(source: str) -> bool:
-    """True if a marker, well written or not, is somewhere in ``source``."""
+    """Return True if ``source`` contains a marker, even a misspelt one."""
     return "BEGIN SOLUTION" in source or "END SOLUTION" in source
 
 
 def find_region(source: str) -> Region:
-    """Take a solution cell apart.
+    """Split a solution cell into its parts.
 
     Raises:
         CellError: There is not exactly one well-formed region that opens with a TODO comment.
@@ -89,7 +91,7 @@ def find_region(source: str) -> Region:
 
 
 def find_model_answer(source: str) -> str:
-    """The region of a question that a person grades: its model answer, and how points are given.
+    """Return the region of a question that a person grades: the model answer and how to give points.
 
     Raises:
         CellError: There is not exactly one well-formed region with something in it, and a question above it.
@@ -105,7 +107,7 @@ def find_model_answer(source: str) -> str:
 
 
 def _markers(lines: list[str]) -> tuple[int, int]:
-    """The lines on which the region begins and ends."""
+    """Return the lines on which the region begins and ends."""
     begin, end = _marker(lines, BEGIN), _marker(lines, END)
     if end < begin:
         raise CellError(end, f"'{END}' stands before '{BEGIN}'.", "Put the two lines in order.")
@@ -113,7 +115,7 @@ def _markers(lines: list[str]) -> tuple[int, int]:
 
 
 def _marker(lines: list[str], marker: str) -> int:
-    """The line of ``marker``, which must be there once, on a line of its own, spelt as it is here."""
+    """Return the line of ``marker``, which must exist exactly once, alone on its line, spelt exactly like this."""
     words = marker.removeprefix("### ")
     places = [offset for offset, line in enumerate(lines) if words in line]
     if not places:
@@ -134,8 +136,8 @@ def _marker(lines: list[str], marker: str) -> int:
 
 
 def _stub_length(inside: list[str]) -> int:
-    """The number of comment lines that open the region, 0 where the first is no TODO."""
-    if not inside or not _words(inside[0]).startswith(TODO):
+    """Return the number of comment lines that open the region, 0 if the first is not a TODO or a copy."""
+    if not inside or not _words(inside[0]).startswith((TODO, COPIED)):
         return 0
     for offset, line in enumerate(inside):
         if not _words(line).startswith("#"):
@@ -144,7 +146,7 @@ def _stub_length(inside: list[str]) -> int:
 
 
 def _words(line: str) -> str:
-    """A line without its indentation, and without the two ends of an XML comment that holds all of it."""
+    """Return a line without its indentation and without the ends of an XML comment around it."""
     bare = line.strip()
     commented = bare.startswith("<!--") and bare.endswith("-->")
     return bare.removeprefix("<!--").removesuffix("-->").strip() if commented else bare
@@ -158,10 +160,10 @@ def _only_one_todo(lines: list[str], stub: int) -> None:
 
 @dataclass(frozen=True)
 class WrittenFile:
-    """The file that a ``%%writefile`` cell writes.
+    """The file that a ``%%writefile`` or ``%%program`` cell writes.
 
     Attributes:
-        path: Where, relative to the notebook.
+        path: The path relative to the notebook.
         text: The file's text, without the line of the magic.
     """
 
@@ -170,19 +172,19 @@ class WrittenFile:
 
     @property
     def is_python(self) -> bool:
-        """True if the text has to be Python."""
+        """True if the text must be Python."""
         return self.path.suffix == ".py"
 
 
 def has_magic(source: str) -> bool:
-    """True if the cell is given to a magic instead of to Python."""
+    """Return True if a magic runs the cell instead of Python."""
     return MAGIC.match(source) is not None
 
 
 def written_file(source: str) -> WrittenFile | None:
-    """The file that a cell writes, or None for any other cell."""
+    """Return the file that a cell writes, or None for any other cell."""
     magic = MAGIC.match(source)
-    if magic is None or magic["name"] != "writefile":
+    if magic is None or magic["name"] not in ("writefile", "program"):
         return None
     words = shlex.split(magic["rest"])
     if len(words) != 1:
@@ -191,7 +193,7 @@ def written_file(source: str) -> WrittenFile | None:
 
 
 def shell_script(source: str) -> str | None:
-    """The text that a ``%%bash`` cell gives to the shell, or None for any other cell."""
+    """Return the script of a ``%%bash`` cell, or None for any other cell."""
     magic = MAGIC.match(source)
     if magic is None or magic["name"] != "bash":
         return None
@@ -199,7 +201,7 @@ def shell_script(source: str) -> str | None:
 
 
 def python_of(source: str) -> str:
-    """The part of a cell that has to be Python, with as many lines: empty where none of it has to."""
+    """Return the part of a cell that must be Python, with the same number of lines; empty if no part must be."""
     if not has_magic(source):
         return source
     file = written_file(source)

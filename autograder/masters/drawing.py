@@ -1,4 +1,4 @@
-"""Draws the PNG beside each SVG of the masters' figures: ``python -m autograder.masters.drawing``.
+"""Draw a PNG next to each SVG of the masters' figures: ``python -m autograder.masters.drawing``.
 
 For authors: a build only reads the PNGs, because they would come out differently with the fonts of another machine.
 """
@@ -45,13 +45,13 @@ _PIXELS = """async png => {
 
 
 def stale_figures(root: Path) -> list[Path]:
-    """The figures of the course in ``root`` that have no PNG drawn from them as they are now."""
+    """Return the figures of the course in ``root`` whose PNG is missing or out of date."""
     found = sorted((root / SOLUTIONS).rglob("figures/*.svg"))
     return [svg for svg in found if not _is_drawn(svg)]
 
 
 def draw(figures: Sequence[Path], chromium: str) -> None:
-    """Draw the PNG beside each SVG.
+    """Draw a PNG next to each SVG.
 
     Args:
         figures: The SVGs.
@@ -75,10 +75,10 @@ def _is_drawn(svg: Path) -> bool:
 
 
 def _with_few_colours(page: Page, png: bytes) -> bytes:
-    """The same picture as a PNG with a palette, a third as large: each notebook of each student carries it.
+    """Return the picture as a PNG with a palette, a third as large, because every student's notebook contains it.
 
     Args:
-        page: Any page of a browser, which decodes the picture.
+        page: A page of a browser, which decodes the picture.
         png: The picture.
     """
     page.goto("about:blank")
@@ -90,7 +90,9 @@ def _with_few_colours(page: Page, png: bytes) -> bytes:
     distances = ((colours[:, None, :].astype(int) - colours[None, kept, :]) ** 2).sum(axis=2)
     rows = distances.argmin(axis=1).astype(numpy.uint8)[places].reshape(height, width)
     palette = colours[kept].astype(numpy.uint8)
-    lines = numpy.insert(rows, 0, 0, axis=1).tobytes()  # each line begins with its filter: none
+    lines = numpy.insert(
+        rows, 0, 0, axis=1
+    ).tobytes()  # each line begins with the number of its filter: 0, none
     header = width.to_bytes(4) + height.to_bytes(4) + bytes((8, 3, 0, 0, 0))
     return SIGNATURE + b"".join(
         (
@@ -104,23 +106,23 @@ def _with_few_colours(page: Page, png: bytes) -> bytes:
 
 
 def signed(png: bytes, svg: bytes) -> bytes:
-    """A PNG that says from which SVG it was drawn, in a text chunk behind its header.
+    """Return the PNG with a text chunk that has the digest of its SVG.
 
     Args:
         png: The picture.
-        svg: What it was drawn from.
+        svg: The SVG from which it was drawn.
     """
     mark = chunk(b"tEXt", KEYWORD + b"\0" + digest(svg))
     return png[:_HEADER_LENGTH] + mark + png[_HEADER_LENGTH:]
 
 
 def chunk(kind: bytes, content: bytes) -> bytes:
-    """A part of a PNG file: its length, its kind, what is in it, and its checksum."""
+    """Return a chunk of a PNG file: length, kind, content and checksum."""
     return len(content).to_bytes(4) + kind + content + zlib.crc32(kind + content).to_bytes(4)
 
 
 def main() -> int:
-    """Draw what is not drawn yet; the exit code is 2 where that cannot be done."""
+    """Draw all figures that are out of date. Return the exit code, 2 if that fails."""
     try:
         figures = stale_figures(find_root(Path.cwd()))
     except MasterError as error:

@@ -1,4 +1,4 @@
-"""The places of masters and of the notebooks derived from them."""
+"""Find masters and the notebooks that are built from them."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _LINK = re2.compile(r"\[([^\[\]]+)\]\(([\w-]+)\.ipynb(#[^)]*)?\)")
-"""A link in Markdown to another notebook of the chapter, in which all are in one folder."""
+"""Matches a Markdown link to another notebook in the folder of the chapter."""
 
 
 def masters(root: Path) -> list[Path]:
-    """The masters of the course in ``root``, in the order in which they are read: ``solutions/<chapter>/<lab>/lab.md``.
+    """Return the masters of the course in ``root``, in reading order: ``solutions/<chapter>/<lab>/lab.md``.
 
     Raises:
         MasterError: ``root`` holds no ``solutions`` folder, a chapter's description cannot be used, or there is no
@@ -49,12 +49,12 @@ def masters(root: Path) -> list[Path]:
 
 
 def lab_name(master: Path) -> str:
-    """The name of a master's lab, such as ``"lab_1_2"``: that of its notebook and of its folder."""
+    """Return the name of a master's lab, its notebook and its folder, such as ``"lab_1_2"``."""
     return master.parent.name
 
 
 def before_and_after(master: Path) -> tuple[Path | None, Path | None]:
-    """The masters that are read before and after ``master`` in its chapter; None at the chapter's ends."""
+    """Return the masters before and after ``master`` in its chapter; None at the chapter's ends."""
     chapters = [one for one in course.chapters(master.parents[3]) if one.folder == master.parents[1]]
     found = [lab / LAB for chapter in chapters for lab in chapter.labs if (lab / LAB).is_file()]
     if master not in found:
@@ -65,18 +65,18 @@ def before_and_after(master: Path) -> tuple[Path | None, Path | None]:
 
 
 def chapter_path(root: Path, master: Path) -> Path:
-    """The path of the chapter notebook of ``master``."""
+    """Return the path of the chapter notebook of ``master``."""
     return root / CHAPTERS / master.parents[1].name / f"{lab_name(master)}.ipynb"
 
 
 def chapter_notebooks(root: Path) -> list[Path]:
-    """The notebooks that are in the chapters now, in order, without JupyterLab's checkpoints and copies of a reset."""
+    """Return the existing chapter notebooks in order, without JupyterLab's checkpoints and copies of a reset."""
     found = sorted((root / CHAPTERS).rglob("*.ipynb"))
     return [path for path in found if ".ipynb_checkpoints" not in path.parts and COPY not in path.name]
 
 
 def find_root(start: Path) -> Path:
-    """The course that ``start`` is in: the nearest folder at or above it with a ``solutions`` folder.
+    """Return the course that contains ``start``: the nearest folder at or above it with a ``solutions`` folder.
 
     Raises:
         MasterError: No folder at or above ``start`` has one.
@@ -93,11 +93,11 @@ def find_root(start: Path) -> Path:
 
 
 def relinked(text: str, place: Callable[[str], str]) -> str:
-    """A text with its links to other notebooks as they are where it is read.
+    """Return a text with its links to other notebooks adapted to where it is read.
 
     Args:
         text: Markdown, or a notebook's file with Markdown in it.
-        place: Where the notebook of a lab is there, by the lab's name; empty where it is not, and only the words of
+        place: Returns the path of a lab's notebook there, by the lab's name; empty if there is none: only the text of
             the link stay.
     """
 

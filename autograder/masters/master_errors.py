@@ -9,11 +9,11 @@ if TYPE_CHECKING:
 
 
 class MasterError(Exception):
-    """A master, or the folder of masters, cannot be used as it is.
+    """A master, or the folder of masters, cannot be used.
 
     Attributes:
         path: The file or folder.
-        line: The line, counted from 1, or None where it is the whole file.
+        line: The line, counted from 1, or None for the whole file.
         problem: What is wrong, as a sentence.
         remedy: What to do about it, as a sentence.
     """
@@ -28,7 +28,7 @@ class MasterError(Exception):
 
 
 class CellError(ValueError):
-    """A cell cannot be read; whoever knows the master's name turns it into a :class:`MasterError`.
+    """A cell cannot be read; code that knows the master's name turns this into a :class:`MasterError`.
 
     Attributes:
         offset: The line within the cell, counted from 0.
@@ -43,5 +43,5 @@ class CellError(ValueError):
         self.remedy = remedy
 
     def at(self, path: Path, body_line: int) -> MasterError:
-        """The same, in the master ``path`` whose cell's text begins on ``body_line``."""
+        """Return the error for the master ``path``, in which the cell's text begins on ``body_line``."""
         return MasterError(path, body_line + self.offset, self.problem, self.remedy)

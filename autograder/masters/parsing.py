@@ -1,4 +1,4 @@
-"""A master's text as a list of cells with their kinds and line numbers.
+"""Parse a master's text into a list of cells with their kinds and line numbers.
 
 A program of a package repeats what the student wrote in the cells above. A master says so instead of repeating it, so
 that the two cannot differ::
@@ -40,16 +40,16 @@ kernelspec:
 
 
 class CellRole(StrEnum):
-    """The role of a cell. The values but the first are tags; of code, an author types three."""
+    """The role of a cell. All values except the first are tags; an author types three of them for code."""
 
     TEXT = "text"
     """Markdown; students may write into it."""
     GIVEN = "given"
-    """Code that is part of the explanation: locked and tracked. Code without a tag is this."""
+    """Code that is part of the explanation: locked and tracked. This is the role of code without a tag."""
     DEMONSTRATION = "demonstration"
-    """Given code that shows something and makes nothing: left out while a class is graded."""
+    """Given code that only shows something: left out while a class is graded."""
     SOLUTION = "solution"
-    """Code in which a region is the student's to write."""
+    """Code with a region that the student writes."""
     MANUAL = "manual"
     """A question in text that a person grades."""
     CHECK = "check"
@@ -68,13 +68,14 @@ class Cell:
     """One cell of a master.
 
     Attributes:
-        kind: What it is for.
-        source: Its text, without the options that stand on top.
-        line: Where it begins in the master, counted from 1.
-        body_line: Where ``source`` begins in the master, counted from 1.
-        grade_id: The name that the author gave it, or None.
-        attachments: The figures of a text cell, as nbformat keeps them, by their names.
-        points: What a question that a person grades can earn; None for any other cell.
+        kind: The role of the cell.
+        source: The text of the cell, without the options at its top.
+        line: The line of the master on which it begins, counted from 1.
+        body_line: The line of the master on which ``source`` begins, counted from 1.
+        grade_id: The name from the author, or None.
+        attachments: The figures of a text cell by name, in nbformat's form.
+        points: The points of a question that a person grades; None for any other cell.
+        folded: True if the notebook shows the cell closed.
     """
 
     kind: CellRole
@@ -84,6 +85,7 @@ class Cell:
     grade_id: str | None = None
     attachments: dict[str, dict[str, str]] = field(default_factory=dict)
     points: float | None = None
+    folded: bool = False
 
 
 def parse_master(path: Path) -> list[Cell]:
@@ -134,7 +136,7 @@ def _cell(path: Path, node: Any, place: int, lines: list[str]) -> Cell:
 
 
 def _question(path: Path, metadata: Any, text: str, line: int, figures: dict[str, dict[str, str]]) -> Cell:
-    """A text cell with options, which only a question has that a person grades."""
+    """Read a text cell with options: only a question that a person grades has options."""
     points, name = metadata.get("points"), metadata.get("grade_id")
     is_worth = isinstance(points, int | float) and not isinstance(points, bool) and points > 0
     if (
@@ -171,7 +173,7 @@ def _options(path: Path, metadata: Any, line: int) -> tuple[CellRole, str | None
 
 
 def _body_line(source: str, place: int, lines: list[str]) -> int:
-    """The line on which a code cell's text begins, below its fence and its options."""
+    """Return the line on which a code cell's text begins, below its fence and options."""
     first = source.split("\n", 1)[0]
     for number in range(place, len(lines)):
         if lines[number].strip() == first.strip():
@@ -216,14 +218,14 @@ def _copied(master: Path, cell: Cell, defined: dict[str, str]) -> Cell:
 
 
 def _definitions(cell: Cell) -> dict[str, str]:
-    """The functions, classes and constants of a cell, with their solutions, by their names."""
+    """Return the functions, classes and constants of a cell, with their solutions, by name."""
     source = cell.source
     try:
         if cell.kind is CellRole.SOLUTION:
             source = find_region(source).solved
         body = ast.parse(source).body
     except (CellError, SyntaxError):
-        return {}  # said elsewhere, with the line
+        return {}  # another check reports the error, with its line
     lines = source.split("\n")
     found = {}
     for node in body:

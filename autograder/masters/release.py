@@ -1,4 +1,4 @@
-"""From a source notebook to the chapter notebook, through the steps of ``nbgrader generate_assignment``.
+"""Turn a source notebook into the chapter notebook, by the steps of ``nbgrader generate_assignment``.
 
 The steps run in this process and without a gradebook, which takes milliseconds a notebook instead of seconds.
 A test proves that nbgrader's own command gives the same bytes.
@@ -21,10 +21,10 @@ from autograder.masters.master_errors import CellError
 
 
 class LeaveStubs(ClearSolutions):
-    """nbgrader's ClearSolutions, changed so that each solution leaves a stub of its own.
+    """nbgrader's ClearSolutions, changed so that each solution leaves its own stub.
 
     Stock nbgrader puts the same text into every cleared region. Here each region opens with the comment that students
-    get in its place (``code_cells.py``), so the cell runs as it is and says what is to be done. Any other solution is
+    get in its place (``code_cells.py``), so the cell can run and says what to do. Any other solution is
     cleared as nbgrader does it.
     """
 
@@ -44,7 +44,7 @@ class LeaveStubs(ClearSolutions):
 
 
 class KeepShownPictures(NbGraderPreprocessor):
-    """Takes off the pictures that no text of the released notebook shows: those of a solution would stay attached."""
+    """Removes attached pictures that the released text does not show, because they belong to a solution."""
 
     def preprocess_cell(
         self,
@@ -52,7 +52,7 @@ class KeepShownPictures(NbGraderPreprocessor):
         resources: dict[str, Any],
         cell_index: int,  # noqa: ARG002  (nbconvert's signature)
     ) -> tuple[NotebookNode, dict[str, Any]]:
-        """Keep what one cell shows."""
+        """Keep the pictures that one cell shows."""
         if "attachments" in cell:
             cell.attachments = shown_attachments(cell.source, cell.attachments)
             if not cell.attachments:
@@ -61,7 +61,7 @@ class KeepShownPictures(NbGraderPreprocessor):
 
 
 def shown_attachments(source: str, attachments: NotebookNode) -> NotebookNode:
-    """The attachments that a text shows."""
+    """Return the attachments that a text shows."""
     return NotebookNode(
         {
             name: picture
@@ -72,7 +72,7 @@ def shown_attachments(source: str, attachments: NotebookNode) -> NotebookNode:
 
 
 def release_preprocessors() -> list[type[NbGraderPreprocessor]]:
-    """The steps of nbgrader for a release, :class:`LeaveStubs` for ClearSolutions, then :class:`KeepShownPictures`.
+    """Return nbgrader's steps, with :class:`LeaveStubs` for ClearSolutions, and :class:`KeepShownPictures`.
 
     A class's ``nbgrader_config.py`` names them through :class:`autograder.masters.release_steps.ReleaseSteps`.
     """
@@ -81,10 +81,10 @@ def release_preprocessors() -> list[type[NbGraderPreprocessor]]:
 
 
 def release_text(source: NotebookNode) -> str:
-    """The chapter notebook of ``source`` as it is written to a file."""
+    """Return the chapter notebook of ``source`` as the text of its file."""
     config = Config()
     config.Exporter.default_preprocessors = []
-    # As `nbgrader generate_assignment --no-db` does; the step only writes to the gradebook.
+    # As in `nbgrader generate_assignment --no-db`: the step only writes to the gradebook.
     config.SaveCells.enabled = False
     exporter = NotebookExporter(config=config)
     for step in release_preprocessors():

@@ -1,4 +1,4 @@
-"""The steps of a release for a class's configuration, which is read by every command and seldom needs them."""
+"""Provide the steps of a release to a class's configuration, loaded only when nbgrader makes a release."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ class ReleaseSteps(DeferredConfig):
     """The value of ``c.GenerateAssignment.preprocessors`` in a class.
 
     The steps themselves come from :func:`autograder.masters.release.release_preprocessors` once nbgrader makes a
-    release: to import them takes a second, which a command such as ``grade`` would spend for nothing.
+    release: importing them takes a second, and other commands, such as ``grade``, read the configuration, too.
     """
 
     def get_value(self, trait: Any) -> list[type[NbGraderPreprocessor]]:  # noqa: ARG002  (traitlets' signature)
-        """The steps; ``traitlets`` asks for them (``traitlets/config/configurable.py``: ``_load_config``)."""
+        """Return the steps; ``traitlets`` calls this (``traitlets/config/configurable.py``: ``_load_config``)."""
         from autograder.masters.release import release_preprocessors
 
         return release_preprocessors()

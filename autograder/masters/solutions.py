@@ -1,7 +1,7 @@
-"""The reference solution of each exercise, taken out of its master: as a program, and as students may read it.
+"""Extract the reference solution of each exercise from its master: as a program, and for students to read.
 
-They may read it once they have full marks: the code, and why it is so. Why is beside the exercise, in a file such as
-``talker.why.md``: one paragraph, and where another way is worth a look, the heading ``## Another way``, a paragraph and
+Students may read it after full marks: the code and its reasons. The reasons are next to the exercise, in a file such as
+``talker.why.md``: one paragraph and, if another way is worth showing, the heading ``## Another way``, a paragraph and
 a block of code.
 """
 
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
     from autograder.masters.source import NamedCell
 
 _KEPT = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
-"""The statements of a given cell that a program keeps, beside constants."""
+"""The statements of a given cell that a program keeps, besides constants."""
 OTHER_WAY = "## Another way"
 LINES = 2
-"""Lines that a reason has at most: whoever has solved a task wants to go on."""
+"""Limit of a reason, in lines: a student who has solved a task wants to go on."""
 WIDTH = 140
-"""Characters of a line."""
+"""Limit of a line, in characters."""
 
 
 @dataclass(frozen=True)
@@ -39,10 +39,10 @@ class Reference:
     """A reference solution.
 
     Attributes:
-        source: Python that makes ``subject`` when it is executed: defines it, or writes its files into the
+        source: Python code that makes ``subject``: it defines it, or writes its files into the
             current folder.
-        subject: As Python writes it: the name of the class or function that the check cell judges, or the
-            path of what was made.
+        subject: Its Python text: the name of the class or function that the check cell judges, or the
+            path of the files.
     """
 
     source: str
@@ -50,11 +50,11 @@ class Reference:
 
 
 def reference_source(master: Path, exercise: str, *, points: Points = exercise_points) -> Reference:
-    """The source of everything that a notebook has defined before the check of ``exercise``.
+    """Return the source of everything that a notebook defines before the check of ``exercise``.
 
-    Solution cells are kept whole. Of given cells only imports, functions, classes and constants are kept: the
-    rest demonstrates. Files are written, and where the subject is a path the shell runs what is given to it:
-    what is judged then is on the disk, and commands such as ``ros2 pkg create`` put it there.
+    Solution cells are kept whole. Of given cells, only imports, functions, classes and constants are kept; the
+    rest only demonstrates. Files are written and, if the subject is a path, shell cells are run,
+    because commands such as ``ros2 pkg create`` make the files that are judged.
 
     Raises:
         MasterError: The master cannot be used, or has no check of ``exercise``.
@@ -69,11 +69,11 @@ def reference_source(master: Path, exercise: str, *, points: Points = exercise_p
 
 
 def _kept(cell: Cell, *, shell: bool) -> Iterator[str]:
-    """The part of one cell that the program needs.
+    """Yield the part of one cell that the program needs.
 
     Args:
         cell: Any cell above the check.
-        shell: Whether shell cells are run.
+        shell: True to run shell cells.
     """
     if cell.kind not in (CellRole.SOLUTION, CellRole.GIVEN):
         return
@@ -106,7 +106,7 @@ def _definitions(cell: Cell) -> Iterator[str]:
 
 
 def _is_constant(node: ast.stmt) -> bool:
-    """True if it names a value and calls nothing: what a definition further down may need."""
+    """Return True if the statement names a value and calls nothing: a later definition may need it."""
     if not isinstance(node, (ast.Assign, ast.AnnAssign)):
         return False
     targets = node.targets if isinstance(node, ast.Assign) else [node.target]
@@ -116,7 +116,7 @@ def _is_constant(node: ast.stmt) -> bool:
 
 
 def solution_files(master: Path, cells: Sequence[NamedCell]) -> dict[Path, str]:
-    """For each exercise of a master with a reason beside it: the file to write, and its text.
+    """Return the solution files of a master: for each exercise with a reason, the file and its text.
 
     Args:
         master: The master.
@@ -131,7 +131,7 @@ def solution_files(master: Path, cells: Sequence[NamedCell]) -> dict[Path, str]:
 def _solution_files(master: Path, cells: Sequence[NamedCell]) -> Iterator[tuple[Path, str]]:
     code: list[str] = []
     for named in cells:
-        # What a student types into a terminal is no part of what is checked.
+        # Commands that a student types in a terminal are not part of the checked code.
         if named.cell.kind is CellRole.SOLUTION and shell_script(named.cell.source) is None:
             code.append(find_region(named.cell.source).solved.strip())
         elif named.check is not None:

@@ -1,10 +1,10 @@
-"""A master as nbgrader's source notebook: its cells checked, named, and given their metadata.
+"""Turn a master into nbgrader's source notebook: check its cells, name them and add metadata.
 
-What an author types is a tag; what nbgrader wants is eight lines of metadata a cell. The expansion is here.
+An author types a tag; nbgrader needs eight lines of metadata for each cell. This module adds them.
 
-The name of a cell is stable, readable, and never drawn at random. It must survive a corrected typo, because nbgrader
+The name of a cell is stable, readable, and never random. It must not change when a typo is corrected, because nbgrader
 matches a submission's cells by name and refuses to change the names of an assignment that has submissions. So it comes
-from what the cell is about, not from its text.
+from what the cell defines or checks, not from its text.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from nbformat import NotebookNode, from_dict
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
-from autograder import exercises
+from autograder import course, exercises
 from autograder.masters.check_cells import CheckCall, exercise_points, read_check
 from autograder.masters.code_cells import (
     find_model_answer,
@@ -29,6 +29,7 @@ from autograder.masters.code_cells import (
     mentions_a_region,
     python_of,
 )
+from autograder.masters.first_cell import with_first_cells
 from autograder.masters.layout import before_and_after, lab_name
 from autograder.masters.master_errors import CellError, MasterError
 from autograder.masters.parsing import Cell, CellRole, parse_master, with_copies
@@ -39,12 +40,12 @@ if TYPE_CHECKING:
 _HEADING = re.compile(r"^#{1,6}\s+(.*?)\s*$", re.MULTILINE)
 _FENCED = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
 _LONGEST = 48
-"""Characters of a heading in a name; nbformat allows 64 in an id."""
+"""Limit of a heading in a name, in characters; nbformat allows 64 in an id."""
 GRADE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
 SCHEMA_VERSION = 3
-"""Of nbgrader's cell metadata."""
+"""The version of nbgrader's cell metadata."""
 
-# No version of Python or of a package is here: it would change the chapters from machine to machine.
+# Without versions of Python or packages, so that the chapters are the same on every machine.
 NOTEBOOK_METADATA: dict[str, Any] = {
     "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
     "language_info": {
@@ -62,13 +63,13 @@ Points = Callable[[CheckCall], float]
 
 @dataclass(frozen=True)
 class NamedCell:
-    """A cell of a master with all that nbgrader must know of it.
+    """A cell of a master with everything that nbgrader must know about it.
 
     Attributes:
-        cell: The cell as the author wrote it.
+        cell: The cell in the master.
         name: The grade_id of a tracked cell; the cell's id in any case.
-        check: What a check cell asks for, else None.
-        points: What a check cell, or a question that a person grades, can earn, else None.
+        check: The call in a check cell; None for any other cell.
+        points: The points of a check cell or of a question that a person grades; None for any other cell.
     """
 
     cell: Cell
@@ -78,20 +79,20 @@ class NamedCell:
 
 
 def source_notebook(master: Path, *, points: Points = exercise_points) -> NotebookNode:
-    """The nbgrader source notebook of ``master``, solutions and all.
+    """Return the nbgrader source notebook of ``master``, with solutions.
 
     Args:
         master: A MyST Markdown file.
         points: Gives the points of an exercise; the exercises themselves by default.
 
     Raises:
-        MasterError: The master cannot be used; says where, why and what to do.
+        MasterError: The master cannot be used; the message says where, why and what to do.
     """
     return notebook_of(named_cells(master, points=points))
 
 
 def notebook_of(cells: list[NamedCell]) -> NotebookNode:
-    """The nbgrader source notebook with these cells, solutions and all."""
+    """Return the nbgrader source notebook with these cells and their solutions."""
     notebook = new_notebook(metadata=from_dict(NOTEBOOK_METADATA))
     notebook.nbformat_minor = 5
     notebook.cells = [_node(named) for named in cells]
@@ -99,12 +100,16 @@ def notebook_of(cells: list[NamedCell]) -> NotebookNode:
 
 
 def named_cells(master: Path, *, points: Points = exercise_points) -> list[NamedCell]:
-    """The cells of ``master``, checked and named.
+    """Return the cells of ``master``, checked and named.
 
     Raises:
         MasterError: As for :func:`source_notebook`.
     """
-    cells = [*with_copies(master, parse_master(master)), *_links(master)]
+    try:
+        cells = with_first_cells(master, with_copies(master, parse_master(master)))
+    except course.BrokenChapter as error:
+        raise MasterError(master, None, f"{error}.", "Correct that file.") from error
+    cells += _links(master)
     named = list(_name_all(master, cells, points))
     _unique(master, named)
     _subjects_are_solutions(master, named)
@@ -112,7 +117,7 @@ def named_cells(master: Path, *, points: Points = exercise_points) -> list[Named
 
 
 def _links(master: Path) -> Iterator[Cell]:
-    """The last cell of a notebook: links to those before and after it in the chapter, if there are any."""
+    """Yield the last cell of a notebook: links to the notebooks before and after it in the chapter, if any."""
     ways = zip(("← Previous: {}", "Next: {} →"), before_and_after(master), strict=True)
     links = [way.format(_link(other)) for way, other in ways if other is not None]
     if links:
@@ -129,7 +134,7 @@ def _name_all(master: Path, cells: list[Cell], points: Points) -> Iterator[Named
     section = "start"
 
     def numbered(wanted: str) -> str:
-        """The name itself, with a number behind it from the second time on: ``given-talker-2``."""
+        """Return the name, with a number from the second time on: ``given-talker-2``."""
         taken[wanted] += 1
         return wanted if taken[wanted] == 1 else f"{wanted}-{taken[wanted]}"
 
@@ -157,15 +162,15 @@ def _last_heading(markdown: str) -> str | None:
 
 
 def _slug(text: str) -> str:
-    """A text in lower case, with dashes for all that is no letter and no digit."""
+    """Return a text in lower case, with a dash for everything except letters and digits."""
     return re.sub(r"[^a-z0-9]+", "-", text.lower())[:_LONGEST].strip("-") or "cell"
 
 
 def _defined_names(source: str) -> list[str]:
-    """The functions and classes that a code cell defines at its top level, or the Python file that it writes.
+    """Return the functions and classes that a code cell defines at its top level, or the Python file that it writes.
 
     Raises:
-        SyntaxError: It is no Python, though it has to be.
+        SyntaxError: The cell must be Python and is not.
     """
     definitions = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
     return [node.name for node in ast.parse(python_of(source)).body if isinstance(node, definitions)]
@@ -181,7 +186,7 @@ def _region_where_it_belongs(master: Path, cell: Cell) -> None:
             raise MasterError(
                 master,
                 cell.line,
-                "A solution region in a cell that is no solution.",
+                "A solution region in a cell that is not a solution cell.",
                 "Tag it: ':tags: [solution]'.",
             )
     except CellError as error:
@@ -189,12 +194,12 @@ def _region_where_it_belongs(master: Path, cell: Cell) -> None:
 
 
 def _is_python(master: Path, cell: Cell, unsolved: str) -> None:
-    """Make sure that a solution cell can be run with its solution and without."""
+    """Check that a solution cell is valid Python with its solution and without."""
     try:
         _defined_names(cell.source)
     except SyntaxError as error:
         line = cell.body_line + (error.lineno or 1) - 1
-        problem = f"The solution is no Python ({error.msg})."
+        problem = f"The solution is not valid Python ({error.msg})."
         raise MasterError(master, line, problem, "Correct this line.") from error
     try:
         _defined_names(unsolved)
@@ -202,7 +207,7 @@ def _is_python(master: Path, cell: Cell, unsolved: str) -> None:
         raise MasterError(
             master,
             cell.line,
-            f"Without its solution the cell is no Python ({error.msg}).",
+            f"Without its solution the cell is not valid Python ({error.msg}).",
             "Students get it so: leave a docstring or a 'pass' outside of the region.",
         ) from error
 
@@ -240,7 +245,7 @@ def _unique(master: Path, named: list[NamedCell]) -> None:
 
 
 def _subjects_are_solutions(master: Path, named: list[NamedCell]) -> None:
-    """A check judges what a student wrote: its subject comes from a solution cell above it."""
+    """Check that the subject of each check comes from a solution cell above it: the student must write it."""
     written: set[str] = set()
     on_disk = False
     for item in named:
@@ -271,6 +276,8 @@ def _node(named: NamedCell) -> NotebookNode:
     metadata: dict[str, Any] = {} if cell.kind is CellRole.TEXT else {"nbgrader": _nbgrader(named)}
     if cell.kind is CellRole.DEMONSTRATION:
         metadata["tags"] = [CellRole.DEMONSTRATION.value]
+    if cell.folded:
+        metadata |= {"cellView": "form", "jupyter": {"source_hidden": True}}  # Colab's word, and JupyterLab's
     if cell.kind in (CellRole.TEXT, CellRole.MANUAL):
         figures = {"attachments": from_dict(cell.attachments)} if cell.attachments else {}
         return new_markdown_cell(cell.source, id=named.name, metadata=from_dict(metadata), **figures)

@@ -1,4 +1,4 @@
-"""The two things of a text cell that Markdown does not have: hints that open one at a time, and figures.
+"""Add two things to text cells that Markdown does not have: hints that open one at a time, and figures.
 
 An author writes one block after the other::
 
@@ -10,12 +10,12 @@ An author writes one block after the other::
     With the timer.
     :::
 
-JupyterLab knows no such blocks, but it shows ``<details>``. Each hint is put inside the one before it, so
+JupyterLab does not have such blocks, but it shows ``<details>``. Each hint is put inside the one before it, so
 that a student cannot see the second before opening the first.
 
-A notebook has to show its figures wherever it is, so they travel in it. As a PNG, because no SVG that is attached to
-a cell is shown by JupyterLab, and no file beside the notebook follows it into a student's folder. The PNG is drawn from
-the SVG by :mod:`autograder.masters.drawing` and committed beside it; it holds a digest of the SVG, so that a figure
+A notebook must show its figures in any folder, so it contains them, as PNGs, because JupyterLab does not show an
+attached SVG. The PNG is drawn from
+the SVG by :mod:`autograder.masters.drawing` and committed next to it; it contains a digest of the SVG, so that a figure
 that was changed and not drawn again is noticed.
 """
 
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 OPENING = re.compile(r":::\{hint\}\s*(?P<question>.*?)\s*")
 CLOSING = ":::"
 REFERENCE = re.compile(r"!\[\]\((?P<path>[^)\s]+\.svg)\)")
-"""A master's line that shows a figure: without an alternative text, which is taken from the SVG."""
+"""Matches a master's line that shows a figure. It has no alternative text: that is in the SVG."""
 KEYWORD = b"Drawn from SVG"
 _SVG = "{http://www.w3.org/2000/svg}"
 
@@ -50,7 +50,7 @@ class Hint:
 
 
 def nest_hints(markdown: str) -> str:
-    """``markdown`` with every run of hint blocks as nested ``<details>``.
+    """Return ``markdown`` with every run of hint blocks as nested ``<details>``.
 
     Raises:
         CellError: A hint has no question, holds another hint, or is never closed.
@@ -104,24 +104,24 @@ def _nested(hints: list[Hint]) -> str:
         inner = f"{hint.answer}\n\n{text}" if text else f"{hint.answer}\n"
         text = (
             f"<details>\n<summary><b>Hint {number} of {len(hints)}.</b> {hint.question}</summary>\n"
-            # The blank lines make JupyterLab read what is inside as Markdown.
+            # The blank lines make JupyterLab read the content as Markdown.
             f"<blockquote>\n\n{inner}\n</blockquote>\n</details>\n"
         )
     return text.rstrip("\n")
 
 
 def attach_figures(folder: Path, markdown: str) -> tuple[str, dict[str, dict[str, str]]]:
-    """A text cell that brings its figures along.
+    """Return a text cell's text with its figures as attachments.
 
     Args:
-        folder: Where the master is; its references start from there.
+        folder: The folder of the master, to which its references are relative.
         markdown: The text of the cell.
 
     Returns:
-        The text, which shows the attachments, and the attachments by their names.
+        The text, which shows the attachments, and the attachments by name.
 
     Raises:
-        CellError: A figure is missing, has no words, or its PNG is not drawn from it.
+        CellError: A figure is missing, has no description, or its PNG is out of date.
     """
     figures: dict[str, dict[str, str]] = {}
 
@@ -135,12 +135,12 @@ def attach_figures(folder: Path, markdown: str) -> tuple[str, dict[str, dict[str
 
 
 def digest(svg: bytes) -> bytes:
-    """The digest in a PNG of the SVG from which it was drawn."""
+    """Return the digest of an SVG that its PNG contains."""
     return hashlib.sha256(svg).hexdigest().encode("ascii")
 
 
 def _read(svg: Path, named: str, line: int) -> tuple[str, str, bytes]:
-    """The name of a figure's PNG, what the figure shows in words, and the picture."""
+    """Return the name of a figure's PNG, the figure's description, and the picture."""
     png = svg.with_suffix(".png")
     try:
         drawing, picture = svg.read_bytes(), png.read_bytes()
@@ -153,7 +153,9 @@ def _read(svg: Path, named: str, line: int) -> tuple[str, str, bytes]:
         ) from error
     except ElementTree.ParseError as error:
         raise CellError(
-            line, f"The figure {named} is no SVG ({error}).", "Write it as an SVG file that a browser shows."
+            line,
+            f"The figure {named} is not an SVG ({error}).",
+            "Write it as an SVG file that a browser shows.",
         ) from error
     words = [(root.findtext(f"{_SVG}{tag}") or "").strip() for tag in ("title", "desc")]
     if not all(words):

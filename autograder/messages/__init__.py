@@ -1,1 +1,1 @@
-"""The messages between the processes of the autograder: lines of JSON, each of a type that is named here."""
+"""Define the messages between the autograder's processes: lines of JSON, each of a type defined here."""

@@ -1,7 +1,7 @@
-"""Between a notebook and the judge, over the judge's Unix socket: one conversation is one check.
+"""Messages between a notebook and the judge, over the judge's Unix socket: one connection is one check.
 
-The notebook's side is untrusted. Whatever it says only affects what the subject is taken to have said or done on its
-own account; what happens on the wire the judge sees for itself.
+The notebook is untrusted. Its messages affect only what the subject counts as having said or done; the judge observes
+the traffic on the wire by itself.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from autograder.messages.workspaces import Source
 from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annotations)
 
 SOCKET_VARIABLE = "AUTOGRADER_JUDGE_SOCKET"
-"""The environment variable with the path of the judge's socket; a kernel without it starts a judge of its own."""
+"""Environment variable with the path of the judge's socket; a kernel without it starts its own judge."""
 
-# --- What a notebook says: of its check
+# --- From the notebook: about its check
 
 
 class Check(Message, frozen=True):
-    """The first message: judge my subject.
+    """The first message: asks for a check.
 
     Attributes:
         exercise: The exercise's id.
@@ -32,50 +32,50 @@ class Check(Message, frozen=True):
 
 
 class Ready(Message, frozen=True):
-    """The notebook has heard on which domain the check is."""
+    """The notebook has received the domain of the check."""
 
 
 class Met(Message, frozen=True):
-    """The notebook's answer to :class:`Meet`: true if its participant has seen what that asks for."""
+    """The answer to :class:`Meet`: true if the notebook's participant has discovered what that asks for."""
 
     seen: bool
 
 
 class Sources(Message, frozen=True):
-    """The end of the sources that :class:`Collect` asks for; each of them is a :class:`Source` before it.
+    """The end of the sources that :class:`Collect` asks for; a :class:`Source` for each of them comes before.
 
     Attributes:
         path: The workspace or launch file among them.
-        trouble: Why there are none, for the student; empty where there are.
+        trouble: Why there are no sources, for the student; otherwise empty.
     """
 
     path: str
     trouble: str = ""
 
 
-# --- What a notebook says: of a run of its subject
+# --- From the notebook: about a run of its subject
 
 
 class _RunMessage(Message, frozen=True):
     """Something that happened in a run.
 
     Attributes:
-        run: The number that :class:`Start` gave to it.
+        run: The number of the run, from :class:`Start`.
     """
 
     run: int
 
 
 class Started(_RunMessage, frozen=True):
-    """The function is called; ``accepted`` are the names of the options that it has a parameter for."""
+    """The function is called; ``accepted`` are the options for which it has parameters."""
 
     accepted: list[str]
 
 
 class Constructed(_RunMessage, frozen=True):
-    """The node is made; ``marker`` is the topic that was made after all that its constructor makes.
+    """The node is made; ``marker`` is a topic created after everything that the constructor creates.
 
-    ``goes_on`` says that something of it is left, a timer or a thread, which may make more once the node is spun.
+    ``goes_on`` is true if the node has a timer or a thread, which may create more endpoints once the node spins.
     ``twin`` is the node's name if the constructor has made a second node of this name.
     """
 
@@ -84,25 +84,12 @@ class Constructed(_RunMessage, frozen=True):
     twin: str = ""
 
 
-class Spared(_RunMessage, frozen=True):
-    """A wait for a server was shortened by so many seconds."""
-
-    seconds: float
-
-
 class Called(_RunMessage, frozen=True):
     """The subject has called a service, or has sent a goal."""
 
 
-class Willing(_RunMessage, frozen=True):
-    """The subject would wait so many seconds for the answer to its call of this number."""
-
-    seconds: float
-    call: int
-
-
 class Looked(_RunMessage, frozen=True):
-    """The subject has asked what there is on the graph."""
+    """The subject has read the ROS graph."""
 
 
 class Output(_RunMessage, frozen=True):
@@ -113,7 +100,7 @@ class Output(_RunMessage, frozen=True):
 
 
 class Returned(_RunMessage, frozen=True):
-    """The function has returned; ``value`` is the ``repr`` of what it returned, None where that was None."""
+    """The function has returned; ``value`` is the ``repr`` of its result, or None if the result is None."""
 
     value: str | None = None
 
@@ -137,25 +124,25 @@ class Stacks(_RunMessage, frozen=True, tag="stack"):
 
 
 class Stopped(_RunMessage, frozen=True):
-    """The run is over, and its nodes are gone."""
+    """The run is over, and its nodes are destroyed."""
 
 
 RunMessage = (
-    Started | Constructed | Spared | Called | Willing | Looked | Output | Returned | Raised | Exited
+    Started | Constructed | Called | Looked | Output | Returned | Raised | Exited
     | Stacks | Stopped
 )  # fmt: skip
 FromNotebook = Check | Ready | Met | Source | Sources | RunMessage
 
 
-# --- What the judge says
+# --- From the judge
 
 
 class Begin(Message, frozen=True):
-    """Be on this ROS domain.
+    """Use this ROS domain.
 
     Attributes:
-        domain: The ROS domain of this check alone.
-        keeper: The name of the node that stays, between runs, in the context in which a class or a function lives.
+        domain: The ROS domain of this check.
+        keeper: The name of the node that stays in the context of a class or function between runs.
     """
 
     domain: int
@@ -163,17 +150,17 @@ class Begin(Message, frozen=True):
 
 
 class Collect(Message, frozen=True):
-    """Send the sources of what the check cell was given; the grader builds and runs them by itself."""
+    """Send the sources of the check cell's path; the grader builds and runs them by itself."""
 
 
 class Meet(Message, frozen=True):
-    """Wait until the participant sees these endpoints of the judge, and those no more.
+    """Wait until the participant sees certain endpoints of the judge, and no longer sees others.
 
     Attributes:
         fresh: With a context that is made anew.
-        there: Those that there should be.
-        gone: Those that there were in runs before.
-        within: Seconds in which this must be so.
+        there: Endpoints that it must see.
+        gone: Endpoints of earlier runs that it must no longer see.
+        within: Limit in seconds.
     """
 
     fresh: bool
@@ -188,34 +175,30 @@ class Start(Message, frozen=True):
     Attributes:
         run: The number of this run.
         fresh: With a context that is made anew.
-        arguments: What the class or function is called with.
-        options: What it gets where it has parameters of these names.
-        sleep_factor: What sleeps are multiplied with; 1.0 leaves them alone.
-        spare: Seconds of waits for a server that may be left out.
+        arguments: The arguments of the class or function.
+        options: Further arguments, passed if it has parameters of these names.
     """
 
     run: int
     fresh: bool
     arguments: list[Any]
     options: dict[str, Any]
-    sleep_factor: float
-    spare: float
 
 
 class Release(Message, frozen=True):
-    """Let the made node spin."""
+    """Spin the node."""
 
     run: int
 
 
 class Interrupt(Message, frozen=True):
-    """Press Ctrl-C at the process that was started for a path."""
+    """Send Ctrl-C to the process of a path."""
 
     run: int
 
 
 class Stack(Message, frozen=True):
-    """Say where the subject's threads are."""
+    """Send the stacks of the subject's threads."""
 
     run: int
 
@@ -227,10 +210,10 @@ class Stop(Message, frozen=True):
 
 
 class SoFar(Message, frozen=True, tag="so_far"):
-    """The check goes on, and this is known already; a later look may show that it is not so.
+    """The check goes on, and this is known so far; a later look may show that it is wrong.
 
     Attributes:
-        words: A sentence for the student; empty where nothing is known.
+        words: A sentence for the student; empty if nothing is known.
     """
 
     words: str
@@ -240,15 +223,15 @@ class Judged(Message, frozen=True, tag="verdict"):
     """The last message: the check is over.
 
     Attributes:
-        verdict: What came of it. None for a submission in its box: one that knew how its checks went could choose which
-            of two runs of its notebook counts, by what costs the first one its result.
+        verdict: The verdict. None for a submission in its sandbox: otherwise it could choose which
+            of two runs of its notebook counts, by spoiling the first one.
     """
 
     verdict: Verdict | None
 
 
 class Refused(Message, frozen=True):
-    """The last message where nothing is judged, and why."""
+    """The last message if nothing is judged, with the reason."""
 
     why: str
 

@@ -1,4 +1,4 @@
-"""Messages as JSON lines over a Unix socket, between processes that need not trust each other."""
+"""Exchange messages as JSON lines over a Unix socket, between processes that need not trust each other."""
 
 from __future__ import annotations
 
@@ -19,43 +19,43 @@ if TYPE_CHECKING:
     from types import UnionType
 
 MAX_LINE = 1_000_000
-"""Bytes of one message; a longer one ends the conversation."""
+"""Limit of one message in bytes; a longer one ends the connection."""
 
 
 class Hangup(ConnectionError):
-    """The other side is gone, or said something that is no message."""
+    """The other side has disconnected, or sent something that is not a message."""
 
 
 class Silent(Hangup):
-    """The other side said nothing in time."""
+    """The other side sent nothing in time."""
 
 
 class TooLong(Hangup):
-    """The other side said more at once than is listened to."""
+    """The other side sent a message that is too long."""
 
 
 class NotUnderstood(ValueError):
-    """The other side said something that is a message, but none that is expected here."""
+    """The other side sent a message of a type that is not expected."""
 
 
 def _tag(name: str) -> str:
-    """The word on the wire for a type: ``callback_raised`` for ``CallbackRaised``."""
+    """Return the word for a type of message: ``callback_raised`` for ``CallbackRaised``."""
     return "".join(f"_{c.lower()}" if c.isupper() and i else c.lower() for i, c in enumerate(name))
 
 
 class Message(msgspec.Struct, frozen=True, tag_field="say", tag=_tag):
-    """One message. The name of its type is the word in its field ``say``."""
+    """One message; its field ``say`` contains the word for its type."""
 
 
 MessageT = TypeVar("MessageT", bound=Message)
 
 
 class Lines:
-    """One conversation. Any thread may say something; one listens.
+    """One connection. Any thread may send; only one may receive.
 
     Args:
-        connection: One end of a Unix socket; belongs to this object from now on.
-        largest: Bytes of one message that are listened to.
+        connection: A connected Unix socket, which this object owns from now on.
+        largest: Limit of a received message, in bytes.
     """
 
     def __init__(self, connection: socket.socket, largest: int = MAX_LINE) -> None:
@@ -65,14 +65,14 @@ class Lines:
 
     @classmethod
     def to(cls, path: Path | str, limit: float | None = None) -> Self:
-        """Call somebody.
+        """Connect to a socket.
 
         Args:
-            path: Their socket.
-            limit: Seconds of wall time that each wait may take; None for any.
+            path: The path of the socket.
+            limit: Limit of each wait in seconds of wall time; None for no limit.
 
         Raises:
-            Hangup: Nobody is there.
+            Hangup: No process accepts the connection.
         """
         connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         connection.settimeout(limit)
@@ -85,9 +85,9 @@ class Lines:
 
     @classmethod
     def with_parent(cls, largest: int = sys.maxsize) -> Self:
-        """Speak with whoever has started this process with a socket as its standard input.
+        """Connect to the parent process, which has started this one with a socket as its standard input.
 
-        No child of this process inherits that socket: so the end of the conversation is the end of this process.
+        No child of this process inherits that socket, so the connection ends when this process ends.
         """
         connection = socket.socket(fileno=os.dup(0))
         nothing = os.open(os.devnull, os.O_RDONLY)
@@ -96,7 +96,7 @@ class Lines:
         return cls(connection, largest)
 
     def say(self, message: Message) -> None:
-        """Say one thing.
+        """Send one message.
 
         Raises:
             Hangup: Nobody listens any more.
@@ -104,7 +104,7 @@ class Lines:
         self._send(encode(message))
 
     def say_json(self, line: bytes) -> None:
-        """Say one thing that is JSON already, in one line.
+        """Send one message that is already a line of JSON.
 
         Raises:
             Hangup: Nobody listens any more.
@@ -128,11 +128,11 @@ class Lines:
         """Wait for the next message.
 
         Args:
-            kind: The type of message that is expected, or a union of such types.
+            kind: The expected type of message, or a union of types.
 
         Raises:
-            Hangup: They hung up, said too much at once, or something that is no message.
-            NotUnderstood: It is another message than the expected ones.
+            Hangup: The other side has disconnected, or sent something that is too long or not a message.
+            NotUnderstood: The message has a type that is not expected.
         """
         words = _words(self.hear_json())
         try:
@@ -141,15 +141,15 @@ class Lines:
             raise NotUnderstood("this message is not expected here") from error
 
     def hear_json(self, within: float | None = None) -> bytes:
-        """Wait for the next message, and leave it as it came.
+        """Wait for the next message, and return it undecoded.
 
         Args:
-            within: Seconds of wall time; None for any.
+            within: Limit in seconds of wall time; None for no limit.
 
         Raises:
-            Silent: They did not say it in time.
-            TooLong: They said too much at once.
-            Hangup: They hung up.
+            Silent: No message came in time.
+            TooLong: The message is too long.
+            Hangup: The other side has disconnected.
         """
         deadline = None if within is None else time.monotonic() + within
         searched = 0
@@ -176,19 +176,19 @@ class Lines:
         return bool(waiting.poll(max(0.0, deadline - time.monotonic()) * 1000))
 
     def finish(self) -> None:
-        """Say nothing more, from any thread; what the others still say can be heard."""
+        """Stop sending, from any thread. Messages can still be received."""
         with contextlib.suppress(OSError):
             self._socket.shutdown(socket.SHUT_WR)
 
     def close(self) -> None:
-        """Hang up; who waits in :meth:`hear` is told."""
+        """Close the connection; a thread that waits in :meth:`hear` gets a Hangup."""
         with contextlib.suppress(OSError):
             self._socket.shutdown(socket.SHUT_RDWR)
         self._socket.close()
 
 
 def listen(path: Path) -> socket.socket:
-    """A Unix socket that this user can connect to, in place of one that an ended process has left.
+    """Return a listening Unix socket for this user only. It replaces one that an ended process has left.
 
     Args:
         path: At most 107 bytes long (unix(7)).
@@ -202,10 +202,10 @@ def listen(path: Path) -> socket.socket:
 
 
 def encode(message: Message) -> bytes:
-    """A message as it travels, with the end of its line.
+    """Return a message as bytes, with a newline at the end.
 
-    Lone surrogates, which Python has in the names of files that are no UTF-8, travel as JSON's escapes. msgspec alone
-    would refuse them, and what a student's program prints must not end its check.
+    Lone surrogates, which Python uses in file names that are not UTF-8, are sent as JSON escapes. msgspec alone
+    would refuse them, and a student's output must not end a check.
     """
     return json.dumps(msgspec.to_builtins(message, enc_hook=_plain)).encode() + b"\n"
 
@@ -221,5 +221,5 @@ def _words(line: bytes) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> str:
-    """Text of a class of a student's own, derived from ``str``, is sent as the text that it holds."""
+    """Return a string for a value of a student's own class derived from ``str``."""
     return str.__str__(value) if isinstance(value, str) else str(value)

@@ -1,4 +1,4 @@
-"""Between the grader and its judge process: one JSON line each way, on a socket or pipe that no notebook has."""
+"""Messages between the grader and its judge process: one JSON line each way, on a socket that no notebook has."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annota
 
 
 class Open(msgspec.Struct, tag="open", frozen=True):
-    """Answer one check of this exercise from now on.
+    """Allow one check of this exercise.
 
     Attributes:
         exercise: The exercise's id.
-        seed: What its random inputs are drawn from.
-        record: Record a reference output instead of judging against one.
-        workspaces: The socket of the grader's side of checks of workspaces, as the judge sees it; empty where there is
-            none.
-        evidence: Hand over, with the verdict, what it follows from.
-        boxed: Judge and notebook are in boxes. Nobody else is on their network, so that a domain whose ports are taken
-            is free all the same; and the notebook is a submission, which hears no verdict.
+        seed: The seed of its random inputs.
+        record: True to record a reference output instead of judging.
+        workspaces: Path at which the judge reaches the socket of the grader's workspace service; empty if
+            there is none.
+        evidence: True to add the evidence to the verdict.
+        boxed: True if judge and notebook are in sandboxes. No other program is on their network, so a domain whose
+            ports are in use is free all the same. The notebook is a submission, which gets no verdict.
     """
 
     exercise: str
@@ -30,20 +30,20 @@ class Open(msgspec.Struct, tag="open", frozen=True):
 
 
 class Close(msgspec.Struct, tag="close", frozen=True):
-    """Answer no check any more, and report the result of the last one."""
+    """Allow no further check, and report the result of the last one."""
 
 
 class Report(msgspec.Struct, frozen=True):
     """The result of a check.
 
     Attributes:
-        verdict: The judge's verdict; None where nobody asked or the judge had trouble.
-        reference: The reference output as text, when recording.
-        trouble: Why there is no verdict, in words; empty where nobody asked.
-        evidence: What the verdict follows from, as :mod:`autograder.judge.verdicts.keeping` packs it; empty where it
+        verdict: The judge's verdict; None if no check was asked for or the judge failed.
+        reference: The reference output as text, after a recording.
+        trouble: Why there is no verdict, in words; empty if no check was asked for.
+        evidence: The evidence, as :mod:`autograder.judge.verdicts.keeping` packs it; empty if it
             was not asked for.
-        crowded: It did not pass, and that may be because the machine was crowded.
-        unfinished: The trouble is that the judge was still at work when its time was over.
+        crowded: True if the subject did not pass, perhaps because the machine was overloaded.
+        unfinished: True if there is no verdict because the judge's time was over.
     """
 
     verdict: Verdict | None = None

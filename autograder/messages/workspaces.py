@@ -1,6 +1,6 @@
-"""Between the grader's side of workspaces and those who ask it: the judge for a check, a notebook for a build.
+"""Messages of the grader's workspace service: to the judge for a check, to a notebook for a build.
 
-Reports of the grader's side and what programs say travel as different messages, so that no program can say a report.
+Reports of the service and output of programs are different messages, so that no program can fake a report.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ class Source(Message, frozen=True):
 
     Attributes:
         path: Relative, with slashes.
-        data: The content; None for a folder.
-        executable: Whether its owner may execute it.
+        data: The content of the file; None for a folder.
+        executable: True if the owner may execute it.
     """
 
     path: str
@@ -22,7 +22,7 @@ class Source(Message, frozen=True):
     executable: bool = False
 
 
-# --- A check: what the judge says
+# --- A check: from the judge
 
 
 class Check(Message, frozen=True):
@@ -30,7 +30,7 @@ class Check(Message, frozen=True):
 
     Attributes:
         exercise: The exercise's id.
-        domain: The ROS domain that programs are started on.
+        domain: The ROS domain of the programs.
         path: The workspace or launch file among the sources.
         count: How many sources follow.
         trouble: Why there are none, for the student; empty where there are.
@@ -44,11 +44,11 @@ class Check(Message, frozen=True):
 
 
 class Start(Message, frozen=True):
-    """Build what was submitted, where that is not done yet, and run it.
+    """Build the submission, unless it is already built, and run it.
 
     Attributes:
-        run: Its number.
-        arguments: Of the program; where an exercise is about several programs, the first one says which.
+        run: The number of the run.
+        arguments: The program's arguments; if an exercise is about several programs, the first one chooses the program.
     """
 
     run: int
@@ -56,7 +56,7 @@ class Start(Message, frozen=True):
 
 
 class Interrupt(Message, frozen=True):
-    """Press Ctrl-C at the program of the run, which goes on until it has ended by itself or is stopped."""
+    """Send Ctrl-C to the program of the run, which goes on until it has ended by itself or is stopped."""
 
     run: int
 
@@ -70,21 +70,21 @@ class Stop(Message, frozen=True):
 ToService = Start | Interrupt | Stop
 
 
-# --- A check: what the grader's side says
+# --- A check: from the workspace service
 
 
 class Ready(Message, frozen=True):
-    """The sources are taken."""
+    """The service has received the sources."""
 
 
 class BuildEnded(Message, frozen=True, tag="built"):
-    """The build has ended, well or not."""
+    """The build has ended, with or without success."""
 
     run: int
 
 
 class ReportLine(Message, frozen=True, tag="report"):
-    """A line of what the grader's side has found."""
+    """A line of the service's report."""
 
     run: int
     text: str
@@ -98,20 +98,20 @@ class Output(Message, frozen=True):
 
 
 class Exited(Message, frozen=True):
-    """The program has ended by itself; None where nobody knows how."""
+    """The program has ended by itself; None if its exit code is not known."""
 
     run: int
     code: int | None = None
 
 
 class Stopped(Message, frozen=True):
-    """The run is over, and its processes are gone."""
+    """The run is over, and its processes have ended."""
 
     run: int
 
 
 class Trouble(Message, frozen=True):
-    """Something failed that says nothing of what was submitted."""
+    """The service failed, through no fault of the submission."""
 
     why: str
 
@@ -128,7 +128,7 @@ class Build(Message, frozen=True):
     Attributes:
         count: How many sources follow.
         path: The workspace among them.
-        only: The packages that are wanted.
+        only: The packages to build.
     """
 
     count: int
@@ -137,7 +137,7 @@ class Build(Message, frozen=True):
 
 
 class NotBuilt(Message, frozen=True, tag="no"):
-    """Nothing is built for this notebook, and why."""
+    """The service builds nothing for this notebook, for the given reason."""
 
     why: str
 
@@ -156,9 +156,9 @@ class BuildDone(Message, frozen=True, tag="built"):
     """The build follows as an archive.
 
     Attributes:
-        pieces: How many messages the archive has.
-        install: The path of the install folder that is in its files.
-        seconds: Wall time that it took.
+        pieces: The number of messages with the archive.
+        install: The path of the install folder that its files contain.
+        seconds: Wall time of the build.
     """
 
     pieces: int

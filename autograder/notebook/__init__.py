@@ -1,10 +1,11 @@
-"""The names that a notebook of the course imports: background executors and the check.
+"""Export the names that a notebook of the course imports: background executors and the check.
 
-Nothing here is a secret and nothing here decides a grade: the judge runs in a process of its own.
+Nothing here is secret and nothing here decides a grade: the judge runs in a process of its own.
 """
 
 from __future__ import annotations
 
+import autograder.notebook.cells.program_files  # noqa: F401  (defines the cell magic %%program)
 from autograder.notebook.checking import judge_link
 from autograder.notebook.checking.check import check
 from autograder.notebook.checking.watched_cells import unwatch, watch
@@ -34,6 +35,6 @@ __all__ = [
 
 
 def start_ros() -> RosSession:
-    """Start ROS in this kernel, once; harmless when the cell is run again. Its judge warms up meanwhile."""
+    """Start ROS in this kernel, once; running the cell again is harmless. The kernel's judge starts meanwhile."""
     judge_link.warm_up()
     return ros_session.start_ros()

@@ -1,7 +1,7 @@
-"""Lines for the files of a package, added so that a cell may run any number of times and in any order.
+"""Add lines to the files of a package, by functions that a cell may call any number of times in any order.
 
-A cell that writes ``setup.py`` as a whole would take away what a later lab has added. These functions change one place
-of a file and leave the rest as it is: an entry point replaces its predecessor, and a line that is there stays once.
+A cell that writes the whole ``setup.py`` would remove what a later lab has added. These functions change one place
+of a file: an entry point replaces the earlier one of the same name, and a line is never added twice.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ class _Element:
     """An element of the list of entry points.
 
     Attributes:
-        source: As it is in setup.py. It is written back as it was read.
-        text: What it comes to; the same as the source where that is known only when setup.py runs.
-        above: The comments on the lines above it.
-        behind: The comment behind it.
+        source: The text in setup.py, which is written back unchanged.
+        text: The value of the element; the source if only running setup.py would tell the value.
+        above: The comments on the lines above the element.
+        behind: The comment at the end of the element's line.
     """
 
     source: str
@@ -42,10 +42,10 @@ class _Element:
 
 
 def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str = PACKAGE) -> str:
-    """Put entry points into ``setup.py`` of a package; one with the same executable or the same function is replaced.
+    """Add entry points to a package's ``setup.py``, in place of those with the same executable or function.
 
     Args:
-        workspace: The folder that holds ``src``.
+        workspace: The folder that contains ``src``.
         entries: Each ``executable = package.module:function``.
         package: The name of the package.
 
@@ -96,7 +96,7 @@ def add_dependencies(workspace: str | Path, names: Iterable[str], package: str =
     """Put ``<depend>`` lines into ``package.xml`` of a package where they are missing.
 
     Args:
-        workspace: The folder that holds ``src``.
+        workspace: The folder that contains ``src``.
         names: The packages that it needs.
         package: The name of the package.
 
@@ -121,7 +121,7 @@ def add_definition(workspace: str | Path, package: str, definition: str, needs: 
     """Have a package of interfaces generate code from one more definition, once the file is there.
 
     Args:
-        workspace: The folder that holds ``src``.
+        workspace: The folder that contains ``src``.
         package: The name of the package.
         definition: The path of the file in the package, such as ``action/Fibonacci.action``.
         needs: The packages that the generated code needs.

@@ -1,6 +1,6 @@
-"""The programs of Lab 1.2 in a student's own package, for the notebooks that start them.
+"""Complete a student's package with the programs of Lab 1.2, for the notebooks that start them.
 
-A launch file starts programs of packages. A student who has written the nodes in the notebook only would meet
+A launch file starts programs of packages. Without them, a student who wrote the nodes only in the notebook would see
 "executable not found" in an exercise about something else.
 """
 
@@ -19,14 +19,14 @@ _CLASS = re.compile(r"^class ", re.MULTILINE)
 
 
 def complete_package(workspace: str | Path = "ros2_ws", source: Path | None = None) -> str:
-    """Put the course's talker and listener into the student's package where these are missing.
+    """Put the course's talker and listener into the student's package if they are missing.
 
-    Nothing that a student has written is changed, but for the entry points that are added to ``setup.py``.
+    Nothing that a student has written is changed, except that entry points are added to ``setup.py``.
     Running it again changes nothing.
 
     Args:
-        workspace: The folder that holds ``src``; it is made where it is not there.
-        source: The package to take things from; the course's own by default.
+        workspace: The folder that contains ``src``; it is created if it does not exist.
+        source: The package to copy from; by default the course's own.
 
     Returns:
         What was done, or what the student has to do, in one or two sentences.
@@ -34,9 +34,9 @@ def complete_package(workspace: str | Path = "ros2_ws", source: Path | None = No
     package = Path(workspace) / "src" / PACKAGE
     try:
         source = source or course.root() / course.SOLUTIONS / "ros2_ws" / "src" / PACKAGE
-    except course.NoCourse:  # in a box
+    except course.NoCourse:  # in a sandbox
         return "This notebook is graded by itself: what your package lacks, the check takes from the course's own."
-    if not source.is_dir():  # in what students are handed there is no solution
+    if not source.is_dir():  # a hand-out for students contains no solutions
         return _what_is_missing(package)
     if not (package / "package.xml").is_file():
         shutil.copytree(source, package, dirs_exist_ok=True)
@@ -65,7 +65,7 @@ def _has_program(package: Path, name: str) -> bool:
 
 
 def _is_empty(module: Path) -> bool:
-    """True if a module is what Lab 1.2's cell writes before anything has been copied into it."""
+    """Return True if a module is still as Lab 1.2's cell writes it, with nothing copied into it."""
     return module.is_file() and not _CLASS.search(module.read_text(encoding="utf-8", errors="replace"))
 
 

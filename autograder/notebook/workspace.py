@@ -1,9 +1,9 @@
-"""Build a workspace from a notebook, and use what was built in the running kernel.
+"""Build a workspace from a notebook, and use its packages in the running kernel.
 
-A kernel cannot be sourced: the loader reads ``LD_LIBRARY_PATH`` only when a process starts. What works, measured with a
-service type of a workspace on Jazzy, is to load the package's libraries once with their symbols open to all
-(``RTLD_GLOBAL``, 5 ms). The loader then finds each by its name, and so does rosidl's type support, which opens its
-libraries by name, too.
+A kernel cannot source a workspace: the loader reads ``LD_LIBRARY_PATH`` only when a process starts. But a kernel
+can load the package's libraries once with global symbols (``RTLD_GLOBAL``, 5 ms; tried with a service type on Jazzy).
+The loader then finds each library by its name, and so does rosidl's type support, which opens its libraries by
+name, too.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from autograder.workspaces.colcon import Build
 
 MAX_LOG = 4_000
-"""Characters of a failed build's log that are shown."""
+"""Limit of the log of a failed build, in characters."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -39,8 +39,8 @@ class WorkspaceBuild:
     """The result of `build_workspace`, as a cell shows it.
 
     Attributes:
-        build: How the build went.
-        note: What to know besides; empty where there is nothing.
+        build: The result of the build.
+        note: A warning for the student; empty if there is none.
     """
 
     build: Build
@@ -52,7 +52,7 @@ class WorkspaceBuild:
         return self.build.ok
 
     def summary(self) -> str:
-        """One or two sentences."""
+        """Return the result in one or two sentences."""
         made = self.build
         if not made.ok:
             where = f"colcon could not build {made.package}: " if made.package else ""
@@ -75,14 +75,14 @@ class WorkspaceBuild:
 
 
 def build_workspace(folder: str | os.PathLike[str] = "ros2_ws") -> WorkspaceBuild:
-    """Build a workspace as ``colcon build`` does, and make its packages known to this kernel.
+    """Build a workspace as ``colcon build`` does, and make its packages available in this kernel.
 
-    The same sources are not built a second time. The result is in the workspace's ``install`` folder, for terminals to
-    source; what this kernel starts from now on (``!ros2 run``, a launch) finds the packages without it, and so does
-    ``import``. A package that the kernel has already imported stays as it was: a note says so.
+    Sources that did not change are not built a second time. The result is in the workspace's ``install`` folder, for
+    terminals to source. Programs that this kernel starts from now on (``!ros2 run``, a launch) find the packages
+    without that, and so does ``import``. A package that the kernel has already imported stays old: a note says so.
 
     Args:
-        folder: The workspace, the folder that holds ``src``.
+        folder: The workspace: the folder that contains ``src``.
     """
     made = OwnBuilds().build(look(Path(folder)), None)
     if not made.ok:
@@ -114,14 +114,14 @@ def _use(prefixes: list[Path], made: Build) -> str:
 
 
 def load_libraries(prefix: Path) -> None:
-    """Load the libraries of a package, so that those who ask for them by name get these.
+    """Load the libraries of a package, so that code that opens them by name gets these.
 
     Raises:
-        OSError: One of them needs a library that is not there.
+        OSError: A library needs another one that does not exist.
     """
     waiting = sorted((prefix / "lib").glob("lib*.so"))
     while waiting:
-        # One may need another, and the order is nowhere written: go round until none is left.
+        # A library may need another one, and no file states the order: try again until none is left.
         failed: list[tuple[Path, OSError]] = []
         for library in waiting:
             try:

@@ -1,1 +1,1 @@
-"""The student's side: JupyterLab, the course page and its words in a terminal, a notebook begun anew, the hand-out."""
+"""Serve students: JupyterLab, the course page (also as text), resetting a notebook, and the hand-out."""

@@ -1,4 +1,4 @@
-"""The course page: as HTML in one file that fetches nothing from elsewhere, as text for a terminal, and as JSON."""
+"""Make the course page: as one HTML file that loads nothing else, as text for a terminal, and as JSON."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import msgspec
 from autograder.cards.certificate import certificate_svg, certificate_text
 from autograder.cards.wording import points, points_of
 from autograder.student.lab import COURSE_PAGE
+from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -23,10 +24,10 @@ STATES = {"done": "done", "begun": "begun", "new": "not begun"}
 
 
 def page_html(standing: Standing, base: str, token: str) -> str:
-    """The page.
+    """Return the page as HTML.
 
     Args:
-        standing: How far the student is.
+        standing: The progress of the student.
         base: The server's base address; it ends with a slash.
         token: Proves to the server that an action comes from this page.
     """
@@ -34,27 +35,27 @@ def page_html(standing: Standing, base: str, token: str) -> str:
 
 
 def trouble_html(message: str, base: str) -> str:
-    """The page that is shown where the course cannot be read.
+    """Return the page that is shown if the course cannot be read.
 
     Args:
-        message: Why not.
+        message: The reason.
         base: The server's base address; it ends with a slash.
     """
     return _environment().get_template("trouble.html.j2").render(message=message, base=base)
 
 
 def standing_text(standing: Standing) -> str:
-    """The map as lines of text."""
+    """Return the page as lines of text."""
     lines = [line for chapter in standing.chapters for line in (*_chapter(chapter), "")]
     if standing.following is not None:
         verb = "Go on" if standing.begun else "Begin"
-        lines.append(f"{verb} with {standing.following.title} ({standing.following.name}): ./course lab")
+        lines.append(f"{verb} with {standing.following.title} ({standing.following.name}): {COMMAND} lab")
     lines.append("Points are those of your own checks on this machine. They are no grade.")
     return "\n".join(lines)
 
 
 def standing_json(standing: Standing) -> str:
-    """The same for programs."""
+    """Return the progress as JSON."""
     return msgspec.json.encode(
         {
             "chapters": [
@@ -74,7 +75,7 @@ def standing_json(standing: Standing) -> str:
 
 
 def hours(minutes: int) -> str:
-    """A time that nobody measures: ``"40 minutes"``, ``"2 hours"``, ``"8½ hours"``."""
+    """Return a rough time: ``"40 minutes"``, ``"2 hours"``, ``"8½ hours"``."""
     if minutes < 60:
         return f"{minutes} minutes"
     halves = round(minutes / 30)

@@ -1,4 +1,4 @@
-"""Help in a kernel that has just started, in which the given cells of the notebook have not run.
+"""Help in a kernel that has just started, in which the notebook's given cells have not run.
 
 JupyterLab's button *Check* asks :func:`cells_to_run` which of them to run first. A check that the student runs by hand
 ends with Python's ``NameError``; IPython loads this module as an extension, so that the error tells what to run. This
@@ -31,13 +31,13 @@ _ADVICE = (
 
 
 def cells_to_run(sources: Sequence[str], own: Sequence[int]) -> str:
-    """The cells above a check that have to run before it in this kernel.
+    """Return the cells above a check that have to run before it in this kernel.
 
-    A cell has to run if it defines a name that a later one of them reads and that the kernel does not have. So no cell
+    A cell has to run if it defines a name that a later cell reads and that the kernel does not have. So no cell
     runs twice, and no demonstration runs that the check does not need.
 
     Args:
-        sources: The code cells of the notebook from the first one to that of the check.
+        sources: The code cells of the notebook, from the first one to the check cell.
         own: The indices of the cells that run in any case: the student's answer and the check.
 
     Returns:
@@ -57,7 +57,7 @@ def cells_to_run(sources: Sequence[str], own: Sequence[int]) -> str:
 
 
 def _names(source: str) -> tuple[set[str], set[str]]:
-    """The names of the notebook that a cell reads, also within its functions, and those that it defines."""
+    """Return the names that a cell reads, even inside its functions, and the names that it defines."""
     try:
         codes = [compile(source, "a cell", "exec", dont_inherit=True, flags=ast.PyCF_ALLOW_TOP_LEVEL_AWAIT)]
     except (SyntaxError, ValueError):
@@ -77,7 +77,7 @@ def _names(source: str) -> tuple[set[str], set[str]]:
 def load_ipython_extension(shell: Any) -> None:
     """Explain a ``NameError`` in a new kernel of ``./course lab``; called by IPython at the kernel's start.
 
-    The notebook's first cell imports ``autograder.notebook``, whose words take the place of these.
+    The notebook's first cell imports ``autograder.notebook``, whose messages replace these.
     """
     if os.environ.get(NOTEBOOKS_VARIABLE):
         shell.set_custom_exc((NameError,), _show)

@@ -1,6 +1,6 @@
-"""The course as students get it: notebooks and their judge, without solutions, answers and grader.
+"""Make the hand-out for students: notebooks and their judge, without solutions, answers and grader.
 
-The repository holds every solution, so it cannot be given to a class. What comes out of here is a course of its own,
+The repository contains every solution, so it cannot be given to a class. The hand-out is a course of its own,
 with the same ``./course``: its exercises and reference outputs are in ``exercises/``, and no folder is called
 ``solutions``.
 """
@@ -21,19 +21,20 @@ from autograder.exercises import REFERENCE
 from autograder.masters.chapters import holds_work
 from autograder.masters.layout import relinked
 from autograder.regular_files import write_whole
+from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
 
 WHOLE = ("course", "pyproject.toml", "LICENSE", "environment", "autograder", ".devcontainer", ".dockerignore")
-"""Files and folders that are handed out as they are, but for what follows."""
+"""Files and folders that are handed out unchanged, except for those below."""
 KEPT_BACK = (
     "autograder/authoring",
     "autograder/grading",
     "autograder/student/handing_out.py",
     "autograder/masters",
 )
-"""Parts that make notebooks, know their solutions or grade a class."""
+"""Parts that make notebooks, contain solutions or grade a class."""
 PAGES = (
     "students-guide.md",
     "learning-outcomes.md",
@@ -42,10 +43,10 @@ PAGES = (
     "ros2-command.md",
     "robot.md",
 )
-"""Of ``docs/``."""
+"""The handed-out pages of ``docs/``."""
 _MADE = frozenset({"__pycache__", ".ipynb_checkpoints"})
 _MADE_BY_COLCON = frozenset({"build", "install", "log"})
-"""Folders of what is made from other files; colcon's are beside the folder ``src`` of a workspace."""
+"""Folders with generated files; colcon's are next to the folder ``src`` of a workspace."""
 README = """\
 # {title}
 
@@ -74,17 +75,17 @@ commands to type. Or open this folder in VS Code, choose *Reopen in Container*, 
 
 
 class CannotHandOut(Exception):
-    """Nothing can be handed out; the message says why and what to do."""
+    """The hand-out cannot be made; the message says why and what to do."""
 
 
 @dataclass(frozen=True)
 class HandOut:
-    """The result of handing out.
+    """A finished hand-out.
 
     Attributes:
         place: The folder, or the zip.
-        files: How many files are in it.
-        size: Their bytes together.
+        files: The number of files in it.
+        size: The total of their bytes.
     """
 
     place: Path
@@ -100,20 +101,20 @@ def hand_out(
     as_zip: bool = False,
     with_solutions: bool = False,
 ) -> HandOut:
-    """Make what a class is handed.
+    """Make the hand-out for a class.
 
     Args:
-        place: A folder that is not there yet or is empty; with ``as_zip``, the zip file.
+        place: A folder that is empty or does not exist; with ``as_zip``, the zip file.
         root: The whole course.
-        assignments: The names of the notebooks that are handed out, graded or not; all where empty.
-        as_zip: Pack it.
-        with_solutions: Also what a card offers with full marks: the reference solutions, and why they are so. Whoever
-            looks into the folder ``exercises`` can read them earlier.
+        assignments: The names of the notebooks to hand out, graded or not; empty for all.
+        as_zip: True to make a zip.
+        with_solutions: True to add what cards show with full marks: the reference solutions and their reasons. Students
+            who open the folder ``exercises`` can read them earlier.
 
     Raises:
-        CannotHandOut: There is something in that place, no notebook has such a name, somebody has worked in a notebook
-            of the chapters, or this course was handed out itself.
-        OSError: It cannot be written.
+        CannotHandOut: The place is not empty, a name is not that of a notebook, a notebook of the chapters was
+            changed, or this course is itself a hand-out.
+        OSError: The hand-out cannot be written.
     """
     if not (root / course.SOLUTIONS).is_dir():
         raise CannotHandOut(f"{root} was handed out itself: make a hand-out from the course with its masters")
@@ -133,7 +134,7 @@ def hand_out(
 
 
 def _wanted(chapters: Sequence[course.Chapter], names: Collection[str]) -> list[course.Chapter]:
-    """The chapters with the named labs alone; all of them where no name is given."""
+    """Return the chapters with only the named labs; all labs if no name is given."""
     known = [lab.name for chapter in chapters for lab in chapter.labs]
     for name in names:
         if name not in known:
@@ -148,7 +149,7 @@ def _wanted(chapters: Sequence[course.Chapter], names: Collection[str]) -> list[
 def _files(
     root: Path, chapters: Sequence[course.Chapter], *, with_solutions: bool
 ) -> Iterator[tuple[str, Path | bytes]]:
-    """The files by the names that they get."""
+    """Return the files by their names in the hand-out."""
     for name in WHOLE:
         yield from ((path.relative_to(root).as_posix(), path) for path in _below(root / name, root))
     yield from _pages(root)
@@ -162,7 +163,7 @@ def _files(
 
 
 def _pages(root: Path) -> Iterator[tuple[str, Path]]:
-    """The pages and the pictures that they show: other pictures, such as the README's, may show a solution."""
+    """Yield the pages and the pictures that they show. Other pictures, such as the README's, may show a solution."""
     pages = [page for name in PAGES if (page := root / "docs" / name).is_file()]
     text = "".join(page.read_text(encoding="utf-8") for page in pages)
     shown = (path for path in _below(root / "docs" / "images", root) if f"(images/{path.name})" in text)
@@ -172,15 +173,15 @@ def _pages(root: Path) -> Iterator[tuple[str, Path]]:
 def _notebook(
     root: Path, chapter: course.Chapter, lab: Path, names: Collection[str]
 ) -> Iterator[tuple[str, bytes]]:
-    """A lab's notebook twice: where students work in it, and as what `./course reset` puts back."""
+    """Yield a lab's notebook twice: for students to work in, and for `./course reset` to restore."""
     notebook = root / course.CHAPTERS / chapter.folder.name / f"{lab.name}.ipynb"
     if not notebook.is_file():
         return
     if holds_work(notebook):
         raise CannotHandOut(
-            f"somebody has worked in {notebook}, and would be handed out: ./course reset {lab.name}"
+            f"somebody has worked in {notebook}, and would be handed out: {COMMAND} reset {lab.name}"
         )
-    # A link to a notebook that is not handed out would lead nowhere: its words stay.
+    # A link to a notebook that is not handed out would be broken, so only its text stays.
     beside = {name: f"{name}.ipynb" for name in names}
     content = relinked(notebook.read_bytes().decode(), lambda name: beside.get(name, "")).encode()
     yield notebook.relative_to(root).as_posix(), content
@@ -223,7 +224,9 @@ def _pack(place: Path, files: dict[str, Path | bytes]) -> None:
     archive = io.BytesIO()
     with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as packed:
         for name, content in files.items():
-            entry = zipfile.ZipInfo(f"{place.stem}/{name}")  # one date for all: the same files, the same zip
+            entry = zipfile.ZipInfo(
+                f"{place.stem}/{name}"
+            )  # a fixed date, so that the same files make the same zip
             entry.compress_type = zipfile.ZIP_DEFLATED
             runs = isinstance(content, Path) and content.stat().st_mode & stat.S_IXUSR
             entry.external_attr = (0o755 if runs else 0o644) << 16

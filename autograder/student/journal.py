@@ -1,8 +1,8 @@
-"""The journal of a student's checks: a small file beside their notebooks, and never a grade.
+"""Keep the journal of a student's checks: a small file next to the notebooks, which is never a grade.
 
-One line of JSON a line: a check that ended, a notebook that was marked as read, one that was begun anew. The course
-page and ``./course progress`` read it. Nothing that a grader does depends on it: a check goes on where the file cannot
-be written, and a line that is damaged is left out.
+Each line is JSON: a check that ended, a notebook that was marked as read, or one that was reset. The course
+page and ``./course progress`` read it. No grade depends on it: a check goes on if the file cannot
+be written, and a damaged line is ignored.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 VARIABLE = "AUTOGRADER_JOURNAL"
-"""The variable with the path of this session's journal; empty for none."""
+"""The environment variable with the path of this session's journal; empty for none."""
 NAME = ".course-journal.jsonl"
 """The journal's name in the folder of the notebooks."""
 MOST = 4_000_000
-"""Bytes that are read, counted from the end: some forty thousand checks."""
+"""Number of bytes that are read from the end of the file: about forty thousand checks."""
 
 
 @dataclass(frozen=True)
@@ -39,11 +39,11 @@ class Entry:
     """A line of the journal.
 
     Attributes:
-        kind: What happened: a check ended, a notebook was marked as read or no longer so, or begun anew.
-        name: The exercise's id for a check, such as ``"lab_1_2.talker"``; else the notebook's name.
-        time: Seconds since the epoch.
-        points: Points of a check.
-        possible: Points that it could have had.
+        kind: What happened: a check ended, or a notebook was marked as read, unmarked, or reset.
+        name: The exercise's id for a check, such as ``"lab_1_2.talker"``; otherwise the notebook's name.
+        time: Unix time in seconds.
+        points: The points of a check.
+        possible: The most points that the check could have.
     """
 
     kind: Literal["check", "read", "unread", "reset"]
@@ -54,17 +54,17 @@ class Entry:
 
     @property
     def notebook(self) -> str:
-        """The name of the notebook that it belongs to, such as ``"lab_1_2"``."""
+        """The name of its notebook, such as ``"lab_1_2"``."""
         return self.name.partition(".")[0]
 
     @property
     def full(self) -> bool:
-        """True if it is a check with all points."""
+        """True for a check with full marks."""
         return self.kind == "check" and self.points >= self.possible > 0
 
 
 def place(folder: Path) -> Path:
-    """The journal for the notebooks in a folder: beside them, or in the user's home where nothing can be written there.
+    """Return the journal for the notebooks in a folder: in that folder, or in the user's home if it is read-only.
 
     Args:
         folder: The folder that JupyterLab shows.
@@ -77,7 +77,7 @@ def place(folder: Path) -> Path:
 
 
 def own_place() -> Path | None:
-    """This session's journal: the one that ``./course lab`` has named, else the one of the course's own chapters."""
+    """Return this session's journal: that of ``./course lab``, or else that of the course's own chapters."""
     named = os.environ.get(VARIABLE)
     if named is not None:
         return Path(named) if named else None
@@ -87,10 +87,10 @@ def own_place() -> Path | None:
 
 
 def note_check(verdict: Verdict, journal: Path | None = None) -> None:
-    """Keep a check that has ended; nothing is kept of one that could not be made.
+    """Record a check that has ended, unless it could not be made.
 
     Args:
-        verdict: What the judge found.
+        verdict: The verdict of the check.
         journal: Where; this session's own where not given.
     """
     if verdict.state != "not_checked":
@@ -98,7 +98,7 @@ def note_check(verdict: Verdict, journal: Path | None = None) -> None:
 
 
 def note(entry: Entry, journal: Path | None = None) -> bool:
-    """Append a line, and say whether that was possible.
+    """Append a line. Return True if it could be written.
 
     Args:
         entry: The line.
@@ -113,13 +113,13 @@ def note(entry: Entry, journal: Path | None = None) -> bool:
             size = os.fstat(number).st_size
             torn = size and os.pread(number, 1, size - 1) != b"\n"  # a full disk, a machine that went off
             os.write(number, (b"\n" if torn else b"") + msgspec.json.encode(entry) + b"\n")
-    except (OSError, RuntimeError):  # pathlib raises the second where there is no home
+    except (OSError, RuntimeError):  # pathlib raises RuntimeError if there is no home
         return False
     return True
 
 
 def entries(journal: Path | None) -> list[Entry]:
-    """The lines that can be read, the oldest first; none where there is no journal."""
+    """Return the readable lines, the oldest first; none if there is no journal."""
     try:
         if journal is None:
             return []
@@ -136,7 +136,7 @@ def entries(journal: Path | None) -> list[Entry]:
 
 
 def best(lines: Iterable[Entry]) -> dict[str, Entry]:
-    """For each exercise the first of its best checks since its notebook was last begun anew."""
+    """Return for each exercise the first of its best checks since its notebook was last reset."""
     found: dict[str, dict[str, Entry]] = {}
     for entry in lines:
         if entry.kind == "reset":
@@ -149,14 +149,14 @@ def best(lines: Iterable[Entry]) -> dict[str, Entry]:
 
 
 def finished(chapter: course.Chapter, reached: dict[str, Entry]) -> float | None:
-    """The time at which the last of all points of a chapter was reached; None before that.
+    """Return the time at which all points of a chapter were reached; None before that.
 
     Args:
         chapter: The chapter.
-        reached: Its best checks.
+        reached: The best checks of its exercises.
 
     Returns:
-        Seconds since the epoch.
+        Unix time in seconds.
     """
     wanted = [exercise for lab in chapter.labs for exercise in chapter.exercises_of(lab)]
     if not wanted or not all(name in reached and reached[name].full for name in wanted):
@@ -166,8 +166,8 @@ def finished(chapter: course.Chapter, reached: dict[str, Entry]) -> float | None
 
 @contextlib.contextmanager
 def _opened(path: Path, flags: int) -> Iterator[int]:
-    # The folder may be another's, whose work somebody looks at: what is no file must not keep a check waiting, and a
-    # link have no line written into a file elsewhere.
+    # The folder may belong to another user, whose work is being viewed: a pipe must not block a check, and a
+    # link must not make it write to a file elsewhere.
     number = os.open(path, flags | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC, 0o600)
     try:
         if not stat.S_ISREG(os.fstat(number).st_mode):

@@ -1,7 +1,7 @@
-"""JupyterLab as a student meets it: the chapters, nbgrader's Validate button, one ROS domain for the session.
+"""Start JupyterLab for a student: the chapters, nbgrader's Validate button, one ROS domain for the session.
 
-An instructor's JupyterLab is started plainly (``jupyter lab``), so what is switched off here is there. The
-files in ``lab_config/`` say what that is; Jupyter reads them because their folder is put in front of its own.
+An instructor starts JupyterLab directly (``jupyter lab``), so everything that is switched off here is on there. The
+files in ``lab_config/`` list what is off; Jupyter reads them because their folder comes before its own.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 SETTINGS = Path(__file__).with_name("lab_config")
-"""No *Create Assignment*, formgrader and lists of courses: those are for whoever grades. *Validate* gives a cell ten
-minutes instead of half of one, because a check may have to build a workspace."""
+"""Without *Create Assignment*, formgrader and lists of courses, which are for instructors. *Validate* gives a cell ten
+minutes instead of half a minute, because a check may have to build a workspace."""
 PANEL = Path(__file__).with_name("labextensions")
 """The side panel with the course page: an extension of JupyterLab's, ready to be loaded."""
 COURSE_PAGE = "course"
@@ -35,18 +35,18 @@ _DISCOVERY = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
 
 
 class NoSuchFolderError(FileNotFoundError):
-    """The folder that JupyterLab is to open is not there."""
+    """The folder that JupyterLab should open does not exist."""
 
 
 def open_lab(folder: Path, arguments: Sequence[str] = ()) -> None:
     """Run JupyterLab on ``folder`` until the user ends it.
 
     Args:
-        folder: What the file browser shows.
-        arguments: Handed on to JupyterLab, such as ``--no-browser``.
+        folder: The folder that the file browser shows.
+        arguments: Options for JupyterLab, such as ``--no-browser``.
 
     Raises:
-        NoSuchFolderError: ``folder`` is no folder.
+        NoSuchFolderError: ``folder`` is not a folder.
         ValueError: ``ROS_DOMAIN_ID`` is set to something that is no domain.
         NoFreeDomainError: Every domain on this host is in use.
     """
@@ -62,7 +62,7 @@ def open_lab(folder: Path, arguments: Sequence[str] = ()) -> None:
     from jupyterlab.labapp import LabApp
 
     try:
-        # In this process, because the domain is held for as long as it lives.
+        # In this process, because the claim on the domain ends with its process.
         LabApp.launch_instance(
             [*_start_page(), NOTHING_TO_SAVE, *QUIET, *_start_folder(Path.cwd()), *arguments]
         )
@@ -73,10 +73,10 @@ def open_lab(folder: Path, arguments: Sequence[str] = ()) -> None:
 
 
 def end_idle_workers() -> None:
-    """End the threads in which the server has read and written files, so that Python does not wait for them.
+    """End the server's threads for reading and writing files, so that Python does not wait for them.
 
-    Each of them (AnyIO's) ends with the request that it was made for. A request that was being answered when the server
-    was told to end never comes to its end, and the terminal would hang after Ctrl-C.
+    Each of these threads (AnyIO's) ends with its request. A request that was being answered when the server
+    was stopped never ends, and the terminal would hang after Ctrl-C.
     """
     for thread in threading.enumerate():
         stop = getattr(thread, "stop", None)
@@ -85,13 +85,13 @@ def end_idle_workers() -> None:
 
 
 def join_domain() -> DomainClaim | None:
-    """Give the session a ROS domain that all its kernels and terminals are on, and keep it on this host.
+    """Claim a ROS domain on this machine for all kernels and terminals of the session.
 
-    So a node in a notebook hears one in a terminal beside it, and not the neighbour's. What the user has
-    chosen stays.
+    So a node in a notebook hears one in a terminal, but not another user's. A domain that the user has
+    chosen is kept.
 
     Returns:
-        The hold on the domain, or None where ``ROS_DOMAIN_ID`` names it.
+        The claim on the domain, or None if ``ROS_DOMAIN_ID`` names it.
 
     Raises:
         ValueError: ``ROS_DOMAIN_ID`` is set to something that is no domain.
@@ -107,12 +107,12 @@ def join_domain() -> DomainClaim | None:
 
 
 def _start_page() -> list[str]:
-    """Begin with the course page, and have it in the side panel."""
+    """Return the options that open the course page, with the side panel."""
     return [f"--LabApp.default_url=/{COURSE_PAGE}", f"--LabApp.extra_labextensions_path={PANEL}"]
 
 
 def _start_folder(root: Path) -> list[str]:
-    """Begin inside a chapter where there is only one: a single folder to click on helps nobody."""
+    """Return the options that open the chapter, if there is only one: a single folder to click on is no help."""
     inside = [path for path in root.iterdir() if not path.name.startswith((".", "_"))]
     return (
         [f"--FileContentsManager.preferred_dir={inside[0].name}"]

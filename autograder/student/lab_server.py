@@ -1,10 +1,10 @@
-"""The server of ``./course lab``: the course page, and notebooks that are not "unsaved" as soon as they are open.
+"""Serve ``./course lab``: the course page, and notebooks that are not marked unsaved as soon as they are open.
 
-``lab_config/`` switches the page on. It needs nothing of JupyterLab: it is there also where the side panel is not.
+``lab_config/`` switches the page on. It does not need JupyterLab, so it works even without the side panel.
 
-A released notebook names no version of Python, since it is made once and opened with any. JupyterLab writes the
-version of the kernel into each notebook that has none, or another one, and from then on there is something to save:
-the mark of an unsaved notebook, and a question when it is closed, before the student has written a letter. So the
+A released notebook names no version of Python, because it is made once and opened with any version. JupyterLab writes
+the kernel's version into each notebook that has none or a different one. From then on the notebook has changes to save:
+it is marked as unsaved, and asks a question when it is closed, before the student has written a letter. So the
 server puts the version in while it reads the file. The file itself stays as it is until the student saves.
 """
 
@@ -47,7 +47,7 @@ If no page has opened in your browser, open this address:"""
 class _CourseHandler(JupyterHandler):
     auth_resource = "contents"
     _track_activity = False
-    """A page that looks after its points now and then keeps no idle server alive."""
+    """False: a page that updates its points from time to time must not keep an idle server alive."""
 
     @property
     def notebooks(self) -> Path:
@@ -56,7 +56,7 @@ class _CourseHandler(JupyterHandler):
 
     @property
     def journal(self) -> Path:
-        """Its journal."""
+        """The journal of that folder."""
         named = os.environ.get(journal.VARIABLE)
         return Path(named) if named else journal.place(self.notebooks)
 
@@ -65,10 +65,10 @@ class _CourseHandler(JupyterHandler):
         return standing(course.root(), self.notebooks, journal.entries(self.journal))
 
     def name_in_body(self) -> str:
-        """The notebook that a request is about.
+        """Return the notebook that a request names.
 
         Raises:
-            HTTPError: It names none.
+            HTTPError: The request names none.
         """
         try:
             name = json.loads(self.request.body)["notebook"]
@@ -80,12 +80,12 @@ class _CourseHandler(JupyterHandler):
 
 
 class CoursePage(_CourseHandler):
-    """The map of the course."""
+    """The course page."""
 
     @web.authenticated
     @authorized
     async def get(self) -> None:
-        """Show it."""
+        """Show the page."""
         try:
             found = await asyncio.to_thread(self.standing)
             text = course_page.page_html(found, self.base_url, self.xsrf_token.decode())
@@ -97,18 +97,18 @@ class CoursePage(_CourseHandler):
 
 
 class ReadNotebook(_CourseHandler):
-    """A notebook marked as read, or no longer so."""
+    """Marks a notebook as read, or removes the mark."""
 
     @web.authenticated
     @authorized
     async def put(self) -> None:
-        """Mark it."""
+        """Mark the notebook as read."""
         self._note("read")
 
     @web.authenticated
     @authorized
     async def delete(self) -> None:
-        """Take the mark away."""
+        """Remove the mark."""
         self._note("unread")
 
     def _note(self, kind: Any) -> None:
@@ -118,12 +118,12 @@ class ReadNotebook(_CourseHandler):
 
 
 class ResetNotebook(_CourseHandler):
-    """A notebook begun anew."""
+    """Resets a notebook."""
 
     @web.authenticated
     @authorized
     async def post(self) -> None:
-        """Put the released notebook back, and say what the copy of the student's is called."""
+        """Restore the released notebook, and return the name of the copy of the student's."""
         name = self.name_in_body()
         try:
             done = await asyncio.to_thread(resetting.reset, course.root(), self.notebooks, name, self.journal)
@@ -135,12 +135,12 @@ class ResetNotebook(_CourseHandler):
 
 
 class Certificate(_CourseHandler):
-    """The certificate of a chapter, as a file of its own."""
+    """The certificate of a chapter, as a file."""
 
     @web.authenticated
     @authorized
     async def get(self, name: str) -> None:
-        """Hand it out."""
+        """Send the certificate."""
         found = await asyncio.to_thread(self.standing)
         for chapter in found.chapters:
             if chapter.name == name and chapter.finished is not None:
@@ -152,12 +152,12 @@ class Certificate(_CourseHandler):
 
 
 class OpenedNotebooks(AsyncLargeFileManager):
-    """The usual files, and the kernel's version in the notebooks among them."""
+    """The usual file manager, which adds the kernel's version to notebooks as it reads them."""
 
     async def get(self, path: str, *args: Any, **options: Any) -> dict[str, Any]:
-        """The server's answer about a file or folder, with the file's content where that is asked for."""
+        """Return the model of a file or folder, with the file's content if that is asked for."""
         model: dict[str, Any] = await super().get(path, *args, **options)  # type: ignore[no-untyped-call]
-        # A notebook may be damaged, or of another program: then it is shown as it is.
+        # A notebook that is damaged or from another program is shown unchanged.
         match model:
             case {
                 "type": "notebook",
@@ -186,9 +186,9 @@ def _load_jupyter_server_extension(server: ServerApp) -> None:
 
 
 def _tell_the_address_last(server: ServerApp) -> None:
-    """Print the address when everything has started, and leave out the lines in which the server tells it earlier.
+    """Print the address after everything has started, and leave out the server's own lines about it.
 
-    For a server that other machines reach, Jupyter's own words stay: they name its address on the network.
+    If other machines can reach the server, Jupyter's own lines stay: they contain its network address.
     """
 
     def tell() -> None:

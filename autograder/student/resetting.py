@@ -1,4 +1,4 @@
-"""One notebook begun anew: the released one is put in its place, and the student's is kept beside it."""
+"""Reset a notebook: restore the released one, and keep the student's next to it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class CannotReset(Exception):
-    """The notebook stays as it is; the message says why and what to do."""
+    """The notebook was not reset; the message says why and what to do."""
 
 
 @dataclass(frozen=True)
@@ -26,8 +26,8 @@ class Reset:
     """The result of a reset.
 
     Attributes:
-        notebook: Where the released notebook is now.
-        copy: The student's own; None where there was none, or nothing had been changed in it.
+        notebook: The path of the restored notebook.
+        copy: The path of the student's notebook; None if there was none, or it was unchanged.
     """
 
     notebook: Path
@@ -35,16 +35,16 @@ class Reset:
 
 
 def reset(root: Path, folder: Path, name: str, entries_in: Path | None = None) -> Reset:
-    """Put a notebook back as it was released, and keep the student's.
+    """Restore a released notebook, and keep the student's.
 
     Args:
         root: The course.
-        folder: That of the notebooks.
-        name: Of the notebook, such as ``"lab_1_2"``; a path to it will do.
-        entries_in: The journal, in which its points begin anew; this session's own where not given.
+        folder: The folder of the notebooks.
+        name: The name of the notebook, such as ``"lab_1_2"``, or a path to it.
+        entries_in: The journal, in which its points are reset; the default is this session's own.
 
     Raises:
-        CannotReset: There is no such notebook, or nothing can be written there.
+        CannotReset: There is no such notebook, or the folder cannot be written.
         BrokenChapter: A chapter's description cannot be used.
     """
     chapter, lab = _find(root, name)
@@ -60,11 +60,11 @@ def reset(root: Path, folder: Path, name: str, entries_in: Path | None = None) -
 
 
 def released_text(lab: Path) -> bytes:
-    """A lab's notebook as it is released: kept in what students are handed, else derived from its master."""
+    """Return a lab's notebook as released: stored in a hand-out, otherwise made from its master."""
     kept = course.released(lab)
     if kept.is_file():
         return kept.read_bytes()
-    from autograder.masters.release import release_text  # no part of what students are handed
+    from autograder.masters.release import release_text  # not part of a hand-out
     from autograder.masters.source import source_notebook
 
     return release_text(source_notebook(lab / course.LAB)).encode()
@@ -80,7 +80,7 @@ def _find(root: Path, name: str) -> tuple[course.Chapter, Path]:
 
 
 def _keep(path: Path) -> Path:
-    """Copy a notebook beside itself, under a name that nothing has yet."""
+    """Copy a notebook into its folder, under a name that does not exist yet."""
     day = time.strftime("%Y-%m-%d")
     for number in range(1, 1000):
         again = f", {number}" if number > 1 else ""

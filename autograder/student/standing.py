@@ -1,4 +1,4 @@
-"""The map of the course with what a student has reached: chapters, notebooks and exercises in their order."""
+"""Compute a student's progress: chapters, notebooks and exercises in order, with their points."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ State = Literal["new", "begun", "done"]
 
 @dataclass(frozen=True)
 class ExerciseStanding:
-    """An exercise, and the best that its checks have found.
+    """An exercise and its best check.
 
     Attributes:
-        id: Such as ``"lab_1_2.talker"``.
-        title: Its name for a person.
-        points: The best check's.
-        possible: Points that it can have.
+        id: The exercise's id, such as ``"lab_1_2.talker"``.
+        title: The title for people.
+        points: The points of the best check.
+        possible: The most points that it can have.
     """
 
     id: str
@@ -41,14 +41,14 @@ class NotebookStanding:
     """A notebook of a chapter.
 
     Attributes:
-        name: Such as ``"lab_1_2"``.
-        title: Its heading.
-        minutes: How long it takes, as its head says; 0 where it says nothing.
-        path: Where it is, from the folder of the notebooks; empty where it is not there.
-        exercises: In the order in which they are done.
-        read: Whether its reader has marked it as read.
-        touched: Whether there is anything to begin anew: it was checked or marked, or is not as it was released.
-        worked: When the student last checked, marked, reset or saved it, in seconds since the epoch; 0 for never.
+        name: The name, such as ``"lab_1_2"``.
+        title: The heading of the notebook.
+        minutes: The time it takes, from its first cell; 0 if that names none.
+        path: The path relative to the folder of the notebooks; empty if the file does not exist.
+        exercises: The exercises, in the order in which they are done.
+        read: True if the student has marked it as read.
+        touched: True if there is something to reset: it was checked, marked or changed.
+        worked: Unix time in seconds at which the student last checked, marked, reset or saved it; 0 for never.
     """
 
     name: str
@@ -72,7 +72,7 @@ class NotebookStanding:
 
     @property
     def state(self) -> State:
-        """Done with all points, or where there are none, when it is marked as read."""
+        """The state: done if it has all points or, without exercises, is marked as read."""
         if self.possible == 0:
             return "done" if self.read else "new"
         return "done" if self.points >= self.possible else "begun" if self.points > 0 else "new"
@@ -83,10 +83,10 @@ class ChapterStanding:
     """A chapter.
 
     Attributes:
-        name: Its folder's.
-        title: For a person.
-        notebooks: In the order in which they are read.
-        finished: When the last of all points was reached, in seconds since the epoch; None before that.
+        name: The name of its folder.
+        title: The title for people.
+        notebooks: The notebooks, in the order in which they are read.
+        finished: Unix time in seconds at which all points were reached; None before that.
     """
 
     name: str
@@ -111,7 +111,7 @@ class ChapterStanding:
 
     @property
     def minutes_left(self) -> int:
-        """Minutes of the notebooks that are not done, as their heads say."""
+        """The total minutes of the notebooks that are not done."""
         return sum(one.minutes for one in self.notebooks if one.state != "done")
 
 
@@ -120,9 +120,9 @@ class Standing:
     """The progress of a student.
 
     Attributes:
-        chapters: In their order.
-        following: The notebook to go on with; None where all are done.
-        begun: Whether anything was done yet.
+        chapters: The chapters, in order.
+        following: The notebook to continue with; None if all are done.
+        begun: True if the student has done anything yet.
     """
 
     chapters: tuple[ChapterStanding, ...]
@@ -131,12 +131,12 @@ class Standing:
 
 
 def standing(root: Path, folder: Path, entries: Sequence[Entry]) -> Standing:
-    """The progress of a student.
+    """Return the progress of a student.
 
     Args:
         root: The course.
-        folder: That of the notebooks.
-        entries: The journal.
+        folder: The folder of the notebooks.
+        entries: The lines of the journal.
 
     Raises:
         BrokenChapter: A chapter's description cannot be used.
@@ -152,7 +152,7 @@ def standing(root: Path, folder: Path, entries: Sequence[Entry]) -> Standing:
 
 
 def _following(notebooks: Sequence[NotebookStanding]) -> NotebookStanding | None:
-    """The notebook that was worked on last; if that is done, the next one that is not, and after the end the first."""
+    """Return the notebook last worked on; if it is done, the next one that is not, starting again after the last."""
     times = [notebook.worked for notebook in notebooks]
     here = times.index(max(times)) if times else 0
     in_order = [*notebooks[here:], *notebooks[:here]]
@@ -182,13 +182,13 @@ def _chapter(
 
 
 def _is_changed(notebook: Path, lab: Path) -> bool:
-    """True if a notebook was saved since it was released; not known in a course that was not handed out."""
+    """Return True if a notebook was changed since it was released; known only in a hand-out."""
     released = course.released(lab)
     return notebook.is_file() and released.is_file() and notebook.read_bytes() != released.read_bytes()
 
 
 def notebook_path(chapter: course.Chapter, lab: Path, folder: Path) -> Path:
-    """The path of a notebook, there or not yet, in a folder of notebooks, which may be that of one chapter."""
+    """Return the path of a notebook, existing or not, in a folder of notebooks or of one chapter."""
     alone = folder / f"{lab.name}.ipynb"
     return alone if alone.is_file() else folder / chapter.folder.name / f"{lab.name}.ipynb"
 
@@ -200,7 +200,7 @@ def _exercise(exercise_id: str, reached: dict[str, Entry]) -> ExerciseStanding:
 
 
 def _head(lab: Path) -> tuple[str, int]:
-    """The title of a notebook and its minutes, from its master or from what was released."""
+    """Return the title of a notebook and its minutes, from its master or from the released notebook."""
     for file in (lab / course.LAB, course.released(lab)):
         if file.is_file():
             return _read_head(file, file.stat().st_mtime_ns)

@@ -132,7 +132,7 @@ def collect(tiny: TinyClass, class_: list[Pupil], folder: Path) -> list[Path]:
 
     archives = hand_in(folder, class_, work_of(tiny))
     (folder / "times.csv").write_text(times(class_))
-    said = run("collect", tiny.path, *archives, "--timezone", "UTC", "--times", folder / "times.csv")
+    said = run("collect", tiny.path, *archives, "--timezone", "UTC", folder / "times.csv")
     assert f"{sum(pupil.is_collected for pupil in class_)} placed, 0 unchanged, " in said, said
     assert "not placed   moodle.zip/Guest User_999" in said
     for reason in ("its name leads out of the archive", "it is a link", "unpacks to 60 MB"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import subprocess
 import sysconfig
 from importlib.metadata import distributions
 from typing import TYPE_CHECKING
@@ -16,6 +17,7 @@ from environment.lock import (
     ROOT,
     cut,
     inputs_digest,
+    main,
     split_blocks,
 )
 
@@ -121,3 +123,23 @@ def test_everything_that_pip_installed_here_is_locked() -> None:
     here = {re.sub(r"[-_.]+", "-", str(found.metadata["Name"])).lower() for found in by_pip}
     assert "jupyterlab" in here
     assert here - known == set()
+
+
+def test_a_folder_is_filled_with_the_files_of_the_locks_by_their_hashes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked: list[list[str]] = []
+
+    def run(command: list[str], **_: object) -> subprocess.CompletedProcess[str]:
+        asked.append(command)
+        (tmp_path / "six-1.17.0-py3-none-any.whl").touch()
+        return subprocess.CompletedProcess(command, 0)
+
+    monkeypatch.setattr(subprocess, "run", run)
+    assert main(["--wheels", str(tmp_path)]) == 0
+    (command,) = asked
+    assert "--require-hashes" in command
+    assert [word for word in command if word.endswith(".lock")] == [
+        f"{REQUIREMENTS / name}.lock" for name in LOCKS
+    ]
+    assert capsys.readouterr().out == f"{tmp_path} has 1 files. Type: ./course setup --wheels {tmp_path}\n"

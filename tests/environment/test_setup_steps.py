@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -273,3 +274,24 @@ def test_a_failure_shows_the_end_of_the_log_and_the_usual_cause(
     assert "line 10\n" not in shown
     assert max(len(shown_line) for shown_line in shown.splitlines()) < 300
     assert said.lower() in shown.lower()
+
+
+def test_a_set_up_without_a_network_installs_from_the_folder_alone(tmp_path: Path) -> None:
+    assert bootstrap.without_network(None) == {}
+    variables = bootstrap.without_network(tmp_path)
+    assert (variables["PIP_NO_INDEX"], variables["PIP_FIND_LINKS"]) == ("1", str(tmp_path))
+    with pytest.raises(SetupError, match=r"environment\.lock --wheels FOLDER` fills one"):
+        bootstrap.without_network(tmp_path / "none")
+
+
+def test_uv_is_given_no_option_twice(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The project is installed without an index, and pip may be told that there is none anyway."""
+    setup = Setup(Place(tmp_path, Path(sys.executable)), Ros("wheels"), {}, io.StringIO())
+    asked: list[list[str]] = []
+    listed = subprocess.CompletedProcess([], 0, stdout=":env:.no-index='1'\n")
+    monkeypatch.setattr(subprocess, "run", lambda *_, **__: listed)
+    monkeypatch.setattr(
+        Setup, "_run", lambda _self, _what, command, **_: asked.append(list(map(str, command)))
+    )
+    setup._uv("--no-index", "--editable", "here")
+    assert asked[0].count("--no-index") == 1

@@ -62,13 +62,6 @@ def test_input_is_named_and_not_taken_for_an_open_part(raised: str) -> None:
     assert found.key == ASKS_FOR_INPUT.key
 
 
-def test_a_method_without_self_is_named() -> None:
-    line = "TypeError: main.<locals>.TalkerNode.tick() takes 0 positional arguments but 1 was given"
-    advice = next(filter(None, (m.recognise(_shown(["    f()", line])) for m in CRASHES)))
-    assert "tick of TalkerNode" in advice.text
-    assert "def tick(self)" in advice.next_step
-
-
 def test_the_line_that_is_quoted_is_what_was_raised_and_where() -> None:
     library = "/usr/lib/python3.11/threading.py"
     lines = ["    work()", f'  File "{library}", line 982, in run', "    self._target()", "LookupError: 'x'"]
@@ -259,6 +252,19 @@ def test_of_the_programs_of_a_launch_each_has_a_traceback_of_its_own() -> None:
 
 def test_nothing_is_meant_by_nothing() -> None:
     assert not meant("")
+
+
+def test_the_traceback_of_a_launched_program_is_not_among_the_words_of_the_programs() -> None:
+    lines = (
+        "[talker-1] Traceback (most recent call last):",
+        '[talker-1]   File "/ws/lib/my_robot_pkg/talker", line 33, in <module>',
+        "[listener-2] I heard: Hello",
+        "[talker-1]     raise ValueError(text)",
+        "[talker-1] ValueError: I heard: nothing",
+        "[talker-1] I go on",
+    )
+    part = Part("launching", events=[Event(0.0, "output", "stdout", {"text": line}) for line in lines])
+    assert part.said() == ["[listener-2] I heard: Hello", "[talker-1] I go on"]
 
 
 def test_a_traceback_that_was_cut_off_does_not_hide_a_whole_one_of_another_run() -> None:

@@ -46,8 +46,6 @@ def said(t: float) -> Event:
         ([SEEN, said(0.9), ended(0.4 + 2 * PATIENT)], False),
         ([SEEN, ended(0.4 + PATIENT)], True),
         ([SEEN, ended(0.9)], False),
-        ([SEEN, Event(0.5, "spared", "a wait for a server", {"seconds": PATIENT}), ended(0.6)], True),
-        ([SEEN, Event(0.5, "spared", "a wait for a server", {"seconds": 0.01}), ended(0.6)], False),
         ([ended(9.0)], False),
         ([SEEN], False),
         ([SEEN, CALLED, SERVING, ended(0.4 + 2 * PATIENT)], False),

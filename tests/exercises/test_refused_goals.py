@@ -6,13 +6,13 @@ import pytest
 
 from autograder.kit.crashes import traceback_of
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.goal_mistakes import GOES_ON_AFTER_REFUSAL, REFUSAL_NOT_REPORTED, crashed_by_refusal
+from autograder.kit.goal_mistakes import REFUSAL_NOT_REPORTED, crashed_by_refusal
 from autograder.kit.goal_reports import REFUSED, refused_as_seen
 
 REFERENCE = Reference("exercise_1_3.cancel", {})
 FRAME = '  File "/home/student/client.py", line 9, in run_client\n    '
 SLIP = f"Traceback (most recent call last):\n{FRAME}print(NAMES[answer.status])\nKeyError: 0"
-MEANT = f"Traceback (most recent call last):\n{FRAME}raise RuntimeError('refused')\nRuntimeError: refused"
+MEANT = f"Traceback (most recent call last):\n{FRAME}raise RuntimeError('rejected')\nRuntimeError: rejected"
 GOAL = Event(0.0, "goal", "/fibonacci", {"fields": {"order": 20}})
 ASKED = Event(0.2, "result_request", "/fibonacci", {"known": True})
 RESULT = Event(0.3, "result", "/fibonacci", {"status": "canceled", "fields": {"sequence": []}})
@@ -46,37 +46,17 @@ def evidence(
     ("refused", "wrong"),
     [
         ([raised(MEANT)], ""),
-        ([say("not accepted"), Event(0.5, "subject", "returned")], ""),
-        ([ASKED, say("ended with 0"), Event(0.5, "subject", "returned")], "asked for the result"),
-        ([ASKED, raised(SLIP)], "asked for the result"),
+        ([say("rejected"), Event(0.5, "subject", "returned")], ""),
+        ([ASKED, say("ended with 0"), Event(0.5, "subject", "returned")], "“ended with 0”"),
+        ([ASKED, raised(SLIP)], "nothing was said of it"),
         ([Event(0.5, "subject", "returned")], "nothing was said of it"),
         ([], "nothing was said of it"),
-        ([say("not accepted")], "said so, and did not end"),
+        ([say("rejected")], "said so, and did not end"),
     ],
 )
 def test_a_refusal_is_told_in_words_of_no_other_run(refused: list[Event], wrong: str) -> None:
     seen = refused_as_seen(evidence(refused))
     assert seen.startswith(wrong) if wrong else seen == ""
-
-
-@pytest.mark.parametrize(
-    ("line", "claimed"),
-    [
-        ("Goal accepted :)", True),
-        ("accepted: True", True),
-        ("goal accepted = yes, asking for its result", True),
-        ("waiting for the goal to be accepted", False),
-        ("Goal accepted?", False),
-        ("accepted: False", False),
-        ("the goal was not accepted", False),
-    ],
-)
-def test_who_calls_a_refused_goal_accepted_has_not_told_of_the_refusal(line: str, claimed: bool) -> None:
-    refused = [say("Goal rejected :("), say(line), ASKED, Event(0.5, "subject", "returned")]
-    both = evidence(refused, canceled=line)
-    assert refused_as_seen(both).startswith(f"“{line}”") is claimed
-    assert (GOES_ON_AFTER_REFUSAL.recognise(both) is not None) is claimed
-    assert not refused_as_seen(evidence(refused)), "what is said of no accepted goal is no claim"
 
 
 def test_a_run_that_never_was_is_not_called_a_run_without_a_goal() -> None:
@@ -92,15 +72,10 @@ def test_an_exception_that_only_a_refusal_causes_is_told_with_it() -> None:
     assert crashed_by_refusal(evidence([raised(SLIP)], end=raised(SLIP))) is None
 
 
-def test_who_says_nothing_is_told_whether_it_still_waits() -> None:
-    waits, ends = (
-        REFUSAL_NOT_REPORTED.recognise(evidence([])),
-        REFUSAL_NOT_REPORTED.recognise(evidence([Event(0.5, "subject", "returned")])),
-    )
-    assert waits is not None
-    assert "still waits" in waits.text
-    assert ends is not None
-    assert "still waits" not in ends.text
+def test_who_says_nothing_is_told_the_word() -> None:
+    advice = REFUSAL_NOT_REPORTED.recognise(evidence([Event(0.5, "subject", "returned")]))
+    assert advice is not None
+    assert "`rejected`" in advice.text
 
 
 def test_what_is_raised_on_purpose_at_a_refusal_does_not_hide_a_slip_in_another_run() -> None:

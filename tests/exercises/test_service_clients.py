@@ -147,7 +147,7 @@ def test_who_is_done_stays_so_while_one_more_call_is_on_its_way() -> None:
 
 
 def test_to_give_up_at_once_does_not_count_more_where_one_call_came_through_by_chance() -> None:
-    gone = ("output", "stderr", {"text": "add_two_ints is not there"}), ("subject", "exited", {"code": 1})
+    gone = ("output", "stderr", {"text": "add_two_ints is not available"}), ("subject", "exited", {"code": 1})
     asked = ("request", "/add_two_ints", {"fields": {"a": 1, "b": 2}})
     reference = Reference("e", {"client": {"/add_two_ints": "my_robot_interfaces/srv/AddTwoInts"}})
     unlucky = [seen_of(name, *gone) for name in (LATE, BIASED, ABSENT)]

@@ -1,4 +1,4 @@
-"""A client process of a cluster that the test plays itself, a pool that speaks with it, and what workers may say."""
+"""Play the client process of a cluster in tests: a dispatcher that talks to it, and the answers of workers."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ import msgspec
 from tiny_class import FakeEngine, TinyClass
 
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.cluster.messages import Answered, Command, Give, Joined, News, Offer, Order
-from autograder.grading.cluster.pool import Pool
 from autograder.grading.rebuilding.task_making import tasks_of
+from autograder.grading.running.dispatcher import Dispatcher
+from autograder.grading.running.orders import Answered, Command, Give, Joined, News, Offer, Order
 from autograder.grading.task import Task
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from autograder.grading.running.engine import Done
+    from autograder.grading.running.dispatcher import Done
 
 HERE = Offer("here", slots=2, obstacle="")
 
@@ -80,10 +80,10 @@ def tasks_of_six(tiny: TinyClass) -> list[Task]:
     return [replace(task, student=f"student-{number}") for number in range(6)]
 
 
-def make_pool(link: FakeLink, told: list[str] | None = None, **options: Any) -> Pool:
+def make_dispatcher(link: FakeLink, told: list[str] | None = None, **options: Any) -> Dispatcher:
     tell = (told if told is not None else []).append
     settings = {"judge": "a:B", "boxed": True, "return_seconds": 0.05, **options}
-    return Pool(link, "tcp://x:1", tell=tell, **settings)  # type: ignore[arg-type]
+    return Dispatcher(link, "tcp://x:1", tell=tell, **settings)
 
 
 def students(done: list[Done]) -> list[str]:

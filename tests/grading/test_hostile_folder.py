@@ -158,3 +158,23 @@ def test_nothing_of_the_current_folder_runs_while_the_machine_is_looked_at(
     done = typed(course, hostile, "doctor")
     assert "rclpy" in done.stdout, done.stdout + done.stderr
     assert hostile.marks() == ""
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("appeal", ".", "mallory", "lab_1_2.talker"),
+        ("replay", "conf.json"),
+        ("worker", "tcp://here"),
+        ("demo", "."),
+    ],
+    ids=lambda words: words[0],
+)
+def test_a_command_that_is_refused_in_the_folder_has_run_nothing_of_it(
+    course: Path, hostile: Hostile, words: tuple[str, ...]
+) -> None:
+    (hostile.path / "conf.json").write_text("{}")
+    done = typed(course, hostile, *words)
+    assert done.returncode not in (0, 127), done.stdout + done.stderr
+    assert "Traceback" not in done.stderr
+    assert hostile.marks() == ""

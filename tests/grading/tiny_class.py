@@ -15,7 +15,7 @@ from autograder.boxes.execution import CellRun, Ended, Execution
 from autograder.boxes.verdicts_without_judge import grader_trouble, zero_points
 from autograder.grading.batch import grade
 from autograder.grading.classes.new_class import new_class
-from autograder.grading.running.engine import Done
+from autograder.grading.running.dispatcher import Done
 
 sys.path.insert(0, str(Path(__file__).parent))  # for fake_judge, which a worker imports by that name
 from fake_judge import verdict

@@ -60,18 +60,8 @@ def _without(evidence: Evidence) -> Evidence:
 
 
 def _quiet(part: Part) -> Part:
-    """The part without tracebacks; each program below a launch prints its own, behind its name."""
-    programs = [_LAUNCHED.match(str(event.data.get("text", ""))) for event in part.events]
-    plain = [
-        replace(event, name=f"{event.name} {program[0]}", data={"text": event.data["text"][program.end() :]})
-        if event.kind == "output" and program
-        else event
-        for event, program in zip(part.events, programs, strict=True)
-    ]
-    return replace(part, events=[_told(part.events[place]) for place, _ in without_tracebacks(plain)])
-
-
-_LAUNCHED = re2.compile(r"\[[\w.]+-\d+\] ")
+    """The part without tracebacks."""
+    return replace(part, events=[_told(event) for _, event in without_tracebacks(part.events)])
 
 
 def _told(event: Event) -> Event:

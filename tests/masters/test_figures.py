@@ -56,7 +56,7 @@ def test_a_notebook_carries_its_figure_with_its_words(master: Path, ten_points: 
     [
         ("node.svg", SVG.replace("talks", "listens"), "has changed since its PNG was drawn"),
         ("node.svg", SVG.replace("<desc>It talks [loudly].</desc>", ""), "has no words"),
-        ("node.svg", "<svg", "is no SVG"),
+        ("node.svg", "<svg", "is not an SVG"),
         ("node.png", None, "needs .*node.png"),
         ("node.svg", None, "needs .*node.svg"),
     ],

@@ -10,6 +10,7 @@ from IPython.core.inputtransformer2 import TransformerManager
 from jupyter_client.manager import start_new_kernel
 
 from autograder import course
+from autograder.masters.first_cell import NAME as SET_UP_CELL
 from autograder.student import fresh_kernel
 from autograder.student.lab import NOTEBOOKS_VARIABLE
 from autograder.student.standing import notebook_path
@@ -79,14 +80,15 @@ def checks() -> Iterator[Any]:
     for chapter in course.chapters(course.root()):
         for lab in chapter.labs:
             cells = json.loads(notebook_path(chapter, lab, chapters).read_text(encoding="utf-8"))["cells"]
-            sources = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+            code = [cell for cell in cells if cell["cell_type"] == "code" and cell["id"] != SET_UP_CELL]
+            sources = ["".join(cell["source"]) for cell in code]
             for place, source in enumerate(sources):
                 if source.startswith("check("):
                     yield pytest.param(sources[: place + 1], id=source.partition(",")[0])
 
 
 @pytest.mark.parametrize("cells", list(checks()))
-def test_each_check_of_the_course_needs_the_first_cell(
+def test_each_check_of_the_course_needs_the_first_cell_that_is_not_the_set_up(
     monkeypatch: pytest.MonkeyPatch, cells: list[str]
 ) -> None:
     assert to_run(monkeypatch, cells, [len(cells) - 1])[0] == 0

@@ -29,6 +29,7 @@ SUMMARY = "Solution (click to expand)"
 STATIC = "_static"
 _ATTACHMENT = re2.compile(r"\(attachment:([^)]+)\)")
 _NOTEBOOK_LINK = re2.compile(r"\]\(([\w./-]*\.ipynb)#([^)]+)\)")
+_README_PICTURE = re2.compile(r"!\[[^\]]*\]\(docs/images/[^)]+\)")
 _WAYS = re2.compile(r"^(← Previous: |Next: )")
 _OUTCOME = re2.compile(r"(?m)^\| ([^|]+) \| [^|]+ \| .*/([\w-]+)\.ipynb\) \|$")
 _PARTS = {
@@ -73,6 +74,8 @@ def write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str,
     for page in root.glob("*.md"):
         name = "index.md" if page.name == "README.md" else page.name
         text = page.read_text(encoding="utf-8")
+        if name == "index.md" and edition == CLASS:  # README's pictures may show how a task is solved
+            text = _README_PICTURE.sub("", text)
         (folder / name).write_text(text + _contents(root) if name == "index.md" else text, encoding="utf-8")
     for page in folder.rglob("*.md"):
         text = (

@@ -19,6 +19,7 @@ from autograder.grading.classes.seeds import create_secret, read_secret
 from autograder.grading.errors import ClassIncomplete, NotAClass, clear_disk_errors
 from autograder.grading.rebuilding.submission import reason_against_file
 from autograder.regular_files import remove_unfinished
+from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -112,7 +113,7 @@ class ClassDirectory:
         if not any("WireExecute" in step for step in steps):
             raise ClassIncomplete(
                 f"{self.path / CONFIG_NAME} does not grade with the judge. Make a class with "
-                f"`./course new-class` and copy the lines on Autograde from its {CONFIG_NAME}."
+                f"`{COMMAND} new-class` and copy the lines on Autograde from its {CONFIG_NAME}."
             )
         url = str(config.CourseDirectory.get("db_url") or "sqlite:")
         if not url.startswith("sqlite:") and not config.CourseDirectory.get("course_id"):

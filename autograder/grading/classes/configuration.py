@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from autograder.boxes.limits import Limits
 from autograder.grading.classes.class_directory import CONFIG_NAME
 from autograder.grading.errors import ClassIncomplete
+from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -92,13 +93,13 @@ def check_configuration(directory: ClassDirectory) -> None:
         instead = f" {_INSTEAD[option]}." if option in _INSTEAD else ""
         raise ClassIncomplete(
             f"{path} sets c.{option}, which has no effect on how submissions are graded here: delete that line, or "
-            f"write it as in a class that `./course new-class` makes.{instead}"
+            f"write it as in a class that `{COMMAND} new-class` makes.{instead}"
         )
     for section in ("Autograde", "GenerateFeedback"):
         if not directory.config[section].get("exporter_class"):
             raise ClassIncomplete(
                 f"{path} does not set c.{section}.exporter_class, so that nbgrader's own commands would go past the "
-                "judge: copy the line from a class that `./course new-class` makes."
+                f"judge: copy the line from a class that `{COMMAND} new-class` makes."
             )
     limits_of(directory)
 

@@ -35,6 +35,7 @@ from autograder.grading.rebuilding import nodes
 from autograder.masters.layout import lab_name, masters, relinked
 from autograder.masters.master_errors import MasterError
 from autograder.masters.source import source_notebook
+from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator, Sequence
@@ -57,7 +58,7 @@ c.CourseDirectory.root = os.path.dirname(os.path.abspath(__file__))
 # What students get: each solution replaced by its TODO comment, given cells locked.
 c.GenerateAssignment.preprocessors = ReleaseSteps()
 
-# How a submission is graded: the judge watches each check cell on the wire, whether it is `./course grade`,
+# How a submission is graded: the judge watches each check cell on the wire, whether it is `{command} grade`,
 # `nbgrader autograde` or formgrader's button that starts it. Without the first line, the second one refuses to grade.
 c.Autograde.exporter_class = "autograder.grading.nbgrader_commands.SubmissionExporter"
 c.Autograde.autograde_preprocessors = ["autograder.grading.nbgrader_commands.WireExecute"]
@@ -66,10 +67,10 @@ c.Autograde.autograde_preprocessors = ["autograder.grading.nbgrader_commands.Wir
 c.GenerateFeedback.exporter_class = "autograder.grading.nbgrader_commands.FeedbackExporter"
 c.HTMLExporter.filters = {{"markdown2html": "autograder.grading.returning.page_exporter.markdown_to_html"}}
 
-# The time zone of due dates in formgrader, and of the times that `./course grade` shows.
+# The time zone of due dates in formgrader, and of the times that `{command} grade` shows.
 c.NbGraderAPI.timezone = "{timezone}"
 
-# `nbgrader export` and `./course grade` each write a table: give nbgrader's a name of its own. In neither does
+# `nbgrader export` and `{command} grade` each write a table: give nbgrader's a name of its own. In neither does
 # a spreadsheet find a formula.
 c.ExportApp.plugin_class = "autograder.grading.export.SafeCsvExport"
 c.ExportPlugin.to = "nbgrader_export.csv"
@@ -106,7 +107,7 @@ class NewClass:
             (
                 f"{self.path} is a class with these assignments: {', '.join(self.assignments)}.",
                 f"Due dates in formgrader are times in {self.timezone}: see {CONFIG_NAME}.",
-                "Hand out       what ./course hand-out FOLDER makes: the notebooks with all that they need",
+                f"Hand out       what {COMMAND} hand-out FOLDER makes: the notebooks with all that they need",
                 f"Put work into  {self.path / 'submitted'}/<student>/<assignment>/<assignment>.ipynb",
                 f"Then           {course_command('grade', self.path)}",
             )
@@ -140,7 +141,9 @@ def new_class(
     _check_place(path, course_root)
     sources = sources_of(course_root, assignments)
     timezone = timezone or machine_timezone()
-    config = CONFIG.format(timezone=timezone, cell_seconds=cell_seconds, notebook_seconds=notebook_seconds)
+    config = CONFIG.format(
+        command=COMMAND, timezone=timezone, cell_seconds=cell_seconds, notebook_seconds=notebook_seconds
+    )
     made_folder = not path.exists()
     try:
         with clear_disk_errors(path):

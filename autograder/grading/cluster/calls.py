@@ -7,7 +7,7 @@ from __future__ import annotations
 
 
 def offer_as_json(slots: int) -> bytes:
-    """The worker's offer, as JSON of an :class:`autograder.grading.cluster.messages.Offer`.
+    """The worker's offer, as JSON of an :class:`autograder.grading.running.orders.Offer`.
 
     Args:
         slots: Notebooks at once: the threads that Dask gives it.
@@ -23,7 +23,7 @@ def execute_order(order: bytes) -> bytes:
     """Do an order; the execution as JSON.
 
     Args:
-        order: An :class:`autograder.grading.cluster.messages.Order` as JSON.
+        order: An :class:`autograder.grading.running.orders.Order` as JSON.
     """
     from autograder.grading.cluster.dask_worker import execute
 

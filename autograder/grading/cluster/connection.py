@@ -8,8 +8,9 @@ import re  # noqa: TID251  (an instructor's address)
 from typing import TYPE_CHECKING
 
 from autograder.grading.cluster.link import Link
-from autograder.grading.cluster.pool import Pool
 from autograder.grading.errors import GradingError
+from autograder.grading.running.dispatcher import Dispatcher
+from environment.installation import installing
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -26,7 +27,8 @@ def check_dask() -> None:
     """
     if importlib.util.find_spec("distributed") is None:
         raise GradingError(
-            "Grading on a cluster needs Dask, which is not installed here. Type: ./course setup --with cluster"
+            "Grading on a cluster needs Dask, which is not installed here. "
+            f"Type: {installing('cluster', clone='--with cluster')}"
         )
 
 
@@ -46,7 +48,7 @@ def check_address(address: str) -> None:
 @contextlib.contextmanager
 def connected(
     address: str, *, judge: str, boxed: bool, tell: Callable[[str], None] = lambda _: None
-) -> Iterator[Pool]:
+) -> Iterator[Dispatcher]:
     """The acceptable workers of a cluster. Leaving it takes back whatever is queued, within seconds.
 
     Args:
@@ -61,6 +63,6 @@ def connected(
         NoWorkers: It has no worker that can be given work.
     """
     with Link(address) as link:
-        pool = Pool(link, address, judge=judge, boxed=boxed, tell=tell)
+        pool = Dispatcher(link, address, judge=judge, boxed=boxed, tell=tell)
         pool.await_workers()
         yield pool

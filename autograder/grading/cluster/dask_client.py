@@ -26,7 +26,7 @@ import msgspec  # noqa: E402
 from distributed import Client, wait  # noqa: E402
 
 from autograder.grading.cluster import calls  # noqa: E402
-from autograder.grading.cluster.messages import (  # noqa: E402
+from autograder.grading.running.orders import (  # noqa: E402
     LARGEST_ANSWER,
     Answered,
     Asked,

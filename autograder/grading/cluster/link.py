@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Self
 
 import msgspec
 
-from autograder.grading.cluster.messages import Broken, Command, News
+from autograder.grading.running.orders import Broken, Command, News
 from autograder.messages.lines import Hangup, Lines
 from autograder.process_trees import end_soon
 from autograder.temporary_folders import unnamed_file

@@ -14,10 +14,10 @@ from distributed import Worker
 
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.cluster.connection import check_address
-from autograder.grading.cluster.messages import Offer
-from autograder.grading.cluster.pool import SchedulerGone
 from autograder.grading.errors import GradingError
 from autograder.grading.rebuilding.course_version import course_version
+from autograder.grading.running.dispatcher import SchedulerGone
+from autograder.grading.running.orders import Offer
 from autograder.temporary_folders import HeldFolder
 
 if TYPE_CHECKING:

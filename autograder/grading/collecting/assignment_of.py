@@ -11,11 +11,11 @@ from autograder.grading.collecting.forms import base_and_number
 from autograder.grading.rebuilding.submission import UnreadableSubmission, parse
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.rebuilding.named_cells import Target
     from autograder.grading.rebuilding.submission import SubmittedCell
+
+_UNDER = "under assignment in collected.csv"
 
 
 class NoTarget(ValueError):
@@ -45,15 +45,6 @@ def stem_of(name: str) -> tuple[str, int]:
     """The name of a notebook without what programs put behind it, and the number that they added."""
     end = name.lower().find(SUFFIX)
     return base_and_number(name[:end] if end > 0 else name.rpartition(".")[0] or name)
-
-
-def notebooks_by_name(notebooks: Mapping[str, Iterable[str]]) -> dict[str, list[Target]]:
-    """The assignments and notebooks of a class by the notebook's name, without regard to capitals."""
-    found: dict[str, list[Target]] = defaultdict(list)
-    for assignment, names in notebooks.items():
-        for name in names:
-            found[name.casefold()].append((assignment, name))
-    return dict(found)
 
 
 class AssignmentOf:
@@ -99,57 +90,53 @@ class AssignmentOf:
         names = {cell.grade_id for cell in cells} - {""}
         mixed = self._directory.named_cells.assignments(cells)
         if len(mixed) > 1 and self._asked not in mixed:
-            raise _of_several(mixed)
+            raise NoTarget(
+                f"it has the cells of {' and of '.join(mixed)}: ask for a notebook of each, or write the one that it "
+                f"is to count for {_UNDER}"
+            )
         held = self._directory.named_cells.closest(names, self._asked if self._asked in mixed else "")
-        agreed = [target for target in named if not held or target in held]
-        if self._asked:
-            target = self._of_asked(agreed or held)
-        else:
-            if named and not agreed:
-                raise _contradiction(named, held)
-            target = _only(agreed or held)
-        if target is None:
-            meant = agreed or held
+        meant = [target for target in named if not held or target in held] or held
+        here = [target for target in meant if self._asked in ("", target[0])]
+        if meant and not here:
+            other = meant[0][0]
+            why = f"it is not for {self._asked}: it is the notebook of {other}"
+            raise NoTarget(f"{why}; to have it there, write {other} {_UNDER}", is_left_out=True)
+        if named and not self._asked and not set(named) & set(meant):
+            says, other = " or ".join(assignment for assignment, _ in named), held[0][0]
+            raise NoTarget(
+                f"its name says {says} and its cells are those of {other}: ask for the right notebook, or write "
+                f"{other} {_UNDER}",
+                other if all(assignment == other for assignment, _ in held) else "",
+            )
+        if self._asked and not here:
+            here = [(self._asked, one) for one in self._directory.notebooks(self._asked)]
+        if len(here) != 1:
             # Cells with names, and none of this class: another notebook of the course, such as its summary.
             raise NoTarget(self._unclear(meant), is_left_out=not meant and bool(names))
-        return target, target in named
+        return here[0], here[0] in named
 
     def _unclear(self, meant: list[Target]) -> str:
-        """The reason why nothing says which notebook a file is: one of these, or of all where there are none."""
+        """The reason why nothing says which notebook a file is: one of these, or of all if there are none."""
         assignments = sorted({self._asked} if self._asked else {assignment for assignment, _ in meant})
         if len(assignments) == 1:
             names = ", ".join(self._directory.notebooks(assignments[0]))
             return (
-                f"it is not clear which notebook of {assignments[0]} it is ({names}): rename it to that one, and "
-                "collect it again"
+                f"it is not clear which notebook of {assignments[0]} it is ({names}): write that one under notebook in "
+                "collected.csv"
             )
         known = f"the class has: {', '.join(self._directory.assignments())}"
         if assignments:
             known = f"notebooks of {' and '.join(assignments)} are called so, or have its cells"
-        return f"it is not clear which assignment it is for ({known}): say --assignment NAME"
-
-    def _of_asked(self, said: list[Target]) -> Target | None:
-        """The notebook of the assignment that was asked for; None where it has several and nothing says which.
-
-        Args:
-            said: The notebooks that it may be, by its name and its cells; none where neither says anything.
-        """
-        here = [target for target in said if target[0] == self._asked]
-        if said and not here:
-            other = said[0][0]
-            raise NoTarget(
-                f"it is not for {self._asked}: it is the notebook of {other}; to have it there, collect it and say "
-                f"--assignment {other}",
-                is_left_out=True,
-            )
-        return _only(here) or _only([(self._asked, one) for one in self._directory.notebooks(self._asked)])
+        return f"it is not clear which assignment it is for ({known}): write it {_UNDER}"
 
     @functools.cached_property
     def _notebooks(self) -> dict[str, list[Target]]:
         """Assignments and notebooks by the notebook's name, which several assignments may have."""
-        return notebooks_by_name(
-            {name: self._directory.notebooks(name) for name in self._directory.assignments()}
-        )
+        found: dict[str, list[Target]] = defaultdict(list)
+        for assignment in self._directory.assignments():
+            for name in self._directory.notebooks(assignment):
+                found[name.casefold()].append((assignment, name))
+        return dict(found)
 
 
 def _cells(data: bytes) -> list[SubmittedCell]:
@@ -158,26 +145,3 @@ def _cells(data: bytes) -> list[SubmittedCell]:
         return parse(data)[0]
     except UnreadableSubmission:
         return []
-
-
-def _only(targets: Sequence[Target]) -> Target | None:
-    """The one target that there is; None where there is none, or several."""
-    return targets[0] if len(targets) == 1 else None
-
-
-def _of_several(assignments: list[str]) -> NoTarget:
-    """The reason against a file that has the checks of several assignments: it would count for one of them alone."""
-    return NoTarget(
-        f"it has the cells of {' and of '.join(assignments)}: ask for a notebook of each; or collect this one alone, "
-        f"once for each of them, the first time with --assignment {assignments[0]}"
-    )
-
-
-def _contradiction(named: list[Target], held: list[Target]) -> NoTarget:
-    """What a file is refused for whose name says one assignment and whose cells say others."""
-    says, other = " or ".join(assignment for assignment, _ in named), held[0][0]
-    return NoTarget(
-        f"its name says {says} and its cells are those of {other}: ask for the right notebook, or collect it alone "
-        f"and say --assignment {other}",
-        other if all(assignment == other for assignment, _ in held) else "",
-    )

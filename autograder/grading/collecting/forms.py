@@ -5,11 +5,13 @@ from __future__ import annotations
 import functools
 import itertools
 import unicodedata
+from collections import defaultdict
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import TYPE_CHECKING
 
 import re2
+from babel.core import Locale
 
 from autograder.grading.table.roster import Identity
 from autograder.regular_files import name_as_text
@@ -44,6 +46,7 @@ class Found:
         readings: Where the name can be read in several ways, the student of each, the longest name first; the first who
             is in the class is meant. Empty where there is one way.
         time: The time as the name has it, also where nobody could read it.
+        assignment: The assignment, if a pattern of the instructor's says it.
     """
 
     identity: Identity
@@ -53,6 +56,7 @@ class Found:
     late: bool = False
     readings: tuple[Identity, ...] = ()
     time: str = ""
+    assignment: str = ""
 
 
 def read_path(parts: Sequence[str], form: str, is_notebook: Callable[[str], bool]) -> Found | None:
@@ -122,20 +126,16 @@ def without_branch(repository: str) -> str:
 
 
 def read_time(text: str) -> datetime | None:
-    """A time as a name or a list has it, in whatever zone that is; None where it cannot be read.
+    """A time as a name or a list has it, in whatever zone that is; None if it cannot be read.
 
-    Beside ISO 8601, systems write what Blackboard does (``2025-10-03-14-05-06``) and dates in English words, as Moodle
+    Besides ISO 8601, systems write what Blackboard does (``2025-10-03-14-05-06``) and dates in words, as Moodle
     (``Friday, 3 October 2025, 2:05 PM``) and Brightspace (``Oct 3, 2025 205 PM``: a folder's name can have no colon).
     """
     text = text.strip().removesuffix(" UTC") + (" +0000" if text.strip().endswith(" UTC") else "")
     text = text.replace(" Z", "Z")  # as YAML writes it
-    plain = text.translate(_NO_MARKS).upper().replace("SEPT ", "SEP ")
-    half = next((half for half in ("AM", "PM") if plain.endswith(half)), "")
-    *date, clock = [word for word in plain.removesuffix(half).split() if word not in _DAYS] or [""]
-    words = f"{' '.join(date)} {clock.rjust(4, '0')}{half}"
     readers: list[Callable[[], datetime]] = [lambda: datetime.fromisoformat(text)]
     readers += [functools.partial(datetime.strptime, text, form) for form in _IN_NUMBERS]
-    readers += [functools.partial(datetime.strptime, words, form) for form in _IN_WORDS]
+    readers.append(lambda: _in_words(text.translate(_NO_MARKS).casefold()))
     for read in readers:
         try:
             return read()
@@ -144,12 +144,37 @@ def read_time(text: str) -> datetime | None:
     return None
 
 
+def _in_words(text: str) -> datetime:
+    """A date with the month in a word, before or behind the day, then the year and the clock.
+
+    Raises:
+        ValueError: It is none.
+    """
+    words = text.split()
+    (month,) = (_months()[word] for word in words if word in _months())
+    day, year, clock = ("".join(filter(str.isdecimal, word)) for word in words if word[0].isdecimal())
+    hour, minute = int(clock[:-2]), int(clock[-2:])
+    half = next((half for half in ("am", "pm") if text.endswith(half)), "")
+    hour = hour % 12 + 12 * (half == "pm") if half and 0 < hour <= 12 else hour
+    return datetime(int(year) if len(year) == 4 else 0, month, int(day), hour, minute)
+
+
+@functools.cache
+def _months() -> dict[str, int]:
+    """The months by their names and short forms in the languages of systems, except those that mean two."""
+    meant: dict[str, set[int]] = defaultdict(set)
+    for language in _LANGUAGES:
+        months = Locale.parse(language).months
+        for form, width in itertools.product(("format", "stand-alone"), ("wide", "abbreviated")):
+            for number, name in months[form][width].items():
+                meant[name.replace(".", "").casefold()].add(number)
+    meant["sept"].add(9)
+    return {name: numbers.pop() for name, numbers in meant.items() if len(numbers) == 1}
+
+
+_LANGUAGES = ("en", "de", "fr", "es", "it", "nl", "pt", "sv", "da", "nb", "fi", "pl", "cs", "tr")
 _NO_MARKS = str.maketrans(dict.fromkeys(",.:"))
-_DAYS = frozenset(("MONDAY", "TUESDAY", "WEDNESDAY", "THURSDAY", "FRIDAY", "SATURDAY", "SUNDAY"))
 _IN_NUMBERS = ("%Y-%m-%d-%H-%M-%S", "%Y-%m-%d %H:%M:%S %z")
-_IN_WORDS = tuple(
-    f"{date} %Y {clock}" for date in ("%b %d", "%B %d", "%d %b", "%d %B") for clock in ("%I%M%p", "%H%M")
-)
 
 
 def _ends(text: str, mark: str) -> list[str]:
@@ -165,11 +190,22 @@ def _moodle(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
     return readings[0], readings
 
 
-def _blackboard(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
-    # A user name may have the mark in it that is in front of it.
-    logins = _ends(f"{found['item']}_{found['login']}", "_") or [found["login"]]
-    readings = tuple(Identity("blackboard", login=login) for login in logins)
-    return readings[-1], readings
+def _at_its_end(lms: str) -> _Who:
+    """Tells the student of a user name that may have the mark in it that is in front of it."""
+
+    def who(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
+        whole = f"{found['item']}_{found['login']}"
+        named = {end: whole.removesuffix(end).replace("_", " ").strip() for end in _ends(whole, "_")}
+        readings = tuple(
+            Identity(lms, login=login, name=name if lms == "ilias" else "") for login, name in named.items()
+        )
+        return readings[-1], readings
+
+    return who
+
+
+def _sakai(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
+    return Identity("sakai", login=found["login"], name=found["name"]), ()
 
 
 def _brightspace(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
@@ -271,7 +307,7 @@ _READERS = {
     # The first attempt in the name is Blackboard's: what is behind it is the student's own.
     "blackboard": _in_one_part(
         r"^(?P<item>.+?)_(?P<login>[^_]+)_attempt_(?P<when>\d{4}(?:-\d\d){5})(?:_(?P<file>.+)|\.txt)$",
-        _blackboard,
+        _at_its_end("blackboard"),
     ),
     # 12345-67890 - Ada Lovelace - Oct 3, 2025 205 PM, a folder; or, with " - lab_1_2.ipynb" behind it, a file. The
     # date is in the language of the course: 3 October, 2025 1405. Some universities have the student's own number in
@@ -301,11 +337,17 @@ _READERS = {
     # Ada Lovelace - lab_1_2.ipynb
     "google": _in_one_part(r"^(?P<name>[^/]*?\S) - (?P<file>.+)$", _google),
     "github": _github,
+    # Lab 1.2/Lovelace, Ada(ada)/Submission attachment(s)/lab_1_2.ipynb
+    "sakai": _in_one_part(r"^(?P<name>[^,()]+, [^()]*)\((?P<login>[^()]+)\)$", _sakai, says_file=True),
+    # Lab 1.2/Lovelace_Ada_ada_12345/lab_1_2.ipynb (from memory)
+    "ilias": _in_one_part(
+        r"^(?P<item>[^_]+_.+?)_(?P<login>[^_]+)_\d+$", _at_its_end("ilias"), says_file=True
+    ),
     # assignment_123_export/submission_456/lab_1_2.ipynb
     "gradescope": _in_one_part(r"^submission_(?P<number>\d+)$", _gradescope, says_file=True),
 }
 FORMS = tuple(_READERS)
-TOLD_APART = tuple(form for form in FORMS if form != "google")
-"""The forms in which the system's own part is in front of the student's. Google's has none: a student may call a file
-as another's is called, so it is read only where the instructor says so."""
+TOLD_APART = tuple(form for form in FORMS if form not in ("google", "ilias"))
+"""The forms that a name shows. Google's is a name that a student may have chosen, and ILIAS's is like many others: they
+are read only if the instructor says so."""
 _BRANCHES = ("-main", "-master")

@@ -78,6 +78,22 @@ _FORMS = (
         ("full name",),
         "last modified (submission)",
     ),
+    _Form(
+        "moodle",
+        ("id", "vollständiger name", "bewertung"),
+        "id",
+        ("matrikelnummer", "id-nummer", "anmeldename", "e-mail-adresse"),
+        ("vollständiger name",),
+        "zuletzt geändert (abgabe)",
+    ),
+    _Form(
+        "moodle",
+        ("identifiant", "nom complet"),
+        "identifiant",
+        ("numéro d'identification", "nom d'utilisateur", "adresse de courriel"),
+        ("nom complet",),
+        "dernière modification (travail remis)",
+    ),
     _Form("canvas", ("student", "id", "section"), "id", ("sis user id", "sis login id"), ("student",)),
     # Canvas's submissions, with the names that its interface for programs gives them.
     _Form(
@@ -105,7 +121,7 @@ _FORMS = (
         ("first name", "last name"),
         "submission time",
     ),
-    # An instructor's own: collect --times.
+    # An instructor's own list of times.
     _Form("", ("id", "handed_in"), "", ("id",), (), "handed_in"),
 )
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import gzip
-from dataclasses import dataclass
+import zlib
+from dataclasses import dataclass, field
 from datetime import datetime  # noqa: TC003  (msgspec reads the annotations)
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,7 @@ from autograder.grading.collecting.forms import without_branch
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
 FOLDER = "collected"
@@ -25,8 +27,6 @@ class Collected:
     Attributes:
         notebook: Its name in the class.
         content: The hash of its bytes.
-        source: The name of the file it came from, for messages.
-        collected: The time of collecting, in UTC.
         when: The time of handing in, in UTC; None where nothing says it.
         order: Grows with later files where there are no times.
         late: Whether the LMS marks it as late.
@@ -39,8 +39,6 @@ class Collected:
 
     notebook: str
     content: str
-    source: str
-    collected: datetime
     when: datetime | None = None
     order: int = 0
     late: bool = False
@@ -51,18 +49,15 @@ class Collected:
     by_hand: bool = False
 
 
-def repository_of(one: Collected) -> str:
-    """The name of the repository of GitHub's that a notebook came from; empty for another system's.
-
-    It ends with a user name, and so does the repository of whoever takes a name that ends as that one.
-    """
-    if one.lms != "github":
+def repository_in(lms: str, parts: Sequence[str], end: str) -> str:
+    """The repository on GitHub in the path of a file: the folder or zip whose name ends with the user name."""
+    if lms != "github":
         return ""
-    *folders, file = one.file.split("/")
+    *folders, file = parts
     if file.endswith(".zip"):
         folders.append(file.removesuffix(".zip"))
     names = map(without_branch, reversed(folders))
-    return next((name for name in names if name.endswith(one.number or one.name)), "")
+    return next((name for name in names if name.endswith(end)), "")
 
 
 @dataclass(frozen=True)
@@ -71,25 +66,27 @@ class History:
 
     Attributes:
         now: The content of ``submitted``, by notebook.
-        before: The notebooks that it has replaced, the oldest first; their bytes are kept.
+        before: The attempts that do not count.
+        replaced: The hashes of files that are being replaced, by notebook, while a command is at work.
     """
 
     now: dict[str, Collected]
     before: tuple[Collected, ...] = ()
+    replaced: dict[str, str] = field(default_factory=dict)
 
     @property
     def when(self) -> datetime | None:
         """The time at which the last of it was handed in, in UTC; None where nothing says so."""
         return max((one.when for one in self.now.values() if one.when is not None), default=None)
 
-    def collected(self, notebook: str) -> set[str]:
-        """The hashes of all that was ever put at a notebook's place, and may be replaced."""
-        ours = (one for one in (*self.now.values(), *self.before) if one.notebook == notebook)
-        return {one.content for one in ours if not one.by_hand}
+    def written(self, notebook: str) -> set[str]:
+        """The hashes of the bytes at a notebook's place that ``collect`` wrote there."""
+        ours = self.now.get(notebook)
+        return {self.replaced.get(notebook, ""), ours.content if ours and not ours.by_hand else ""} - {""}
 
 
 class CollectedRecords:
-    """One file a submission, and the notebooks that were replaced.
+    """One file a submission.
 
     Args:
         state: The class's folder of the autograder's own files.
@@ -118,15 +115,26 @@ class CollectedRecords:
         """
         write_whole(self._path(assignment, student), msgspec.json.encode(history))
 
-    def keep(self, assignment: str, student: str, content: str, data: bytes) -> None:
-        """Keep the bytes of a notebook that is replaced, packed: what is kept must not be larger than what was sent.
+    def kept(self, assignment: str, student: str, content: str) -> bytes | None:
+        """Return an earlier notebook that a version without an inbox has kept here; None if there is none."""
+        try:
+            return gzip.decompress(
+                (self._folder / assignment / f"{student}.kept" / f"{content[:16]}.ipynb.gz").read_bytes()
+            )
+        except (OSError, EOFError, zlib.error):
+            return None
 
-        Raises:
-            OSError: They could not be written.
-        """
-        # No student's record is called so, whatever the student is called.
-        file = self._folder / assignment / f"{student}.kept" / f"{content[:16]}.ipynb.gz"
-        write_whole(file, gzip.compress(data, mtime=0))
+    def waiting(self) -> list[str]:
+        """The names of files that a version without an inbox could not place, and did not keep."""
+        try:
+            listed = msgspec.json.decode((self._folder / "not_placed.json").read_bytes())
+            return [str(one["label"]) for one in listed]
+        except (OSError, msgspec.MsgspecError, LookupError, TypeError):
+            return []
+
+    def all(self) -> list[tuple[str, str]]:
+        """The students and assignments of which there is a record."""
+        return [(path.stem, path.parent.name) for path in self._folder.glob("*/*.json")]
 
     def _path(self, assignment: str, student: str) -> Path:
         return self._folder / assignment / f"{student}.json"

@@ -36,7 +36,7 @@ def _lines(report: CollectReport) -> Iterator[str]:
         late = ", late as the LMS says" if one.late else ""
         again = ", in place of an earlier one" if one.replaced else ""
         yield f"placed       {one.student}/{one.assignment}: {one.label}{when}{late}{again}"
-    for state in (State.EARLIER, State.BESIDE, State.NOT_PLACED):
+    for state in (State.EARLIER, State.BESIDE, State.LEFT_OUT, State.NOT_PLACED):
         for one in report.having(state):
             owner = f"{one.student}: " if one.student else ""
             also = "; the notebook has come, too" if state == State.BESIDE and one.student else ""
@@ -51,7 +51,8 @@ def _lines(report: CollectReport) -> Iterator[str]:
         yield (
             "note         nothing says when that was handed in"
             + (", though the LMS marks some of it as late" if marked else "")
-            + ", so nothing is taken off for being late: say it with --times FILE or --handed-in TIME"
+            + ", so nothing is taken off for being late: write it under handed_in in "
+            "collected.csv, or collect a list with the columns id and handed_in"
         )
     for time in report.unread_times:
         yield (
@@ -66,8 +67,9 @@ def _lines(report: CollectReport) -> Iterator[str]:
     yield ", ".join(f"{count} {state}" for state, count in counts.items())
     if counts[State.NOT_PLACED]:
         yield (
-            "note         grade, report and export repeat what has no place, until it has one; where it needs none, "
-            f"type {course_command('collect', report.path, '--settled', 'NAME')}"
+            f"note         {report.waiting} lines of {report.path / 'collected.csv'} wait: write the student or the "
+            "assignment, or yes or no under use, and type "
+            f"{course_command('collect', report.path)}"
         )
     if counts[State.PLACED]:
         yield f"Then         {course_command('grade', report.path)}"

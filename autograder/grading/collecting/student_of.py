@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from autograder.grading.classes.class_directory import reason_against_name
 from autograder.grading.collecting.forms import TOLD_APART, numbers_in, plain, read_at
 from autograder.grading.collecting.lists import GRADESCOPE
+from autograder.grading.collecting.naming import read_names
 from autograder.grading.table.roster import Identity, Roster, Student
 from autograder.regular_files import name_as_text
 
@@ -23,12 +24,12 @@ if TYPE_CHECKING:
     from autograder.grading.collecting.forms import Found
     from autograder.grading.collecting.lists import Entry
 
-_NO_ID = (
-    "its name does not say whose it is: say --from google where Google Classroom gave it, or put it into a folder with "
-    "the student's id and collect that"
-)
+_WRITE_IT = "write the id under student in collected.csv"
+_NO_ID = f"its name does not say whose it is: {_WRITE_IT}, or add a line to students.csv"
+_LIST_OF = {"moodle": "the grading worksheet (Grades-….csv)", "gradescope": GRADESCOPE}
+"""The list of a system whose numbers are of one work, so that only the list says who a number is."""
 _NOBODY = Identity()
-_BY_NUMBER, _BY_LOGIN = ("canvas", "brightspace"), ("github", "blackboard", "google")
+_BY_NUMBER, _BY_LOGIN = ("canvas", "brightspace"), ("github", "blackboard", "google", "sakai", "ilias")
 """The systems whose names have one person's number, or one person's user name, whatever is handed in."""
 _LISTED = ("canvas", "github", "gradescope")
 """The systems whose lists say whom they know. A number of Moodle's or Gradescope's is of one work."""
@@ -64,8 +65,10 @@ class StudentOf:
         roster: The students of the class.
         is_notebook: Whether a file of this name is a notebook of the class.
         form: The system that the instructor says all is from; empty where names say it.
-        entries: Entries of lists that came with a download; each is about the files that have its number.
-        told: Entries of lists that the instructor gives for their times; they count for work from any system.
+        names: The pattern of ``--names``; empty for none.
+        entries: Entries of all lists, which say who a number is.
+        own: Those that came with the files, whose times are the files'.
+        others: Those that came alone, whose times count if the others have none.
     """
 
     def __init__(
@@ -73,14 +76,17 @@ class StudentOf:
         roster: Roster,
         is_notebook: Callable[[str], bool],
         form: str = "",
+        names: str = "",
         entries: Iterable[Entry] = (),
-        told: Iterable[Entry] = (),
+        own: Iterable[Entry] = (),
+        others: Iterable[Entry] = (),
     ) -> None:
         self._roster = roster
         self._is_notebook = is_notebook
         self._form = form
-        self._told = list(told)
-        self._entries = [*entries, *self._told]
+        self._names = read_names(names) if names else None
+        self._entries = list(entries)
+        self._timed = (_times(own), _times(others))
         self._by_number = {(one.lms, one.number): one for one in self._entries if one.number}
         self._of = functools.cache(self._who)  # many files have one folder
 
@@ -96,6 +102,11 @@ class StudentOf:
             is_alone: Whether the instructor has named this very file, so that it may be called as its student is.
         """
         parts = [unicodedata.normalize("NFC", part) for part in parts]
+        if self._names is not None:
+            found = self._names(parts)
+            hits = [self._of(one)[0] for one in found.readings] if found else []
+            meant = {one.id: one for members in hits for students in members for one in students}
+            return Owners(found, (tuple(meant.values()),) if meant else ())
         forms = [self._form] if self._form else TOLD_APART
         names = [*parts[:-1], PurePath(parts[-1]).stem if is_alone and self._form != "google" else ""]
         # Google's names are the student's own at any place.
@@ -161,6 +172,10 @@ class StudentOf:
         number = asked.number.casefold()  # user names of GitHub's have capitals or not
         is_sure = bool(found and number) and found[0].lms.get(identity.lms, "").casefold() == number
         found = tuple(one for one in found if is_sure or not self._is_another(one, identity))
+        if found and (identity.login or number):
+            # A user name of the system's may be the id of somebody else in the class: the name has to agree.
+            named = self._roster.find(Identity(name=identity.name))
+            found = tuple({one.id: one for one in (*found, *(named if len(named) == 1 else ()))}.values())
         called = identity.login or identity.name
         if not self._roster.students and identity.lms and called:
             found = (Student(called),)
@@ -202,9 +217,10 @@ class StudentOf:
         if owners.rivals:
             read = " and as ".join(form.capitalize() for form in owners.rivals)
             say = " or ".join(f"--from {form}" for form in owners.rivals)
-            return f"its name can be read as {read} gives it, of another student or time each: say {say}"
+            why = f"its name can be read as {read} gives it, of another student or time each"
+            return f"{why}: say {say}, or {_WRITE_IT}"
         if owners.found is None:
-            return _NO_ID
+            return _NO_ID if self._roster.students else f"{_NO_ID}, which the class does not have"
         identity = owners.found.identity
         if not owners.members:
             return self._unknown(identity)
@@ -219,70 +235,44 @@ class StudentOf:
         number = identity.number or identity.login
         known = self._by_number.get((identity.lms, number))
         called = " and ".join(str(names[-1]) for names in known.members if names) if known else str(identity)
-        nobody = f"nobody in the class is called {called or number}: add a line to students.csv, or"
-        if identity.lms == "moodle":
-            return f"{nobody} {_with_worksheet(number)}"
-        if identity.lms == "gradescope" and known is None:
-            return f"{nobody} collect the export itself, whose {GRADESCOPE} says who number {number} is"
-        return (
-            f"{nobody} the id that {identity.lms.capitalize()} uses ({number}) to the column {identity.lms}"
-        )
+        nobody = f"nobody in the class is called {called or number}: add a line to students.csv,"
+        if not identity.lms:
+            return f"{nobody} or {_WRITE_IT}"
+        if identity.lms in _LIST_OF and known is None:
+            return f"{nobody} or {_with_list(identity)}"
+        column = f"put the id that {identity.lms.capitalize()} uses ({number}) into the column {identity.lms}"
+        return f"{nobody} or {_WRITE_IT if identity.lms in _LIST_OF else column}"
 
-    def time(self, student: str, assignment: str, identity: Identity = _NOBODY) -> datetime | None:
-        """The only time at which lists say that somebody handed in, in their own time zone; None where they say none.
-
-        What the instructor says of a student goes before what a system's list says of a number.
-        """
+    def time(self, identity: Identity) -> datetime | None:
+        """The only time at which lists say that this number handed in; None if they do not say it, or several."""
         number = (identity.lms, identity.number or identity.login)
-        keys = ((*whose, name) for whose in (("", student), number) for name in (assignment, ""))
-        times = next((self._times[key] for key in keys if key in self._times), ())
+        times = next((known[number] for known in self._timed if number in known), set())
         return next(iter(times)) if len(times) == 1 else None
-
-    def has_time_of(self, student: str, assignment: str) -> bool:
-        """True if the instructor's lists name this very assignment of a student's."""
-        return ("", student, assignment) in self._times
 
     @property
     def of_several_times(self) -> list[str]:
-        """Those of whom lists have several times, so that none counts."""
-        return sorted({number for (_, number, _), times in self._times.items() if len(times) > 1})
+        """The numbers for which lists have several times, so that none counts."""
+        return sorted({number for (_, number), times in self._timed[0].items() if len(times) > 1})
 
-    @property
-    def strangers(self) -> list[str]:
-        """The names in a list of times that are no student's of the class."""
-        return [
-            str(names[0])
-            for entry in self._told
-            for names in entry.members
-            if names and entry.when is not None and self._first(names) is None
-        ]
+    def student(self, entry: Entry) -> Student | None:
+        """The student of an entry of the instructor's own list; None if it names no student of the class."""
+        hit = self._first(entry.members[0]) if entry.members else None
+        return hit[0] if hit else None
 
-    @functools.cached_property
-    def _times(self) -> dict[tuple[str, str, str], set[datetime]]:
-        """The times by system, number and assignment; by student and assignment where the instructor gives them."""
-        times: dict[tuple[str, str, str], set[datetime]] = defaultdict(set)
-        for entry in self._entries:
-            if entry.when is not None and entry.number:
-                times[entry.lms, entry.number, entry.assignment].add(entry.when)
-        for entry in self._told:
-            for names in entry.members:
-                if entry.when is not None and (hit := self._first(names)):
-                    times["", hit[0].id, entry.assignment].add(entry.when)
-        return times
+
+def _times(entries: Iterable[Entry]) -> dict[tuple[str, str], set[datetime]]:
+    times: dict[tuple[str, str], set[datetime]] = defaultdict(set)
+    for one in entries:
+        if one.when is not None and one.number:
+            times[one.lms, one.number].add(one.when)
+    return dict(times)
 
 
 def _of_several(identity: Identity, students: Iterable[Student]) -> str:
     names = ", ".join(student.id for student in students)
-    if identity.lms == "moodle":
-        return f"{identity} may be {names}: {_with_worksheet(identity.number)}"
-    return (
-        f"{identity} may be {names}: put the LMS's id of each into students.csv, or the file into a folder with the "
-        "student's id, and collect that"
-    )
+    return f"{identity} may be {names}: {_with_list(identity) if identity.lms in _LIST_OF else _WRITE_IT}"
 
 
-def _with_worksheet(number: str) -> str:
-    return (
-        "collect it together with the grading worksheet (Grades-….csv), which says by their addresses who number "
-        f"{number} is"
-    )
+def _with_list(identity: Identity) -> str:
+    who = f"which says who number {identity.number} is"
+    return f"collect it together with {_LIST_OF[identity.lms]}, {who}, or {_WRITE_IT}"

@@ -9,6 +9,7 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.errors import GradingError, check_known, clear_place_errors, course_command
 from autograder.grading.exporting import feedback_zips, lms_gradebooks, sheets
+from autograder.grading.exporting.layouts import LAYOUTS, gradebook
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.grading.table.class_table import ClassTable, read_table
 from autograder.kit.in_words import counted
@@ -47,7 +48,7 @@ def export(
 
     Args:
         path: The class directory.
-        to: ``canvas``, ``moodle``, ``gradescope``, ``csv`` or ``xlsx``.
+        to: A system of :data:`LAYOUTS`, ``ilias``, ``csv`` or ``xlsx``.
         assignments: Only these; all that somebody has handed in by default.
         into: A list that the LMS has exported, to be filled in.
         folder: The folder to write into; ``export`` in the class by default.
@@ -78,11 +79,7 @@ def export(
             with clear_place_errors(folder / name, "--output"):
                 write_whole(folder / name, data)
             written.append((folder / name, purpose))
-    notices += [
-        f"{one.label}{f' of {one.student}' if one.student else ''} has no place, so no points come from it: "
-        f"{one.reason}"
-        for one in table.unplaced
-    ]
+    notices += [f"{one.label} waits, so no points come from it: {one.sentence}" for one in table.unplaced]
     notices += [
         f"{name} is left out of everybody's points: {reason}" for name, reason in table.unusable.items()
     ]
@@ -118,19 +115,12 @@ def _files(
         yield "students.csv", sheets.as_csv(table, assignments), "a line for each student"
     elif to == "xlsx":
         yield "grades.xlsx", sheets.as_xlsx(table, assignments), "sheets of students and of exercises"
-    elif to == "gradescope":
-        text = lms_gradebooks.gradescope(table, assignments)
-        yield "gradescope.csv", text.encode(), "the scores in the form in which Gradescope exports them"
-    elif to == "canvas":
-        text = lms_gradebooks.canvas(table, records, assignments)
-        yield "canvas.csv", text.encode(), "Canvas: Grades, Import"
+    elif to in LAYOUTS:
+        text = gradebook(to, table, records, assignments)
+        yield f"{to}.csv", text.encode(), LAYOUTS[to].purpose
     else:
-        text = lms_gradebooks.moodle_gradebook(table, assignments)
-        yield (
-            "moodle.csv",
-            text.encode(),
-            "Moodle: Grades, Import, CSV file; map Email address and the assignments",
-        )
+        notices.append(f"{to.upper()} takes no points from a file, so only students' pages are written")
+    if to == "moodle":
         for assignment in assignments:
             text, unknown = lms_gradebooks.moodle_worksheet(table, records, assignment)
             if text:
@@ -141,13 +131,10 @@ def _files(
                     f"Moodle's numbers for {assignment} are not known of {', '.join(unknown)}: they are in moodle.csv "
                     f"only. Download the grading worksheet and say --into it"
                 )
-    if to not in feedback_zips.FORMS:
-        return
-    for assignment in assignments:
+    for assignment in assignments if to in feedback_zips.WAYS else ():
         data, unknown = feedback_zips.feedback_zip(directory, table, records, assignment, to)
-        way = "Upload multiple feedback files in a zip" if to == "moodle" else "Upload submissions"
         if data:
-            purpose = f"{to.capitalize()}: the assignment {assignment}, {way}"
+            purpose = f"{to.capitalize()}: the assignment {assignment}, {feedback_zips.WAYS[to]}"
             yield f"feedback-{to}-{assignment}.zip", data, purpose
         if unknown:
             notices.append(
@@ -174,11 +161,11 @@ def _filled(
         data = read_bytes(into)
     except UnreadableSubmission as error:
         raise GradingError(f"{into} cannot be read: {error}") from error
-    filled, strangers, doubtful = lms_gradebooks.filled_in(data, to, table, assignments, columns)
+    filled, strangers, doubtful, kind = lms_gradebooks.filled_in(data, to, table, assignments, columns)
     if strangers:
         notices.append(f"nobody in the class is called {', '.join(strangers)}: their lines stay as they were")
     if doubtful:
-        sure = " or ".join(lms_gradebooks.LISTS[to].sure)
+        sure = " or ".join(kind.sure)
         notices.append(
             f"{', '.join(doubtful)}: another line may be the same student's, so these stay as they were. Write what "
             f"the list has under {sure} for each into the column {to} of students.csv"

@@ -1,7 +1,8 @@
 """Feedback as one zip in the form in which an LMS takes files back: each page under the name of what it answers.
 
 Moodle (*Upload multiple feedback files in a zip*) takes a page by the folder ``<name>_<number>_assignsubmission_file``;
-Canvas (*Upload submissions*) by the numbers of student and file in the name that it gave the file.
+Canvas (*Upload submissions*) by the numbers of student and file in the name that it gave the file; Brightspace, Sakai
+and ILIAS (from memory) by the folder that they gave the student.
 """
 
 from __future__ import annotations
@@ -9,18 +10,27 @@ from __future__ import annotations
 import io
 import unicodedata
 import zipfile
-from pathlib import PurePosixPath
+from pathlib import PurePath, PurePosixPath
 from typing import TYPE_CHECKING
 
-from autograder.grading.collecting.forms import read_path
-from autograder.grading.exporting.lms_gradebooks import known_there
+from autograder.grading.collecting.forms import read_at
+from autograder.grading.exporting.layouts import known_there
 
 if TYPE_CHECKING:
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.collecting.records import CollectedRecords
     from autograder.grading.table.class_table import ClassTable
 
-FORMS = ("moodle", "canvas")
+WAYS = {
+    "moodle": "Upload multiple feedback files in a zip",
+    "canvas": "Upload submissions",
+    "brightspace": "Add Feedback Files",
+    "sakai": "Upload All, Feedback Attachment(s)",
+    "ilias": "Multi-Feedback",
+}
+"""Where each system takes the zip."""
+_WITHIN = {"sakai": "Feedback Attachment(s)/"}
+"""The folder for feedback in the student's own."""
 _MADE = (2000, 1, 1, 0, 0, 0)
 
 
@@ -34,7 +44,7 @@ def feedback_zip(
         table: The same.
         records: The record of what was collected.
         assignment: The assignment's name.
-        lms: One of :data:`FORMS`.
+        lms: One of :data:`WAYS`.
 
     Returns:
         The zip, empty where there is no page for it, and the students who have a page but whose name in that LMS is not
@@ -52,20 +62,31 @@ def feedback_zip(
                 unknown.append(student)
                 continue
             for page in pages:
-                if lms == "canvas":
-                    several = f"_{page.stem}" if len(pages) > 1 else ""
-                    called = f"{_canvas(there.file)}{several}.html"
-                else:
+                if lms == "moodle":
                     called = _moodle(table.roster.students[student].name or student, there.number, page.name)
+                else:
+                    called = _called(there.file, lms, page, is_one=len(pages) == 1)
                 # The same class gives the same zip: no time of this machine is in it.
                 archive.writestr(zipfile.ZipInfo(called, _MADE), page.read_bytes(), zipfile.ZIP_DEFLATED)
     return (data.getvalue() if archive.namelist() else b""), unknown
 
 
-def _canvas(file: str) -> str:
-    """The name that Canvas gave: of a zip that was unpacked the folder's, since what is in it the student has named."""
+def _called(file: str, lms: str, page: PurePath, *, is_one: bool) -> str:
+    """The name of a page for a system, by the name that it gave to the student's file or folder.
+
+    Of a zip that was unpacked that is the folder's name: what is in it, the student has named.
+    """
     parts = PurePosixPath(file).parts
-    return PurePosixPath(next(one for one in parts if read_path((one,), "canvas", lambda _: False))).stem
+    place, found = next(
+        (place, found)
+        for place in range(len(parts))
+        if (found := read_at(parts, place, lms, lambda _: False))
+    )
+    above, given = "".join(f"{one}/" for one in parts[:place]), parts[place]
+    if lms == "canvas":
+        return f"{PurePosixPath(given).stem}{'' if is_one else f'_{page.stem}'}.html"
+    head = f"{given}/" if place < len(parts) - 1 else given.removesuffix(found.file)
+    return f"{above}{head}{_WITHIN.get(lms, '')}{page.name}"
 
 
 def _moodle(name: str, number: str, page: str) -> str:

@@ -1,9 +1,6 @@
-"""Points in the form of an LMS's own gradebook.
+"""Moodle's grading worksheet, and lists of systems that are filled in.
 
-Canvas reads ``Student, ID, SIS User ID, SIS Login ID, Section``, then a column for each assignment, and in the second
-line the points possible (https://community.canvaslms.com, "How do I import grades in the Gradebook?"). Moodle's
-assignment reads its grading worksheet by ``Identifier``, ``Grade`` and ``Last modified (grade)``; Moodle's gradebook
-reads any columns, of which one names the student (https://docs.moodle.org, "Grade import").
+Moodle's assignment reads its worksheet by ``Identifier``, ``Grade`` and ``Last modified (grade)``.
 """
 
 from __future__ import annotations
@@ -16,17 +13,17 @@ import re2
 from rapidfuzz import fuzz
 
 from autograder.grading.errors import GradingError
+from autograder.grading.exporting.layouts import LAYOUTS, known_there
 from autograder.grading.reporting.spreadsheet import blank, csv_text, original
 from autograder.grading.table.roster import Identity
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from autograder.grading.collecting.records import Collected, CollectedRecords
+    from autograder.grading.collecting.records import CollectedRecords
     from autograder.grading.table.class_table import ClassTable
     from autograder.grading.table.roster import Student
 
-CANVAS = ("Student", "ID", "SIS User ID", "SIS Login ID", "Section")
 MOODLE_WORKSHEET = (
     "Identifier",
     "Full name",
@@ -39,63 +36,6 @@ MOODLE_WORKSHEET = (
     "Last modified (grade)",
     "Feedback comments",
 )
-GRADESCOPE = ("First Name", "Last Name", "SID", "Email")
-MOODLE_GRADEBOOK = ("First name", "Last name", "ID number", "Email address")
-
-
-def known_there(records: CollectedRecords, assignment: str, student: str, lms: str) -> Collected | None:
-    """The name of a student in the LMS from which work was collected; None where it came another way."""
-    history = records.get(assignment, student)
-    found = [one for one in history.now.values() if one.lms == lms] if history else []
-    return found[-1] if found else None
-
-
-def canvas(table: ClassTable, records: CollectedRecords, assignments: Sequence[str]) -> str:
-    """The file that Canvas's *Grades → Import* takes."""
-    possible: list[str | float] = [
-        "    Points Possible",
-        "",
-        "",
-        "",
-        "",
-        *(table.max_score(name) for name in assignments),
-    ]
-    rows: list[list[str | float]] = [[*CANVAS, *assignments], possible]
-    for student in map(table.roster.students.__getitem__, table.students):
-        numbers = (known_there(records, name, student.id, "canvas") for name in assignments)
-        number = student.lms.get("canvas") or next((one.number for one in numbers if one), "")
-        name = ", ".join(part for part in (student.last_name, student.first_name) if part) or student.id
-        points = (
-            _EXCUSED["canvas"]
-            if table.is_excused(student.id, assignment)
-            else blank(table.score(student.id, assignment))
-            for assignment in assignments
-        )
-        rows.append([name, number, "", student.id, student.section, *points])
-    return csv_text(rows)
-
-
-def moodle_gradebook(table: ClassTable, assignments: Sequence[str]) -> str:
-    """The file that Moodle's *Grades → Import → CSV file* takes."""
-    rows: list[list[str | float]] = [[*MOODLE_GRADEBOOK, *assignments]]
-    for student in map(table.roster.students.__getitem__, table.students):
-        who = [student.first_name, student.last_name, student.id, student.email]
-        rows.append([*who, *(blank(table.score(student.id, name)) for name in assignments)])
-    return csv_text(rows)
-
-
-def gradescope(table: ClassTable, assignments: Sequence[str]) -> str:
-    """The scores as Gradescope exports them, which is what programs for its lists read; it imports none itself."""
-    header: list[str | float] = [*GRADESCOPE]
-    for name in assignments:
-        header += [name, f"{name} - Max Points"]
-    rows = [header]
-    for student in map(table.roster.students.__getitem__, table.students):
-        row: list[str | float] = [student.first_name, student.last_name, student.id, student.email]
-        for name in assignments:
-            row += [blank(table.score(student.id, name)), table.max_score(name)]
-        rows.append(row)
-    return csv_text(rows)
 
 
 def moodle_worksheet(table: ClassTable, records: CollectedRecords, assignment: str) -> tuple[str, list[str]]:
@@ -120,77 +60,100 @@ def moodle_worksheet(table: ClassTable, records: CollectedRecords, assignment: s
     return ("" if is_empty else csv_text(rows)), unknown
 
 
-class _List(NamedTuple):
-    """A list of an LMS's own.
+class List(NamedTuple):
+    """A list of an LMS's own that can be filled in.
 
     Attributes:
+        lms: The system that exports it.
         has: The columns by which it is known.
         sure: Those that name one student, the surest first.
         called: Those in which people name themselves.
         numbered: The first of the sure ones has numbers that this LMS gives, and nobody else knows.
+        points: The column for the points, if the list is of one assignment; empty if each assignment has a column.
     """
 
+    lms: str
     has: frozenset[str]
     sure: tuple[str, ...]
     called: tuple[str, ...] = ()
     numbered: bool = False
+    points: str = ""
 
 
-LISTS = {
-    "moodle": _List(frozenset({"Identifier", "Grade"}), ("Email address", "ID number"), ("Full name",)),
-    "canvas": _List(
-        frozenset({"Student", "ID", "Section"}), ("ID", "SIS Login ID"), ("Student",), numbered=True
+_LISTS = (
+    List(
+        "moodle",
+        frozenset({"Identifier", "Grade"}),
+        ("Email address", "ID number"),
+        ("Full name",),
+        points="Grade",
     ),
-    "gradescope": _List(frozenset({"SID", "Email"}), ("SID", "Email")),
-}
-"""The lists that can be filled in, by the system that exports them."""
+    List(
+        "moodle",
+        frozenset({"ID", "Vollständiger Name", "Bewertung"}),
+        ("E-Mail-Adresse", "Matrikelnummer"),
+        ("Vollständiger Name",),
+        points="Bewertung",
+    ),
+    List(
+        "canvas", frozenset({"Student", "ID", "Section"}), ("ID", "SIS Login ID"), ("Student",), numbered=True
+    ),
+    List("gradescope", frozenset({"SID", "Email"}), ("SID", "Email")),
+    List("brightspace", frozenset({"OrgDefinedId", "End-of-Line Indicator"}), ("Username", "OrgDefinedId")),
+    List("blackboard", frozenset({"Username", "Last Name"}), ("Username",)),
+    List("sakai", frozenset({"Student ID", "Student Name"}), ("Student ID",), ("Student Name",)),
+)
 
 
 def filled_in(
     data: bytes, lms: str, table: ClassTable, assignments: Sequence[str], columns: Mapping[str, str]
-) -> tuple[bytes, list[str], list[str]]:
+) -> tuple[bytes, list[str], list[str], List]:
     """A list of the LMS's own with the points filled in; everything else in it stays as it is.
 
     So do points that somebody has given there, where the class has none.
 
     Args:
-        data: Moodle's grading worksheet, or a gradebook that Canvas or Gradescope has exported.
+        data: Moodle's grading worksheet, or a gradebook that another system has exported.
         lms: The system that the instructor says it is of.
         table: The class.
         assignments: The assignments to fill in; for a worksheet, one.
         columns: The name of an assignment's column there, where that is not the assignment's name.
 
     Returns:
-        The list, the lines in it that name no student of the class, and the lines that may name a student whom another
-        line names as well or better: in an LMS, people name themselves.
+        The list, the lines in it that name no student of the class, the lines that may name a student whom another
+        line names as well or better (in an LMS, people name themselves), and which list it is.
 
     Raises:
         GradingError: It cannot be read, is none of these or of another system, or has no column for an assignment that
             takes points.
     """
     try:
-        rows = list(csv.reader(io.StringIO(data.decode("utf-8-sig"))))
+        text = data.decode("utf-8-sig")
+        first = text.partition("\n")[0]
+        delimiter = max(",;\t", key=first.count)
+        rows = list(csv.reader(io.StringIO(text), delimiter=delimiter))
     except (UnicodeDecodeError, csv.Error) as error:
         raise GradingError(
             f"The list is no CSV in UTF-8 ({error}). Download it from the LMS again and leave it as it is."
         ) from error
     header = [name.strip() for name in rows[0]] if rows else []
-    found_lms = next((name for name, one in LISTS.items() if one.has <= set(header)), None)
-    if found_lms is None:
+    kind = next((one for one in _LISTS if one.has <= set(header)), None)
+    if kind is None:
         raise GradingError(
-            "The list is neither Moodle's grading worksheet nor a gradebook that Canvas or Gradescope has exported."
+            "The list is neither Moodle's grading worksheet nor a gradebook that "
+            f"{', '.join(one.lms.capitalize() for one in _LISTS if not one.points)} has exported."
         )
-    if found_lms != lms:
+    if kind.lms != lms:
         raise GradingError(
-            f"The list is {found_lms.capitalize()}'s, and not for --to {lms}: type --to {found_lms}"
+            f"The list is {kind.lms.capitalize()}'s, and not for --to {lms}: type --to {kind.lms}"
         )
-    if lms == "moodle":
-        places = {name: header.index("Grade") for name in assignments}
+    if kind.points:
+        places = {name: header.index(kind.points) for name in assignments}
     else:
-        open_columns = _open_columns(header, rows[1:], lms)
+        open_columns = _open_columns(header, rows[1:], kind)
         places = {name: _column(header, open_columns, name, columns.get(name, name)) for name in assignments}
         _check_one_each(places, header)
-    names = (*LISTS[lms].sure, *LISTS[lms].called)
+    names = (*kind.sure, *kind.called)
     strangers = []
     meant: dict[str, list[_Meant]] = {}
     for row in rows[1:]:
@@ -198,9 +161,11 @@ def filled_in(
             continue
         # Some spreadsheet programs leave out the empty cells at the end of a line.
         row += [""] * (len(header) - len(row))
-        values = [original(row[header.index(name)].strip()) for name in names if name in header]
+        values = [
+            original(row[header.index(name)].strip()).removeprefix("#") for name in names if name in header
+        ]
         called = values[-1] if values else row[0]
-        if (found := _who(table, lms, values)) is None:
+        if (found := _who(table, kind, values)) is None:
             strangers.append(called)
         else:
             student, weakness = found
@@ -209,13 +174,13 @@ def filled_in(
     for student_id, row in certain.items():
         for name, place in places.items():
             if table.is_excused(student_id, name):
-                row[place] = _EXCUSED.get(lms, "")
+                row[place] = LAYOUTS[lms].excused
             elif (score := table.score(student_id, name)) is not None:
-                row[place] = f"{score:g}"
+                row[place] = f"{score:g}".replace(".", "," if delimiter == ";" else ".")
     out = io.StringIO(newline="")
-    csv.writer(out, lineterminator="\n").writerows(rows)
+    csv.writer(out, delimiter=delimiter, lineterminator="\n").writerows(rows)
     mark = "\ufeff" if data.startswith("\ufeff".encode()) else ""
-    return f"{mark}{out.getvalue()}".encode(), strangers, doubtful
+    return f"{mark}{out.getvalue()}".encode(), strangers, doubtful, kind
 
 
 class _Meant(NamedTuple):
@@ -242,17 +207,15 @@ def _told_apart(meant: Mapping[str, Sequence[_Meant]]) -> tuple[dict[str, list[s
 
 _KINDS = ("number", "login", "name")
 """What a value may be of a student's, the surest first."""
-_EXCUSED = {"canvas": "EX"}
-"""The word that an LMS reads as excused."""
 
 
-def _open_columns(header: Sequence[str], rows: Sequence[Sequence[str]], lms: str) -> list[int]:
+def _open_columns(header: Sequence[str], rows: Sequence[Sequence[str]], kind: List) -> list[int]:
     """Return the indexes of the columns that take points for an assignment.
 
     Canvas writes ``(read only)`` in the line *Points Possible* of each column that it computes itself. Gradescope
     writes a column ``… - Max Points`` for each assignment.
     """
-    known = {*LISTS[lms].has, *LISTS[lms].sure, *LISTS[lms].called, *CANVAS, *GRADESCOPE}
+    known = {*kind.has, *kind.sure, *kind.called, *LAYOUTS[kind.lms].columns, "First Name"}
     possible: Sequence[str] = next((row for row in rows if row and row[0].strip() == "Points Possible"), ())
     computed = {
         index for index, cell in enumerate(possible) if cell.strip() and not any(map(str.isdigit, cell))
@@ -287,8 +250,8 @@ def _column(header: Sequence[str], open_columns: Sequence[int], assignment: str,
 
 
 def _without_number(name: str) -> str:
-    """Return the name of a Canvas column without the number after it."""
-    return re2.sub(r" \([^()]*\)$", "", name)
+    """Return the name of a column without what Canvas, Brightspace, Blackboard or Sakai write behind it."""
+    return re2.sub(r"(?: \([^()]*\)| Points Grade.*| \[[^\]]*\](?: \|\d+)?)$", "", name)
 
 
 def _likeliest(assignment: str, names: Sequence[str]) -> str:
@@ -312,15 +275,15 @@ def _check_one_each(places: Mapping[str, int], header: Sequence[str]) -> None:
             )
 
 
-def _who(table: ClassTable, lms: str, values: Sequence[str]) -> tuple[Student, int] | None:
+def _who(table: ClassTable, kind: List, values: Sequence[str]) -> tuple[Student, int] | None:
     """The student of a line, and the place of the value that says so: those that say it best come first."""
     columns: list[tuple[str, tuple[str, ...]]] = [(value, _KINDS) for value in values]
-    if LISTS[lms].numbered:
+    if kind.numbered:
         # A number of the LMS's own may be somebody else's id in the class: as one it is asked last.
         columns = [(values[0], _KINDS[:1]), *columns[1:], (values[0], _KINDS[1:])]
     for place, (value, kinds) in enumerate(columns):
-        for kind in kinds if value else ():
-            found = table.roster.find(Identity(lms, **{kind: value}))
+        for way in kinds if value else ():
+            found = table.roster.find(Identity(kind.lms, **{way: value}))
             if len(found) == 1:
                 return found[0], place
     return None

@@ -56,8 +56,9 @@ def _marks(cell: NotebookNode) -> dict[str, Any]:
 
 
 def _is_file_or_terminal(cell: NotebookNode) -> bool:
-    head = cell.source.partition("\n")[0].split()[:1]
-    return cell.cell_type == CellType.CODE and bool(_marks(cell)) and head in (["%%bash"], ["%%writefile"])
+    magic = cell.source.partition("\n")[0].partition(" ")[0].strip()
+    is_own = cell.cell_type == CellType.CODE and bool(_marks(cell))
+    return is_own and magic in ("%%bash", "%%writefile", "%%program")
 
 
 def are_run(directory: ClassDirectory) -> bool:

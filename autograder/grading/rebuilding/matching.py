@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from autograder.grading.rebuilding.submission import SubmittedCell
 
-_WRITES = re2.compile(r"\A\s*%%writefile[ \t]+(?:-a[ \t]+|--append[ \t]+)?[\"']?([^\s\"']+)")
+_WRITES = re2.compile(r"\A\s*%%(?:writefile|program)[ \t]+(?:-a[ \t]+|--append[ \t]+)?[\"']?([^\s\"']+)")
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.grading.classes.class_directory import Refused
+    from autograder.grading.table.class_table import ClassTable
     from autograder.grading.table.point_differences import Difference
 
 FORM = 2
@@ -106,6 +107,20 @@ def report_json(report: GradeReport) -> bytes:
                 "seconds": round(report.seconds, 3),
             },
             "timings": {name: round(value, 3) for name, value in asdict(report.timings).items()},
+        }
+    )
+
+
+def table_json(page: Path, table: ClassTable) -> bytes:
+    """One line of JSON: each submission of a class, what waits for a person, and where the page is."""
+    return msgspec.json.encode(
+        {
+            "form": FORM,
+            "page": str(page),
+            "submissions": _submissions(table.rows),
+            "waiting": [{"file": one.label, "reason": one.sentence} for one in table.unplaced],
+            "not_graded": table.stale,
+            "notices": table.notices,
         }
     )
 

@@ -25,7 +25,7 @@ from traitlets.config import Config
 
 from autograder.grading.rebuilding import nodes
 from autograder.grading.rebuilding.rebuild import is_check, is_the_masters
-from autograder.grading.returning.page_head import with_summary, without_dead_links
+from autograder.grading.returning.page_head import cards_first, with_summary, without_dead_links
 from autograder.grading.returning.sanitize import Renderer, clean, make_harmless
 
 if TYPE_CHECKING:
@@ -133,7 +133,7 @@ class PageExporter(HTMLExporter):
         self._set_filter("highlight_code", _highlighter(lexer))
         self._set_filter("part_of_page", functools.partial(self._part, lexer))
         resources = self._resources.copy()
-        resources["nbgrader"] = names
+        resources["nbgrader"] = {**names, "folds": cards_first(notebook)}
         rendered: str = self.template.render(nb=make_harmless(notebook), resources=resources)
         return _with_alternative_texts(rendered.lstrip("\r\n"))
 

@@ -54,6 +54,20 @@ def with_summary(body: str, notebook: NotebookNode, names: Mapping[str, Any]) ->
     return f"{before}{begin}<p><strong>{escape(printable(heading))}</strong></p><table>{lines}</table>{end}{after}"
 
 
+def cards_first(notebook: NotebookNode) -> list[tuple[bool, bool]]:
+    """Move the checks, whose outputs are the cards, to the top of a notebook.
+
+    Returns:
+        For each cell, whether the text of the lab begins with it and whether that ends with it: a page folds it.
+    """
+    notebook.cells = sorted(notebook.cells, key=lambda cell: not is_check(cell))
+    given = [is_the_masters(cell) and not is_check(cell) for cell in notebook.cells]
+    return [
+        (one and not before, one and not after)
+        for before, one, after in zip([False, *given], given, [*given[1:], False], strict=False)
+    ]
+
+
 def mark_waiting(notebook: NotebookNode, cells: Mapping[str, CellEntry]) -> None:
     """Mark the cells whose points a person, or the judge, still has to give.
 

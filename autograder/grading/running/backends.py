@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator
 
     from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.running.engine import Done
+    from autograder.grading.running.dispatcher import Done
     from autograder.grading.task import Task
 
     Execute = Callable[[Iterable[Task], Callable[[Task], None]], Generator[Done, None, None]]

@@ -6,7 +6,7 @@ import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from autograder.grading.collecting.tidying import tidy
+from autograder.grading.collecting.beside_its_place import beside_their_place
 from autograder.grading.errors import GradingError, check_known
 from autograder.grading.similarity.own_code import LONGEST, Given, compared
 from autograder.grading.similarity.pairs import Pair, by_students, close_pairs, closest_first
@@ -108,12 +108,8 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
 
 def _not_looked_at(directory: ClassDirectory, refused: Iterable[Refused], assignment: str) -> Iterator[str]:
     """A line for each file that may be an answer and is not at its place."""
-    beside = tidy(directory, moves=False)
-    for one in (*refused, *beside.refused):
+    for one in (*refused, *beside_their_place(directory)[0]):
         # Where a file is too high for an assignment, it may be for any.
         below = one.path.relative_to(directory.path / "submitted").parts[1:]
         if not assignment or not below or below[0] == assignment:
             yield f"refused      {one.path}: {one.reason}"
-    for path, place in beside.waiting:
-        if assignment in ("", place.parent.name):
-            yield f"not compared {path}: it belongs at {place}, where `./course grade` puts it"

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from autograder.grading.class_store import ClassStore
-from autograder.grading.collecting.outcomes import Waiting, WaitingList
+from autograder.grading.collecting.table import Table, Waiting
 from autograder.grading.entering.gradebook_reading import Entries, read_entries
 from autograder.grading.errors import MasterUnusable
 from autograder.grading.rebuilding.fingerprints import Fingerprints
@@ -32,7 +32,7 @@ class ClassTable:
         roster: The students of the class.
         entries: The entries of the gradebook, by student and assignment.
         stale: Submissions that were handed in or changed after they were graded last, as student/assignment.
-        unplaced: Files that were collected and have no place.
+        unplaced: Files that were collected and wait for a person.
         unusable: Assignments that no row has because their source cannot be used, with the reason.
         notices: Sentences on what is not as the instructor will have meant it, with students' ids.
         absent: The points of students who handed in nothing: None, or zero if the instructor chose that.
@@ -167,7 +167,7 @@ def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> Class
         what_counts=what_counts,
         zone=directory.time_zone,
     )
-    unplaced = tuple(WaitingList(directory).read())
+    unplaced = tuple(Table(directory).waiting())
     others = [Student(row.student) for row in rows if row.student not in roster.students]
     whole = Roster([*roster.students.values(), *others])
     table = ClassTable(tuple(rows), whole, entries, tuple(stale), unplaced, released.unusable)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
 NAME = "students.csv"
-LMS = ("canvas", "moodle", "blackboard", "brightspace", "google", "github", "gradescope")
+LMS = ("canvas", "moodle", "blackboard", "brightspace", "google", "github", "gradescope", "sakai", "ilias")
 """Columns of the roster in which a student's id or user name in that system may stand."""
 _OWN = ("id", "first_name", "last_name", "email", "section", "excused")
 
@@ -65,7 +65,8 @@ class Student:
         first_name: Empty if unknown.
         last_name: The same.
         email: The same.
-        lms: Ids and user names in learning management systems, by the names of :data:`LMS`.
+        lms: Ids and user names in learning management systems, by the names of :data:`LMS`; and what other columns
+            have, which ``collect --names`` may name.
         excused: Assignments that the student need not do.
         section: The group of students that one teaching assistant grades; empty for none.
     """
@@ -255,7 +256,7 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
             reason = f"the id {name} stands there twice"
         if reason:
             raise RosterError(f"{path}, line {line}: {reason}.")
-        lms = {system: values[system] for system in LMS if values.get(system)}
+        lms = {column: value for column, value in values.items() if value and column not in _OWN}
         first, last, email = (values.get(column, "") for column in ("first_name", "last_name", "email"))
         excused = values.get("excused", "").replace(",", " ").replace(";", " ").split()
         found[name] = Student(name, first, last, email, lms, tuple(excused), values.get("section", ""))

@@ -56,6 +56,7 @@ class ScriptedActionServer:
         action: str,
         type_name: str,
         *,
+        at: str = "",
         client_is_gone: Callable[[], bool],
         accept_goal: bool = True,
         accept_cancel: bool = True,
@@ -65,7 +66,8 @@ class ScriptedActionServer:
         self._wire = wire
         self._recorder = recorder
         self._name = action
-        self.services = tuple(f"{action}/_action/{name}" for name in _SERVICES)
+        parts_of = f"{at or action}/_action"
+        self.services = tuple(f"{parts_of}/{name}" for name in _SERVICES)
         self._type = interface(type_name)
         self._accept_goal = accept_goal
         self._accept_cancel = accept_cancel
@@ -76,15 +78,15 @@ class ScriptedActionServer:
         self._result: Any = None
         node, parts = wire.node, self._type.Impl
         self._feedback = node.create_publisher(
-            parts.FeedbackMessage, f"{action}/_action/feedback", QoSProfile(depth=10)
+            parts.FeedbackMessage, f"{parts_of}/feedback", QoSProfile(depth=10)
         )
         self._statuses = node.create_publisher(
-            GoalStatusArray, f"{action}/_action/status", qos_profile_action_status_default
+            GoalStatusArray, f"{parts_of}/status", qos_profile_action_status_default
         )
         self._waiting: list[Any] = []
         made = threading.Event()
         goals, cancels, results = self._services = [
-            node.create_service(kind, f"{action}/_action/{name}", once_it_is_set(made, take))
+            node.create_service(kind, f"{parts_of}/{name}", once_it_is_set(made, take))
             for name, kind, take in zip(
                 _SERVICES,
                 (parts.SendGoalService, CancelGoal, parts.GetResultService),
@@ -241,22 +243,24 @@ class RecordedActionClient(Client):
         action: str,
         type_name: str,
         *,
+        at: str = "",
         server_is_gone: Callable[[], bool],
     ) -> None:
-        super().__init__(wire, recorder, action, f"{action}/_action/send_goal", server_is_gone)
+        self._parts_of = f"{at or action}/_action"
+        super().__init__(wire, recorder, action, f"{self._parts_of}/send_goal", server_is_gone)
         self._goals: list[UUID] = []
         node, self._parts = wire.node, interface(type_name).Impl
         # Made first: endpoints are announced in order, so a server that can answer the services knows this one, too,
         # and no first feedback is lost.
         self._feedback = node.create_subscription(
             self._parts.FeedbackMessage,
-            f"{action}/_action/feedback",
+            f"{self._parts_of}/feedback",
             self._hear,  # type: ignore[arg-type]  # rclpy gives the message info to whoever takes two arguments
             QoSProfile(depth=100),
         )
-        self._send = node.create_client(self._parts.SendGoalService, f"{action}/_action/send_goal")
-        self._cancel = node.create_client(CancelGoal, f"{action}/_action/cancel_goal")
-        self._result = node.create_client(self._parts.GetResultService, f"{action}/_action/get_result")
+        self._send = node.create_client(self._parts.SendGoalService, f"{self._parts_of}/send_goal")
+        self._cancel = node.create_client(CancelGoal, f"{self._parts_of}/cancel_goal")
+        self._result = node.create_client(self._parts.GetResultService, f"{self._parts_of}/get_result")
 
     def send_goal(self, **fields: Any) -> int:
         """Send a goal; its number."""
@@ -284,7 +288,7 @@ class RecordedActionClient(Client):
 
     def _ready(self) -> bool:
         clients = (self._send, self._cancel, self._result)
-        talks = self._wire.node.count_publishers(f"{self._name}/_action/feedback") > 0
+        talks = self._wire.node.count_publishers(f"{self._parts_of}/feedback") > 0
         return talks and all(client.service_is_ready() for client in clients)
 
     def _take_answer(self, number: int, response: Any) -> None:

@@ -66,7 +66,10 @@ class TestBench:
         random: Random,
         before: Evidence | None = None,
         hurry: Callable[[], None] = lambda: None,
+        misnamed: Mapping[str, Mapping[str, str]] | None = None,
     ) -> None:
+        self._misnamed = misnamed or {}
+        """Data of endpoints by their names in the task: the judge meets each under the subject's name, ``real``."""
         self.pace = pace
         self.random = random
         self.reference = reference
@@ -97,6 +100,8 @@ class TestBench:
         """Begin a part: a fresh run of the subject."""
         self.stop()
         self._recorder.begin(name, inputs)
+        for asked, facts in self._misnamed.items():
+            self._recorder.record("misnamed", asked, **facts)
         self._in_part = True
         if self._wire is None or not (self._subject.shares_participant and self._clean):
             self._close_wire()
@@ -121,7 +126,7 @@ class TestBench:
     def keep(self, name: str) -> bool:
         """In a second look, take over what the first one saw in a part, if the subject came to its own end there."""
         known = self.before.part(name) if self.before else Part(name)
-        if known.ending is None or known.of("spared") or patience(known) is not None:
+        if known.ending is None or patience(known) is not None:
             return False
         self.stop()
         self.parts.append(known)
@@ -215,11 +220,16 @@ class TestBench:
 
     def await_endpoint(self, role: str, name: str) -> bool:
         """Wait until the subject's endpoint is there and matched; who makes it once it is spun is let spin for that."""
-        there = self._presence.await_endpoint(role, name)
+        at = self._real(name)
+        there = self._presence.await_endpoint(role, at)
         if there or not self._subject.may_make_more:
             return there
         self.release()
-        return self._presence.await_endpoint(role, name)
+        return self._presence.await_endpoint(role, at)
+
+    def _real(self, name: str) -> str:
+        """Return the name under which the subject has an endpoint that the task calls ``name``."""
+        return self._misnamed[name]["real"] if name in self._misnamed else name
 
     def await_node(self) -> bool:
         """Wait until a node of the subject's is on the graph; a subject that ends may have had one before."""
@@ -249,8 +259,11 @@ class TestBench:
 
     def listen(self, topic: str, type_name: str, *, latched: bool = False) -> None:
         """Subscribe as the course's listener does, or as one that asks for what was published before it came."""
-        subscription = RecordedSubscription(self.wire, self._recorder, topic, type_name, latched=latched)
-        self._presence.subscriptions[topic] = subscription
+        at = self._real(topic)
+        subscription = RecordedSubscription(
+            self.wire, self._recorder, topic, type_name, at=at, latched=latched
+        )
+        self._presence.subscriptions[at] = subscription
         self._open.callback(self.wire.node.destroy_subscription, subscription.subscription)
 
     def seen(self) -> Part:
@@ -263,8 +276,9 @@ class TestBench:
 
     def speak(self, topic: str, type_name: str) -> RecordedPublisher:
         """Create a publisher with the course's default QoS."""
-        publisher = RecordedPublisher(self.wire, self._recorder, topic, type_name)
-        self._presence.publishers[topic] = publisher
+        at = self._real(topic)
+        publisher = RecordedPublisher(self.wire, self._recorder, topic, type_name, at=at)
+        self._presence.publishers[at] = publisher
         self._open.callback(self.wire.node.destroy_publisher, publisher.publisher)
         return publisher
 
@@ -276,7 +290,8 @@ class TestBench:
     def serve(self, service: str, type_name: str, answer: Answer, *, hold: int = 0) -> RecordedServer:
         """Serve until the part ends; the answer to the request of the number ``hold`` waits for its release."""
         self._get_ready_to_serve(service)
-        server = RecordedServer(self.wire, self._recorder, service, type_name, answer, hold=hold)
+        at = self._real(service)
+        server = RecordedServer(self.wire, self._recorder, service, type_name, answer, at=at, hold=hold)
         self._open.callback(server.close)
         self._announce(server.services)
         return server
@@ -284,7 +299,12 @@ class TestBench:
     def call(self, service: str, type_name: str) -> RecordedCaller:
         """Be a client of the subject's service until the part ends."""
         caller = RecordedCaller(
-            self.wire, self._recorder, service, type_name, server_is_gone=lambda: self._subject.ended
+            self.wire,
+            self._recorder,
+            service,
+            type_name,
+            at=self._real(service),
+            server_is_gone=lambda: self._subject.ended,
         )
         self._open.callback(caller.close)
         return caller
@@ -292,7 +312,12 @@ class TestBench:
     def call_action(self, action: str, type_name: str) -> RecordedActionClient:
         """Be a client of the subject's action until the part ends."""
         caller = RecordedActionClient(
-            self.wire, self._recorder, action, type_name, server_is_gone=lambda: self._subject.ended
+            self.wire,
+            self._recorder,
+            action,
+            type_name,
+            at=self._real(action),
+            server_is_gone=lambda: self._subject.ended,
         )
         self._open.callback(caller.close)
         return caller
@@ -301,7 +326,13 @@ class TestBench:
         """Serve an action whose every step the scenario decides, until the part ends."""
         self._get_ready_to_serve(action)
         server = ScriptedActionServer(
-            self.wire, self._recorder, action, type_name, client_is_gone=lambda: self._subject.ended, **how
+            self.wire,
+            self._recorder,
+            action,
+            type_name,
+            at=self._real(action),
+            client_is_gone=lambda: self._subject.ended,
+            **how,
         )
         self._open.callback(server.close)
         self._announce(server.services)
@@ -331,11 +362,11 @@ class TestBench:
 
     def pass_time(self, seconds: float, role: str, name: str) -> None:
         """Let simulated seconds pass for a subject that lives in real time, real ones where it does not follow."""
-        self._time.lend(seconds, role, name)
+        self._time.lend(seconds, role, self._real(name))
 
-    def let_wait(self, seconds: float, *, call: int = 0) -> None:
-        """Let the subject wait for what the judge keeps from it."""
-        self._time.let_wait(seconds, call=call)
+    def let_wait(self, seconds: float) -> None:
+        """Let the subject wait ``seconds`` of wall time for a server that comes late."""
+        self._recorder.wait(lambda: self._subject.ended, seconds, wall=True)
 
     def settle(self) -> None:
         """Ask each node of the subject's twice; a node that did not answer once is not asked again in this part."""
@@ -389,12 +420,13 @@ class TestBench:
 
     def compare_type(self, service: str, like: str) -> None:
         """Write down whether a service's type has the fields of the type ``like``, by its hashes on the graph."""
-        made = graph.survey(self.wire.node)["service"].get(service, "")
+        at = self._real(service)
+        made = graph.survey(self.wire.node)["service"].get(at, "")
         expected = expected_hashes(like, made.partition("/")[0])
         seen: dict[str, str] = {}
 
         def hashes_known() -> bool:
-            seen.update(served_hashes(self.wire.node, service))
+            seen.update(served_hashes(self.wire.node, at))
             return len(seen) == len(expected) or self._subject.ended
 
         self._recorder.wait(hashes_known, MATCH, poll=GRAPH_POLL)

@@ -61,8 +61,8 @@ class Presence:
     """The subject's presence on the graph, as the judge's node sees it.
 
     Attributes:
-        subscriptions: The judge's, topic -> subscription.
-        publishers: The judge's, topic -> publisher.
+        subscriptions: The judge's subscriptions by the real names of their topics.
+        publishers: The judge's publishers by the real names of their topics.
 
     Args:
         node: The judge's.
@@ -124,7 +124,8 @@ class Presence:
         if counterpart is None or counterpart.type_name != self._recorder.part().endpoints(role)[name]:
             return True  # there is nobody to be matched with
         return self._recorder.wait(
-            lambda: counterpart.matched > 0 or self._subject.ended or self._mismatched(name), MATCH
+            lambda: counterpart.matched > 0 or self._subject.ended or self._mismatched(counterpart.topic),
+            MATCH,
         )
 
     def await_node(self) -> bool:
@@ -272,7 +273,7 @@ class Presence:
                 name: end.type_name
                 for name, end in ends.items()
                 # Where the judge listens to what it says itself, it meets itself.
-                if name not in others and any(event.data["count"] for event in part.of("matched", name))
+                if name not in others and any(event.data["count"] for event in part.of("matched", end.topic))
             }
             for role, ends, others in sides
         }

@@ -29,29 +29,38 @@ class RecordedServer:
     """
 
     def __init__(
-        self, wire: Wire, recorder: Recorder, service: str, type_name: str, answer: Answer, *, hold: int = 0
+        self,
+        wire: Wire,
+        recorder: Recorder,
+        service: str,
+        type_name: str,
+        answer: Answer,
+        *,
+        at: str = "",
+        hold: int = 0,
     ) -> None:
         """Serve.
 
         Args:
             wire: The judge's participant.
-            recorder: Takes down requests and responses.
-            service: The full name.
+            recorder: Records requests and responses.
+            service: The full name in the evidence.
             type_name: Such as ``"std_srvs/srv/Empty"``.
-            answer: Gives the response to a request.
-            hold: Which request's answer is held back, from 1 on; 0 for none.
+            answer: Returns the response to a request.
+            at: The real full name, if the subject's client has another one.
+            hold: The number of the request whose answer is held back, from 1 on; 0 for none.
         """
         self._wire = wire
         self._recorder = recorder
         self._name = service
-        self.services = (service,)
+        self.services = (at or service,)
         self._answer = answer
         self._hold, self._count = hold, 0
         self._held: list[tuple[Any, Any]] = []
         self._holding = threading.Lock()
         made = threading.Event()
         self._service = wire.node.create_service(
-            interface(type_name), service, once_it_is_set(made, self._serve)
+            interface(type_name), at or service, once_it_is_set(made, self._serve)
         )
         self._send = patiently(self._service)
         self._service.send_response = self._answer_or_hold  # type: ignore[method-assign]
@@ -98,9 +107,9 @@ class Client(ABC):
     Args:
         wire: The judge's participant.
         recorder: Takes down what is sent and what comes back.
-        name: The full name of the service or action.
-        service: The name of the service whose servers are counted.
-        server_is_gone: Whether nobody is to be waited for any more.
+        name: The full name of the service or action in the evidence.
+        service: The real name of the service whose servers are counted.
+        server_is_gone: Returns True if the server need not be waited for any more.
     """
 
     def __init__(
@@ -137,12 +146,13 @@ class RecordedCaller(Client):
         service: str,
         type_name: str,
         *,
+        at: str = "",
         server_is_gone: Callable[[], bool],
     ) -> None:
-        super().__init__(wire, recorder, service, service, server_is_gone)
+        super().__init__(wire, recorder, service, at or service, server_is_gone)
         self._type = interface(type_name)
         self._calls = 0
-        self._client = wire.node.create_client(self._type, service, qos_profile=ROOM_FOR_ALL)
+        self._client = wire.node.create_client(self._type, at or service, qos_profile=ROOM_FOR_ALL)
 
     def _ready(self) -> bool:
         return bool(self._client.service_is_ready())

@@ -22,7 +22,6 @@ from rosgraph_msgs.msg import Clock
 from autograder.judge.bench import graph
 from autograder.judge.bench.patience import Patience
 from autograder.judge.bench.presence import MATCH, Presence
-from autograder.kit.giving_up import spared, willing
 from autograder.kit.model import STEP, Pace
 
 if TYPE_CHECKING:
@@ -286,17 +285,6 @@ class SubjectTime:
                     if clock.lend(seconds, lambda: self._subject.ended):
                         return
         self._recorder.wait(lambda: self._subject.ended, seconds, wall=True)
-
-    def let_wait(self, seconds: float, *, call: int = 0) -> None:
-        """Let the subject wait for what the judge keeps from it; see :meth:`autograder.kit.model.Bench.let_wait`."""
-        began = time.monotonic()
-
-        def over() -> bool:
-            seen = self._recorder.part()
-            waits = willing(seen, call) if call else time.monotonic() - began + spared(seen)
-            return waits >= seconds or self._subject.ended
-
-        self._recorder.wait(over, seconds, wall=call == 0)
 
     def settle(self) -> None:
         """Ask each node of the subject's twice; a node that did not answer once is not asked again in this part."""

@@ -31,10 +31,11 @@ _LOG_HISTORY = QoSProfile(
 
 
 class RecordedEndpoint:
-    """One end of a topic: it records the endpoints that it meets, and those with which it does not match.
+    """A publisher or subscription of the judge: it records the endpoints with which it matches, and mismatches.
 
     Attributes:
-        matched: How many endpoints of the other side it is matched with now.
+        matched: The number of the subject's endpoints with which it is matched now.
+        topic: The topic's name in the evidence.
         type_name: The type of its messages.
     """
 
@@ -42,28 +43,45 @@ class RecordedEndpoint:
         self.matched = 0
         self.type_name = type_name
         self._recorder = recorder
-        self._topic = topic
+        self.topic = topic
 
     def _match(self, info: Any) -> None:
         self.matched = info.current_count
         # All that it ever met: who comes and goes at once is told of once, and nobody is there any more.
-        self._recorder.record("matched", self._topic, count=info.total_count, now=info.current_count)
+        self._recorder.record("matched", self.topic, count=info.total_count, now=info.current_count)
 
     def _mismatch(self, info: Any) -> None:
         policy = str(qos_policy_name_from_kind(info.last_policy_kind)).lower()
-        self._recorder.record("mismatch", self._topic, policy=policy)
+        self._recorder.record("mismatch", self.topic, policy=policy)
 
 
 class RecordedSubscription(RecordedEndpoint):
     """A subscription that writes every message into the transcript."""
 
     def __init__(
-        self, wire: Wire, recorder: Recorder, topic: str, type_name: str, *, latched: bool = False
+        self,
+        wire: Wire,
+        recorder: Recorder,
+        topic: str,
+        type_name: str,
+        *,
+        at: str = "",
+        latched: bool = False,
     ) -> None:
+        """Subscribe.
+
+        Args:
+            wire: The judge's participant.
+            recorder: Records messages and matches.
+            topic: The topic's name in the evidence.
+            type_name: Such as ``"std_msgs/msg/String"``.
+            at: The topic's real name, if the subject's has another name.
+            latched: True to receive messages from before the subscription.
+        """
         super().__init__(recorder, topic, type_name)
         self.subscription = wire.node.create_subscription(
             interface(type_name),
-            topic,
+            at or topic,
             self._hear,  # type: ignore[arg-type]  # rclpy gives the message info to whoever takes two arguments
             _AS_A_LATE_LISTENER if latched else _AS_THE_LISTENER,
             event_callbacks=SubscriptionEventCallbacks(
@@ -76,7 +94,7 @@ class RecordedSubscription(RecordedEndpoint):
         # of sending is not blurred by the way here (rmw_message_info_t; given by rmw_fastrtps).
         self._recorder.record(
             "message",
-            self._topic,
+            self.topic,
             fields=to_data(message),
             number=info["publication_sequence_number"],
             sent=info["source_timestamp"] / 1e9,
@@ -87,12 +105,13 @@ class RecordedSubscription(RecordedEndpoint):
 class RecordedPublisher(RecordedEndpoint):
     """A publisher as the course makes them (reliable, depth 10) that writes down what it sends."""
 
-    def __init__(self, wire: Wire, recorder: Recorder, topic: str, type_name: str) -> None:
+    def __init__(self, wire: Wire, recorder: Recorder, topic: str, type_name: str, *, at: str = "") -> None:
+        """Create the publisher; the arguments are those of :class:`RecordedSubscription`."""
         super().__init__(recorder, topic, type_name)
         self._type = interface(type_name)
         self.publisher = wire.node.create_publisher(
             self._type,
-            topic,
+            at or topic,
             QoSProfile(depth=10),
             event_callbacks=PublisherEventCallbacks(
                 matched=self._match, incompatible_qos=self._mismatch, use_default_callbacks=False
@@ -101,7 +120,7 @@ class RecordedPublisher(RecordedEndpoint):
 
     def send(self, **fields: Any) -> None:
         """Publish one message with these fields."""
-        self._recorder.record("sent", self._topic, fields=dict(fields))
+        self._recorder.record("sent", self.topic, fields=dict(fields))
         self.publisher.publish(filled(self._type(), fields))
 
 

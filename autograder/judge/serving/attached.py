@@ -1,4 +1,4 @@
-"""A judge on descriptors that it was given: what a fork of a fork server becomes in the judge's box."""
+"""Run a judge on inherited file descriptors: the entry point of a fork in the judge's sandbox."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def prepare() -> None:
-    """Make this process a judge's, with all imports made."""
+    """Set up ROS for a judge in this process and import everything that a check needs."""
     settings.prepare_judge()
     importlib.import_module("autograder.judge.serving.server")
     imports()
@@ -28,8 +28,8 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
     """Serve one notebook until the grader hangs up.
 
     Args:
-        call: Nothing is told.
-        descriptors: The listening socket for the notebook, and the grader's end of the orders.
+        call: Empty; the fork server passes it to every service.
+        descriptors: The listening socket for the notebook, and the socket for the grader's orders.
     """
     from autograder.judge.serving.server import JudgeServer
 
@@ -42,11 +42,11 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
 
 
 def environment(*, boxed: bool) -> dict[str, str]:
-    """The variables that :func:`autograder.judge.settings.prepare_judge` sets, and where the course is.
+    """Return the environment variables of a new judge: ROS settings and the folder of the course.
 
-    They are for a judge that gets a new set.
+    :func:`autograder.judge.settings.prepare_judge` sets the same ones in a process that already runs.
 
-    The folder of the logs is not among them: it is in the box.
+    The folder for logs is not included, because it is inside the sandbox.
     """
     return {
         **course.variables(),
@@ -56,7 +56,7 @@ def environment(*, boxed: bool) -> dict[str, str]:
 
 
 def readable() -> list[Path]:
-    """The files that a judge must be able to read beside the package: the reference outputs alone."""
+    """Return the files outside the package that a judge reads: the reference outputs."""
     files = [exercises.reference_path(exercise_id) for exercise_id in exercises.all_ids()]
     return [file for file in files if file.is_file()]
 
@@ -68,21 +68,21 @@ _INTERFACES = (
     "rosgraph_msgs.msg",
     "action_msgs.msg",
     "action_msgs.srv",
-    # Every node has a service of it; 5 ms of processor time in each check that had to load it.
+    # Every node offers a service of this type; loading it costs 5 ms of processor time.
     "type_description_interfaces.msg",
     "type_description_interfaces.srv",
 )
 
 
 def imports() -> None:
-    """Import the judge, every exercise, the interfaces of the course and their compiled type supports.
+    """Import the judge, every exercise, the course's interfaces and their compiled type supports.
 
-    No check pays for them afterwards. Makes no node and no thread.
+    Forked checks then start without importing. This creates no node and no thread.
     """
     for name in ("subjects.command_subject", "subjects.remote_subject", "verdicts.trial"):
         importlib.import_module(f"autograder.judge.{name}")
 
-    # One that is broken, while somebody writes it, keeps nobody from being judged by another one.
+    # An exercise that its author is still writing may be broken. The others must work all the same.
     exercises.unbroken()
     for name in (*_INTERFACES, *course.interface_modules()):
         with contextlib.suppress(ImportError):

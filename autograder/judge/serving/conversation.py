@@ -1,4 +1,4 @@
-"""One check that a notebook asked for, in the judge's forked child: from its first word to the verdict."""
+"""Handle one check for a notebook in a forked child of the judge, from the first message to the verdict."""
 
 from __future__ import annotations
 
@@ -28,20 +28,20 @@ if TYPE_CHECKING:
     from autograder.messages.lines import Message
 
 FIRST_WORD = 5.0
-"""Seconds in which whoever connects must have said what is asked for."""
+"""Seconds within which a notebook must send its first message."""
 MAX_NAME = 100
-"""Characters of the exercise's name that are looked at."""
+"""Longest exercise name that is read, in characters."""
 
 
 def converse(connection: socket.socket, order: Open | None) -> Report:
-    """Hear which exercise is asked for, judge it, and tell the notebook what came of it or that it is over.
+    """Read which exercise to check, judge it, and send the notebook its verdict.
 
     Args:
-        connection: The notebook's end.
-        order: The only check that is expected; None where a notebook may ask for any.
+        connection: The socket to the notebook.
+        order: The only check that is allowed; None if the notebook may ask for any check.
 
     Returns:
-        What came of it; nothing where nothing was asked, or something else than what is expected.
+        The report with the verdict; an empty report if no allowed check was asked for.
     """
     wanted = order or Open("", secrets.token_hex(8))
     lines = Lines(connection)
@@ -49,7 +49,7 @@ def converse(connection: socket.socket, order: Open | None) -> Report:
     try:
         first = lines.hear(Check)
     except Hangup:
-        return Report()  # somebody came and asked nothing
+        return Report()  # the other side connected and sent nothing
     except NotUnderstood:
         _tell(lines, Refused("the first message asks for a check"))
         return Report()
@@ -65,27 +65,27 @@ def converse(connection: socket.socket, order: Open | None) -> Report:
         return Report()
     subject: RemoteSubject | PathSubject
     if wanted.workspaces and exercise.runner:
-        # Whatever the notebook calls its subject: here only sources count.
+        # The notebook's own description of its subject is ignored: the grader judges the sources.
         subject = PathSubject(lines, exercise.id, wanted.workspaces)
     elif exercise.runner and first.kind == "path":
         subject = RemotePath(lines)
     else:
         subject = RemoteSubject(lines, is_class=first.kind == "class")
-    # A grader has asked for this one exercise: it checks again, alone, what a crowded machine may have spoilt.
+    # With an order, the grader repeats a check alone if an overloaded machine may have spoiled it.
     seed = own_seed(wanted.seed, exercise.id)
     report, checked = _report(exercise, subject, seed, wanted, marks_crowded=order is not None)
     _tell(lines, Judged(None if wanted.boxed else _shown(exercise, report)))
-    # Its notebook goes on already: nobody waits while the evidence is packed.
+    # The notebook already continues, so packing the evidence delays no student.
     return replace(report, evidence=keeping.packed(checked)) if wanted.evidence and checked else report
 
 
 def own_seed(seed: str, exercise_id: str) -> str:
-    """The seed of one check, from which nobody can tell that of another: a student sees it on the card."""
+    """Derive the seed of one check. Students see it on the card, and cannot compute another check's seed from it."""
     return hashlib.sha256(f"{len(seed)}:{seed}{exercise_id}".encode()).hexdigest()[:16]
 
 
 def _tell(lines: Lines, message: Message) -> None:
-    # A verdict holds also where its notebook has gone away meanwhile.
+    # The verdict is valid even if the notebook has disconnected.
     with contextlib.suppress(Hangup):
         lines.say(message)
 

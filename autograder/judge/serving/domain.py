@@ -1,9 +1,9 @@
-"""A ROS domain of one's own for each check, so that nobody else on the host is heard.
+"""Lease a separate ROS domain for each check, so that other programs on this machine do not disturb it.
 
-Before that, shared memory is removed that programs of earlier checks have left behind.
-With discovery on this machine only, rmw_fastrtps lets each participant make half a megabyte of shared memory, whatever
-the transports are said to be (participant.cpp). It is removed when the participant is, so a program that is killed
-leaves it, and memory is lost until somebody runs ``fastdds shm clean``: a day of killed programs was 12 GB.
+Before that, remove the shared memory that killed programs of earlier checks have left behind.
+If discovery is limited to this machine, rmw_fastrtps creates half a megabyte of shared memory for each participant,
+whichever transports are configured (participant.cpp). A program that is killed does not remove it,
+and the memory stays in use until ``fastdds shm clean`` runs. One day of killed programs left 12 GB.
 """
 
 from __future__ import annotations
@@ -26,24 +26,24 @@ __all__ = ["NoFreeDomainError", "lease", "remove_abandoned", "remove_if_abandone
 FOLDER = Path("/dev/shm")
 _SUFFIX = "_el"
 _LOCKS = f"fastrtps_{'[0-9a-f]' * 16}{_SUFFIX}"
-"""The files that are locked for as long as a segment's owner lives (Fast DDS, RobustExclusiveLock.hpp). What belongs to
-a port has another name, is shared by several programs, and is used again."""
+"""Lock files that Fast DDS holds for as long as the owner of a segment lives (RobustExclusiveLock.hpp). Files of ports
+have different names: several programs share them, so they stay."""
 AGE = 60.0
-"""Seconds after which a lock that nobody holds has lost its owner; one that is being made is a moment old."""
+"""Age in seconds from which an unlocked lock file is abandoned. A younger one may be just being created."""
 
 
 @contextlib.contextmanager
 def lease(*, alone: bool = False) -> Iterator[int]:
-    """Hold a free domain id for as long as the block runs; the claim dies with the process, however it ends.
+    """Hold a free domain id while the block runs. The claim ends with the process, however the process ends.
 
-    What killed programs of earlier checks have left in shared memory is removed first.
+    Shared memory that killed programs of earlier checks left behind is removed first.
 
     Args:
-        alone: Nobody is on this network but the one who is checked. One who takes the ports of all domains keeps
-            nobody from a check then.
+        alone: True if only the judge and its subject are on this network. The check then works even if the
+            subject has taken the ports of all domains.
 
     Raises:
-        NoFreeDomainError: None was free.
+        NoFreeDomainError: All domains are in use.
     """
     remove_abandoned()
     try:
@@ -60,11 +60,11 @@ def lease(*, alone: bool = False) -> Iterator[int]:
 
 
 def remove_abandoned(folder: Path = FOLDER, age: float = AGE) -> None:
-    """Remove the segments of this user's programs that no longer live.
+    """Remove the shared memory of this user's programs that have ended.
 
     Args:
-        folder: Where they are.
-        age: Seconds since they were made; younger ones stay.
+        folder: The folder of the segments.
+        age: Seconds. Younger segments stay.
     """
     with contextlib.suppress(OSError):
         for lock in folder.glob(_LOCKS):
@@ -73,14 +73,14 @@ def remove_abandoned(folder: Path = FOLDER, age: float = AGE) -> None:
 
 
 def remove_if_abandoned(lock: Path, made_before: float) -> None:
-    """Remove a segment and its lock.
+    """Remove a segment and its lock file if its owner has ended.
 
     Args:
-        lock: Its lock.
-        made_before: Seconds of Unix time; one that was made later stays.
+        lock: The lock file of the segment.
+        made_before: Unix time in seconds. Younger segments stay.
 
     Raises:
-        OSError: Its owner lives (BlockingIOError), or it is gone already.
+        OSError: The owner still runs (BlockingIOError), or the segment is already gone.
     """
     found = lock.lstat()
     if found.st_uid != os.getuid() or found.st_mtime > made_before:

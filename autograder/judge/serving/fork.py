@@ -1,4 +1,4 @@
-"""Run a piece of the judge in a child process, so that whatever happens to it the parent can say so."""
+"""Run part of the judge in a child process, so that the parent can report whatever happens to it."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ if TYPE_CHECKING:
 
 _ENDINGS = (signal.SIGINT, signal.SIGTERM)
 LAST_WORDS = 2.0
-"""Seconds of wall time that a judge has for its verdict once its time is over."""
+"""Seconds of wall time in which a judge must decide once its time is over."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """The end of a child.
+    """The result of a child process, or the reason why there is none.
 
     Attributes:
-        data: What it returned; None where it returned nothing.
-        trouble: Why there is no data, in words; empty otherwise.
-        hurried: It was killed although its own time was not over.
-        unfinished: It was killed, as its time or the shorter one was over.
+        data: The bytes that the child returned; None if it returned nothing.
+        trouble: Why there is no data, for people; otherwise empty.
+        hurried: True if the child was killed before its own time limit.
+        unfinished: True if the child was killed at its own time limit or at a shorter one.
     """
 
     data: bytes | None
@@ -42,15 +42,15 @@ class Outcome:
 
 
 class Child:
-    """A forked child that computes some bytes. The parent must have no other threads."""
+    """A forked child process that computes some bytes. The parent must have no other threads."""
 
     def __init__(self, work: Callable[[], bytes], limit: float, *, close: Sequence[int] = ()) -> None:
-        """Fork and let the child begin.
+        """Fork and start the child.
 
         Args:
             work: Runs in the child.
             limit: Seconds of wall time after which the child is killed.
-            close: File descriptors that the child has no business with.
+            close: File descriptors that the child must not keep.
         """
         sys.stdout.flush()
         sys.stderr.flush()
@@ -58,8 +58,8 @@ class Child:
         self._received = bytearray()
         self.reading, writing = os.pipe()
         parent = os.getpid()
-        # What a handler raises within Python's own hooks at a fork is lost, and a Ctrl-C with it.
-        # What comes before the child has said what it does with a signal would end it.
+        # An exception from a signal handler inside Python's fork hooks is lost, and a Ctrl-C with it.
+        # A signal that arrives before the child has set its handlers would end the child.
         mask = signal.pthread_sigmask(signal.SIG_BLOCK, {*_ENDINGS, SIGNAL})
         self.pid = os.fork()
         if self.pid == 0:
@@ -75,10 +75,10 @@ class Child:
         os.close(writing)
 
     def result(self, *, within: float | None = None) -> Outcome:
-        """Wait for the child's bytes, at most until its limit.
+        """Wait for the child's result, at most until its time limit.
 
-        A judge that is deciding then is told to come to an end, and says so: what is in its way is what the
-        subject has said. One that is still looking is killed.
+        At the limit, a judge that is deciding is told to stop, and reports that what the subject said
+        keeps it from deciding. A judge that is still observing is killed.
 
         Args:
             within: A shorter limit, in seconds from now.
@@ -111,7 +111,7 @@ class Child:
         return Outcome(None, f"the judge's process ended with {how} before it had a verdict")
 
     def done(self) -> bool:
-        """True if the child has ended; frees it then, and kills it once its limit is over."""
+        """Return True once the child has ended, and free it. Kill it if its time limit is over."""
         ready, _, _ = select.select([self.reading], [], [], 0.0)
         if ready:
             self.result(within=1.0)
@@ -122,7 +122,7 @@ class Child:
         return False
 
     def kill(self) -> None:
-        """End the child at once; its subject dies with it."""
+        """Kill the child at once; its subject ends with it."""
         try:
             os.kill(self.pid, signal.SIGKILL)
             os.waitpid(self.pid, 0)
@@ -132,13 +132,13 @@ class Child:
 
 
 def _leave(*_: object) -> NoReturn:
-    """End at once, with everything that a subject has started: nobody wants a verdict any more."""
+    """Exit at once and end everything that the subject has started: the verdict is no longer needed."""
     end_descendants(LEFTOVERS)
     os._exit(1)
 
 
 def _run(work: Callable[[], bytes], writing: int) -> None:
-    """The child's whole life. It leaves by os._exit: ROS threads make an orderly exit of the interpreter unsafe."""
+    """Do the child's work, then call os._exit: ROS threads make a normal exit of the interpreter unsafe."""
     code = 1
     try:
         data = work()

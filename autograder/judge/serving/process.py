@@ -1,4 +1,4 @@
-"""A judge process, seen from the grader: start it, open and close checks, read its verdicts."""
+"""Control a judge process from the grader: start it, open and close checks, read its verdicts."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from autograder import course
 from autograder.messages.lines import Hangup, Lines, Silent, listen
 from autograder.messages.orders import Close, Open, Report
 from autograder.process_trees import signal_group
+from environment.installation import COMMAND
 from environment.python_child import python_child
 
 if TYPE_CHECKING:
@@ -25,48 +26,48 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 START_LIMIT = 60.0
-"""Seconds of wall time in which a judge must be up; it takes well under one on an idle machine."""
+"""Seconds of wall time in which a judge must start; it takes well under one second on an idle machine."""
 ANSWER_LIMIT = 30.0
-"""Seconds of wall time in which a judge answers an order."""
+"""Seconds of wall time in which a judge must answer an order."""
 _REPORT_BYTES = 64_000_000
-"""More than a recorded reference output has, or a verdict with its evidence."""
+"""Limit of a report in bytes; longer than any reference output and any verdict with its evidence."""
 
 
 class JudgeDied(RuntimeError):
-    """The judge process is gone or does not answer: nothing can be said about the subject."""
+    """The judge process has ended or does not answer, so there is no verdict about the subject."""
 
 
 class StartedJudge(Protocol):
-    """The process of a judge, wherever it runs."""
+    """A judge process, inside or outside a sandbox."""
 
     def end(self) -> None:
-        """End it with all that it has forked; may be called twice."""
+        """End the process and everything that it has forked; may be called twice."""
         ...
 
 
 Start = Callable[[int, int], StartedJudge]
-"""Starts a judge on a listening socket and on a connected one for orders; both descriptors stay the caller's."""
+"""Starts a judge with a listening socket and a connected socket for orders; the caller still owns both."""
 
 
 class JudgeProcess:
-    """A controlled judge. Only what :meth:`close` returns is a grade."""
+    """A judge that the grader controls. Only what :meth:`close` returns is a grade."""
 
     def __init__(self, socket_path: Path, *, seed: str, start: Start | None = None) -> None:
-        """Name the socket that the kernel will reach the judge on.
+        """Name the socket at which the student's kernel reaches the judge.
 
         Args:
             socket_path: Unix socket; at most 107 bytes long (unix(7)).
-            seed: What the random inputs are drawn from; each exercise draws its own from it.
-            start: Starts the process; as a plain child where none is given.
+            seed: The seed of all random inputs; each exercise derives its own from it.
+            start: Starts the process; the default is a plain child process.
         """
         self.socket_path = socket_path
         self._seed = seed
         self.workspaces = ""
-        """The socket of the grader's side of checks of workspaces, as the judge sees it; empty where there is none."""
+        """Path at which the judge reaches the grader's workspace service; empty if there is none."""
         self.keeps_evidence = False
         """True if reports carry the evidence of their verdicts."""
         self.is_boxed = False
-        """True if it is in a box, beside that of a submission."""
+        """True if the judge runs in a sandbox next to the submission's."""
         self._start = start or _Child
         self._process: StartedJudge | None = None
         self._orders: Lines | None = None
@@ -75,7 +76,7 @@ class JudgeProcess:
         """Start the process and wait until it listens.
 
         Raises:
-            JudgeDied: It did not come up.
+            JudgeDied: The process did not start.
         """
         own, its_own = socket.socketpair()
         self._orders = Lines(own, _REPORT_BYTES)
@@ -83,10 +84,10 @@ class JudgeProcess:
             with its_own, listen(self.socket_path) as listener:
                 self._process = self._start(listener.fileno(), its_own.fileno())
             if self._answer(self._orders, START_LIMIT) != b"ready":
-                raise JudgeDied("the judge said something else than that it is ready")
+                raise JudgeDied("the judge's first message was not 'ready'")
         except (JudgeDied, OSError) as error:
             self.stop()
-            raise JudgeDied("the judge did not start; `autograder doctor` says what is missing") from error
+            raise JudgeDied(f"the judge did not start; `{COMMAND} doctor` says what is missing") from error
         return self
 
     def __exit__(
@@ -95,7 +96,7 @@ class JudgeProcess:
         self.stop()
 
     def open(self, exercise_id: str, *, record: bool = False) -> None:
-        """Let the next check of this exercise be answered, once.
+        """Allow one check of this exercise.
 
         Raises:
             JudgeDied: The judge is gone.
@@ -104,7 +105,7 @@ class JudgeProcess:
         self._order(Open(exercise_id, seed, record, self.workspaces, self.keeps_evidence, self.is_boxed))
 
     def close(self) -> Verdict | None:
-        """The verdict of the opened check; None where nobody asked for it or there is none.
+        """Close the opened check and return its verdict; None if the notebook did not ask for it or got none.
 
         Raises:
             JudgeDied: The judge is gone.
@@ -112,18 +113,18 @@ class JudgeProcess:
         return self.close_report().verdict
 
     def close_report(self) -> Report:
-        """Like :meth:`close`, with the recorded reference output and the reason why there is no verdict.
+        """Close the opened check and return the whole report, with the recording and the reason for no verdict.
 
         Raises:
-            JudgeDied: The judge is gone, or says something else than a report.
+            JudgeDied: The judge is gone, or its answer is not a report.
         """
         try:
             return msgspec.json.decode(self._order(Close()), type=Report)
         except msgspec.MsgspecError as error:
-            raise JudgeDied("the judge says something else than a report") from error
+            raise JudgeDied("the judge's answer is not a report") from error
 
     def stop(self) -> None:
-        """End the judge and whatever it has forked."""
+        """End the judge and everything that it has forked."""
         process, self._process = self._process, None
         orders, self._orders = self._orders, None
         if orders is not None:
@@ -152,7 +153,7 @@ class JudgeProcess:
 
 
 class _Child:
-    """A judge as a child of this process."""
+    """A judge that runs as a child of this process."""
 
     def __init__(self, listener: int, orders: int) -> None:
         words = ("-m", "autograder.judge", "--attached", str(listener), str(orders))
@@ -165,11 +166,11 @@ class _Child:
 
     @property
     def pid(self) -> int:
-        """Its process id."""
+        """The process id of the judge."""
         return self._process.pid
 
     def end(self) -> None:
-        """Give it a moment to go by itself: its orders have ended."""
+        """Wait a moment for the judge, which exits when its orders end, then kill it."""
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(timeout=2.0)
         signal_group(self._process.pid, signal.SIGKILL)

@@ -1,7 +1,7 @@
-"""The judge process of a notebook: warm, it forks a child for each check that is asked for on its socket.
+"""Serve checks: a judge process, ready with all imports, forks a child for each check asked for on its socket.
 
-The parent has imported ROS and made no node and no thread, so that a fork is safe and each check begins with a fresh
-participant, which meets its subject at once.
+The parent has imported ROS but created no node and no thread. So a fork is safe, and each check begins with a new
+participant, which discovers its subject at once.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 REFUSE_LIMIT = 0.5
-"""Seconds that somebody who is to be refused has to ask."""
+"""Seconds to wait for the request of a notebook that will be refused."""
 CLOSE_LIMIT = 10.0
-"""Seconds that a check may still take after its cell has ended; its kernel is gone then or about to be."""
+"""Seconds that a check may still take after its cell has ended; its kernel has ended then or is about to."""
 
 
 class JudgeServer:
-    """Listens on a Unix socket. A controlled one answers only the check that its controller has opened, once."""
+    """A judge on a Unix socket. If the grader controls it, it answers only the check that was opened, once."""
 
     def __init__(self, listener: socket.socket, *, controlled: bool) -> None:
         """Take over a listening Unix socket."""
@@ -44,7 +44,7 @@ class JudgeServer:
         self._listener = listener
 
     def serve(self, control: BinaryIO, answers: BinaryIO) -> None:
-        """Serve until ``control`` ends: a judge does not outlive the one who started it."""
+        """Serve until ``control`` ends, so that a judge does not outlive the process that started it."""
         with selectors.DefaultSelector() as selector:
             selector.register(self._listener, selectors.EVENT_READ, self._listener)
             selector.register(control, selectors.EVENT_READ, control)
@@ -80,7 +80,7 @@ class JudgeServer:
                 self._children[child.pid] = child
 
     def _obey(self, control: BinaryIO, answers: BinaryIO) -> bool:
-        """Take one order; False at the end of orders."""
+        """Obey one order. Return False at the end of orders."""
         line = control.readline()
         if not line:
             return False
@@ -95,28 +95,28 @@ class JudgeServer:
         return True
 
     def _close(self) -> bytes:
-        """The result of the check, as the JSON of a :class:`Report`, which only the giver of the order decodes."""
+        """End the opened check and return its :class:`Report` as JSON; only the grader decodes it."""
         child, self._child, self._order = self._child, None, None
         if child is None:
             return msgspec.json.encode(Report())
         outcome = child.result(within=CLOSE_LIMIT)
         if outcome.hurried:
-            # The cell had ended and its check had not: no judge's trouble, but a notebook that did not see it through.
+            # The cell ended before its check did: the notebook gave up, the judge did not fail.
             return msgspec.json.encode(Report())
         if outcome.data is None or b"\n" in outcome.data:
-            trouble = outcome.trouble or "the judge said more than one report"
+            trouble = outcome.trouble or "the judge sent more than one report"
             return msgspec.json.encode(Report(trouble=trouble, unfinished=outcome.unfinished))
         return outcome.data
 
     def _reap(self) -> None:
-        """Free the children of an uncontrolled judge; their notebooks have their verdicts."""
+        """Free children whose notebooks already have their verdicts (judges without a controller)."""
         for pid, child in list(self._children.items()):
             if child.done():
                 del self._children[pid]
 
 
 def _refuse(connection: socket.socket, why: str) -> None:
-    """Say no. What was asked is read first: closing on unread words would lose the answer (unix(7), ECONNRESET)."""
+    """Refuse. Read the request first: closing a socket with unread data would lose the answer (unix(7), ECONNRESET)."""
     with contextlib.suppress(OSError):
         connection.settimeout(REFUSE_LIMIT)
         connection.recv(65536)
@@ -124,7 +124,7 @@ def _refuse(connection: socket.socket, why: str) -> None:
 
 
 def run(path: Path) -> None:
-    """Serve whoever asks, until stdin ends; what anything prints goes to stderr."""
+    """Serve every notebook that connects, until stdin ends. All printed output goes to stderr."""
     answers = private_stdout()
     sys.stdout = sys.stderr
     try:

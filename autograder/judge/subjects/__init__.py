@@ -1,1 +1,1 @@
-"""The subject of a check, seen from the judge: something in a notebook, a command, or a path."""
+"""The subjects that a judge can check: a class or function in a notebook, a command, or a path."""

@@ -16,6 +16,7 @@ from autograder.judge.serving.fork import Child
 from autograder.kit.runners import Launches
 from autograder.messages.orders import Report
 from autograder.verdict import Verdict, not_checked
+from environment.installation import COMMAND
 from environment.python_child import python_child
 
 if TYPE_CHECKING:
@@ -31,13 +32,13 @@ class CommandNotFound(LookupError):
 
 
 LAUNCH_FILES = (".py", ".xml", ".yaml", ".yml")
-"""The endings of a launch file's name."""
+"""File name extensions of launch files."""
 FOR_BUILDS = 150.0
-"""Seconds that a check of a command may take longer than its exercise says, because the command builds its package
-first: in the first part of each of two looks it is waited for twice as long again, and up to three times as long on a
-crowded machine (`autograder/judge/bench/presence.py`)."""
+"""Seconds that are added to an exercise's time limit because a command may build its package first. In the first part
+of each of the two looks, the judge waits for it twice as long as usual, and up to three times as long on an
+overloaded machine (`autograder/judge/bench/presence.py`)."""
 SPARE = 10.0
-"""Seconds beyond an exercise's own limit before its judge is taken to have died."""
+"""Seconds after an exercise's own time limit at which its judge counts as dead."""
 
 
 def check_and_keep(
@@ -53,22 +54,22 @@ def check_and_keep(
     Args:
         exercise_id: Such as ``"lab_1_2.talker"``.
         command: The program and its arguments; an exercise with inputs appends them.
-        seed: What random inputs are drawn from; a new one where none is given.
-        cwd: The folder to run it in.
-        box: Where to run it, shut off from the user's files and network; with all rights of the user where None.
+        seed: The seed of the random inputs; the default is a new one.
+        cwd: The folder in which to run the command.
+        box: The sandbox to run it in; None to run it with all rights of the user.
 
     Returns:
-        The verdict, and the evidence as :mod:`autograder.judge.verdicts.keeping` packs it. Where the judge itself had
-        trouble, the verdict's state is ``not_checked`` and the evidence is empty.
+        The verdict, and the evidence as :mod:`autograder.judge.verdicts.keeping` packs it. If the judge itself
+        failed, the verdict's state is ``not_checked`` and the evidence is empty.
 
     Raises:
         UnknownExercise: No exercise has this id.
-        CommandNotFound: There is no such program.
+        CommandNotFound: The program does not exist.
     """
     exercise = exercises.get(exercise_id)
     if not is_path(exercise, command, cwd) and shutil.which(command[0], path=_search_path(cwd)) is None:
         raise CommandNotFound(
-            f"there is no program {command[0]!r} to run here; is it spelt right, and executable?"
+            f"the program {command[0]!r} does not exist here: check its spelling, and that it is executable"
         )
     chosen = seed or secrets.token_hex(8)
 
@@ -76,10 +77,10 @@ def check_and_keep(
         verdict, checked = checked_here(exercise, command, chosen, cwd, box)
         return msgspec.json.encode(Report(verdict, evidence=_packed(checked)))
 
-    settings.provide_log_folder()  # here, because the child ends without tidying up
+    settings.provide_log_folder()  # here, because the child exits without cleaning up
     outcome = Child(report, exercise.limit + FOR_BUILDS + SPARE).result()
     if outcome.data is None:
-        advice = "Run `autograder doctor`."
+        advice = f"Run `{COMMAND} doctor`."
         return not_checked(exercise.id, exercise.title, exercise.points, outcome.trouble, advice), b""
     said = msgspec.json.decode(outcome.data, type=Report)
     assert said.verdict is not None
@@ -87,7 +88,7 @@ def check_and_keep(
 
 
 def as_run(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> Sequence[str]:
-    """The command that is really run: a path in place of a command is built, run or launched by a runner."""
+    """Return the command to run. If a path stands in place of a command, a runner builds, runs or launches it."""
     runner = python_child("-m", "autograder.workspaces", exercise.id).command
     if is_path(exercise, command, cwd):
         return [*runner, command[0]]
@@ -95,7 +96,7 @@ def as_run(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> Sequ
 
 
 def is_path(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> bool:
-    """True if a command is the path of a workspace or a launch file, for an exercise that takes one."""
+    """Return True if the command is the path of a workspace or launch file and the exercise accepts one."""
     if not exercise.runner or len(command) != 1:
         return False
     path = Path(cwd or ".", command[0])
@@ -103,7 +104,7 @@ def is_path(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> boo
 
 
 def _search_path(cwd: Path | None) -> str | None:
-    # A name with a slash is looked up from the folder that the command will run in.
+    # A name with a slash is relative to the folder in which the command will run.
     return os.environ.get("PATH") if cwd is None else f"{os.environ.get('PATH', '')}:{cwd}"
 
 
@@ -116,7 +117,7 @@ def _packed(checked: Checked | None) -> bytes:
 def checked_here(
     exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None, box: Box | None = None
 ) -> tuple[Verdict, Checked | None]:
-    """Judge a command in this very process, a fork made for it; no evidence where the judge itself had trouble."""
+    """Judge a command in this process, a fork made for it. The evidence is None if the judge itself failed."""
     settings.prepare_judge(boxed=box is not None)
     if box is not None:
         box.enter()

@@ -1,4 +1,4 @@
-"""Any command as a subject: a script, a colcon executable, a C++ node, a launch."""
+"""Run any command as a subject: a script, a colcon executable, a C++ node, a launch file."""
 
 from __future__ import annotations
 
@@ -30,38 +30,38 @@ if TYPE_CHECKING:
     Record = Callable[..., None]
 
 MAX_LINE = 4_000
-"""Characters of one line that are kept."""
+"""Limit of one line of output, in characters."""
 MAX_OUTPUT = 2_000_000
-"""Bytes of output that are kept of one run."""
+"""Limit of the output of one run, in bytes."""
 READ_LIMIT = 2.0
-"""Seconds in which the last output of a command that has exited must have been read."""
+"""Seconds in which the rest of the output must be read after a command has exited."""
 POLITE = 1.0
-"""Seconds that a command has to end after SIGINT, before it is killed."""
+"""Seconds between SIGINT and SIGKILL."""
 
 
 LEFTOVERS = 1.0
-"""Seconds in which what a command has left behind must have ended."""
+"""Seconds in which processes that a command left behind must end."""
 
 
 class Box(Protocol):
-    """A place where commands are shut off from the user's files and network; this process is on the same network."""
+    """A sandbox that keeps commands from the user's files and network; this process is on the sandbox's network."""
 
     def enter(self) -> None:
-        """Go there; called once, before anything of ROS is loaded.
+        """Enter the sandbox's network; called once, before ROS is imported.
 
         Raises:
-            OSError: That is not possible here.
+            OSError: This machine does not allow it.
         """
 
     def start_of(self, command: Sequence[str], environment: Mapping[str, str]) -> tuple[list[str], list[int]]:
-        """The command to start in place of another, and the descriptors to hand down, which the caller closes."""
+        """Return the command that runs another one in the sandbox, and descriptors to pass on and then close."""
 
     def limit(self) -> None:
-        """Take the limits of a box; called in the child."""
+        """Apply the limits of the sandbox; called in the child process."""
 
 
 class CommandSubject(InOwnProcesses):
-    """Runs a command in a session of its own, reads all it prints and ends it with everything it started."""
+    """A command in a session of its own; all its output is read, and it ends with everything that it started."""
 
     def __init__(self, command: Sequence[str], cwd: Path | None = None, box: Box | None = None) -> None:
         self._command = list(command)
@@ -72,18 +72,18 @@ class CommandSubject(InOwnProcesses):
         self._done = threading.Event()
         self._dying = threading.Event()
         self._last_words: list[str] = []
-        # Whatever a subject leaves behind becomes this process's child and can be found and killed.
+        # Processes that a subject leaves behind become children of this process, so it can find and kill them.
         adopt_orphans()
 
     def begin(self, domain_id: int) -> None:
-        """Remember the domain that the command's environment will name."""
+        """Remember the ROS domain for the command's environment."""
         self._domain_id = domain_id
 
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
         """Start the command with the arguments appended.
 
         Raises:
-            CannotStart: It does not exist or may not be executed.
+            CannotStart: The command does not exist or is not executable.
         """
         del options  # only a notebook's function takes keyword arguments
         command = [*self._command, *map(str, arguments)]
@@ -125,27 +125,27 @@ class CommandSubject(InOwnProcesses):
         die_with_parent()
 
     def release(self) -> None:
-        """A command runs from its start."""
+        """Do nothing: a command runs from its start."""
 
     def interrupt(self) -> None:
-        """SIGINT to its process group, as a terminal sends it."""
+        """Send SIGINT to the command's process group, as a terminal does."""
         if self._process is not None and self._process.poll() is None:
             signal_group(self._process.pid, signal.SIGINT)
 
     @property
     def ended(self) -> bool:
-        """True if the command has exited and all it printed was read."""
+        """True if the command has exited and all its output has been read."""
         return self._done.is_set()
 
     def processes(self) -> frozenset[int]:
-        """The ids of the processes that the command has started and that live."""
+        """Return the ids of the running processes that the command has started."""
         return frozenset(descendants(self._process.pid)) if self._process else frozenset()
 
     def stack(self) -> str:
-        """Abort the command: Python's faulthandler, which its environment has switched on, prints the stacks.
+        """Abort the command, and return the stacks that Python's faulthandler prints.
 
-        What hangs may be a child of the command: ``ros2 run`` starts the student's program and waits for it. Children
-        come first and each alone, so that no two write into each other's lines.
+        A child of the command may be what hangs: ``ros2 run`` starts the student's program and waits for it. Children
+        are aborted first, one at a time, so that their lines do not mix.
         """
         process = self._process
         if process is None or self.ended:
@@ -156,7 +156,7 @@ class CommandSubject(InOwnProcesses):
         return "\n".join(self._last_words)
 
     def stop(self) -> None:
-        """SIGINT to its process group, then SIGKILL to whatever is left of it."""
+        """Send SIGINT to the command's process group, then SIGKILL to what is left of it."""
         if self._process is None:
             return
         self._dying.set()
@@ -180,11 +180,11 @@ class CommandSubject(InOwnProcesses):
             reader.start()
         code = process.wait()
         for reader in readers:
-            # All that it printed must be read before its end is known. A grandchild may hold the pipe open,
-            # though.
+            # All output must be read before the end is recorded, but a grandchild may hold the pipe
+            # open.
             reader.join(timeout=READ_LIMIT)
         if self._dying.is_set():
-            record("subject", "aborted", code=code)  # what the judge has ended did not end by itself
+            record("subject", "aborted", code=code)  # the judge ended the command
             done.set()
         else:
             end("exited", done.set, code=code)

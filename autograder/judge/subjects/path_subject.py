@@ -1,7 +1,7 @@
-"""A workspace or launch file of a notebook as a subject: the grader's side builds and runs it, and reports.
+"""Check a workspace or launch file of a notebook: the grader builds and runs it, and reports.
 
-The notebook sends its sources and has no further part in it. What it said about them becomes files on the grader's
-side (:mod:`autograder.workspaces.service`); from there come the reports, and what the programs say.
+The notebook sends only the sources. The workspace service of the grader (:mod:`autograder.workspaces.service`) writes
+them to files, builds and runs them, and sends the reports and the output of the programs.
 """
 
 from __future__ import annotations
@@ -25,28 +25,28 @@ if TYPE_CHECKING:
     from autograder.judge.bench.recorder import Recorder
 
 STOP_LIMIT = 15.0
-"""Seconds of wall time in which the grader's side must have ended a run."""
+"""Seconds of wall time in which the workspace service must end a run."""
 PATIENCE = 60.0
-"""Seconds of wall time after which a scenario that has given up on a build had waited for it. One that gives up earlier
-has seen enough."""
+"""Seconds of wall time. A scenario that stops before a build has ended, after this time or later, has waited for the
+build in vain. A scenario that stops earlier has seen enough."""
 MAX_TEXT = 4_000
-"""Characters that are kept of one line."""
+"""Limit of one line, in characters."""
 
 
 class PathSubject(InOwnProcesses):
-    """Implements :class:`autograder.judge.subjects.subject.Subject` on the grader's side.
+    """A :class:`autograder.judge.subjects.subject.Subject` that the workspace service builds and runs.
 
     Attributes:
-        trouble: Why nothing can be said about what was submitted, where the grader's side failed; else empty.
+        trouble: Why the submission cannot be judged, if the workspace service failed; otherwise empty.
     """
 
     def __init__(self, notebook: Lines, exercise: str, socket_path: str) -> None:
         """Take over a conversation.
 
         Args:
-            notebook: The notebook's end.
+            notebook: The connection to the notebook.
             exercise: The exercise's id.
-            socket_path: The socket of the grader's side.
+            socket_path: The socket of the workspace service.
         """
         self._notebook = notebook
         self._exercise = exercise
@@ -64,10 +64,10 @@ class PathSubject(InOwnProcesses):
         self.trouble = ""
 
     def begin(self, domain_id: int) -> None:
-        """Take the sources and hand them over; from then on the notebook has no part in it.
+        """Receive the sources from the notebook and pass them to the workspace service.
 
         Raises:
-            JudgeFailed: The grader's side is not there.
+            JudgeFailed: The workspace service does not answer.
             Hangup: The notebook hung up before it had sent everything.
         """
         sources, wrong = self._collected()
@@ -85,10 +85,10 @@ class PathSubject(InOwnProcesses):
         self._check()
 
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
-        """Let it be built, where it is not yet, and run.
+        """Have the workspace built, unless it is already, and run.
 
         Raises:
-            JudgeFailed: The grader's side is gone.
+            JudgeFailed: The workspace service has ended.
         """
         del options
         self._run += 1
@@ -101,26 +101,26 @@ class PathSubject(InOwnProcesses):
         self._say(workspaces.Start(self._run, tuple(map(str, arguments))))
 
     def release(self) -> None:
-        """A program runs from its start."""
+        """Do nothing: a program runs from its start."""
 
     def interrupt(self) -> None:
-        """Let Ctrl-C be pressed on the grader's side."""
+        """Have the workspace service send Ctrl-C."""
         self._say(workspaces.Interrupt(self._run))
 
     @property
     def ended(self) -> bool:
-        """True if this run has ended by itself, or there is nobody left to run it."""
+        """True if this run has ended by itself, or the workspace service has ended."""
         return self._ended.is_set()
 
     def stack(self) -> str:
-        """Nobody can tell: the program is not this process's child."""
+        """Return no stack: the program is not a child of this process."""
         return ""
 
     def stop(self) -> None:
-        """Let the run be ended.
+        """Have the run ended.
 
         Raises:
-            JudgeFailed: Something failed on the grader's side, so that what was seen says nothing.
+            JudgeFailed: The workspace service failed, so the evidence proves nothing.
         """
         if self._recorder is None:
             return
@@ -146,7 +146,7 @@ class PathSubject(InOwnProcesses):
             raise JudgeFailed(self.trouble or f"the grader's side of workspaces is gone: {error}") from error
 
     def _collected(self) -> tuple[list[Source], str]:
-        """The sources that the notebook sends, and the reason why they cannot be used."""
+        """Return the sources that the notebook sends, and the reason why they cannot be used."""
         self._notebook.say(Collect())
         sources: list[Source] = []
         room = MAX_HELD
@@ -156,7 +156,7 @@ class PathSubject(InOwnProcesses):
                     sources.append(said)
                     room -= room_of(said)
         except NotUnderstood:
-            return [], "a file has not the form of one"
+            return [], "the notebook sent a message that is not a file"
         wrong = "".join(c for c in said.trouble[:500] if c.isprintable())
         try:
             check_path(said.path)
@@ -179,7 +179,7 @@ class PathSubject(InOwnProcesses):
             case workspaces.Ready():
                 self._ready.set()
             case _ if message.run != self._run:
-                pass  # of an earlier run
+                pass  # from an earlier run
             case workspaces.Stopped():
                 self._stopped.set()
             case workspaces.BuildEnded():
@@ -205,5 +205,5 @@ class PathSubject(InOwnProcesses):
 
 
 def as_words(text: str) -> str:
-    """A line as a program's own words: whatever it begins with, it is none of a runner's reports."""
+    """Return a program's line so that it cannot be taken for a report of the runner, whatever it begins with."""
     return f" {text[:MAX_TEXT]}" if text.startswith(REPORTS) else text[:MAX_TEXT]

@@ -1,7 +1,7 @@
-"""A subject in a notebook: the kernel runs it, at the judge's word.
+"""Check a subject in a notebook: the kernel runs it when the judge says so.
 
-A Node class or a function lives in the kernel, in one participant for all of its runs. A workspace or a launch file is
-started by the kernel as a process of its own each time.
+A Node class or a function runs inside the kernel, in one participant for all of its runs. For a workspace or a launch
+file, the kernel starts a new process for each run.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from autograder.judge.subjects.subject import InOwnProcesses
+from autograder.kit.workspace_report import tells_of_a_build
 from autograder.messages import checks
 from autograder.messages.lines import Hangup, Lines, NotUnderstood
 from autograder.messages.workspaces import Source
@@ -25,35 +26,35 @@ if TYPE_CHECKING:
     from autograder.judge.bench.recorder import Recorder
 
 MAX_TEXT = 4_000
-"""Characters that are kept of one thing that the notebook says."""
+"""Limit of one text from the notebook, in characters."""
 MAX_MARKER = 200
-"""Characters that are kept of the name of a marker."""
+"""Limit of the name of a marker, in characters."""
 MAX_STACK = 50_000
-"""Characters that are kept of a hung subject's stacks."""
-MAX_SECONDS = 3600.0
-"""The longest time, in seconds, that is believed when the notebook tells one; nothing of the course takes as long."""
+"""Limit of the stacks of a hung subject, in characters."""
 CONSTRUCT_LIMIT = 10.0
-"""Seconds of wall time after which a node whose constructor has not come to its end is no longer waited for."""
+"""Seconds of wall time that a node's constructor may take before the judge stops waiting for it."""
 NEWS_LIMIT = 20.0
-"""Seconds that a notebook's participant may take in all runs of a check to know what the judge has put up; it takes
+"""Seconds that a notebook's participant may take, over all runs of a check, to discover the judge's endpoints. It takes
 milliseconds."""
 STOP_LIMIT = 3.0
-"""Seconds of wall time in which the notebook must have stopped a run."""
+"""Seconds of wall time in which the notebook must stop a run."""
 
 
 class RemoteSubject:
-    """Implements :class:`autograder.judge.subjects.subject.Subject` over a notebook's conversation."""
+    """A :class:`autograder.judge.subjects.subject.Subject` that a notebook's kernel runs."""
 
     shares_participant = True
+    in_a_notebook = True
+    is_building = False
 
     def __init__(self, lines: Lines, *, is_class: bool = False) -> None:
         """Take over a conversation.
 
         Args:
-            lines: The notebook's end.
-            is_class: The subject is a class, whose constructor comes to its end before anything else, if it does.
+            lines: The connection to the notebook.
+            is_class: True if the subject is a class. Its constructor must return before the run goes on.
         """
-        # Drawn for each check, so that nobody who writes a node can have its name in it.
+        # Random for each check, so that no student's code can contain the name.
         self.keeper = f"_check_keeper_{secrets.token_hex(8)}"
         self._lines = lines
         self._is_class = is_class
@@ -75,21 +76,21 @@ class RemoteSubject:
         self._thread = threading.Thread(target=self._listen, daemon=True)
 
     def begin(self, domain_id: int) -> None:
-        """Let the notebook open a ROS context on the domain."""
+        """Have the notebook open a ROS context on the domain."""
         self._thread.start()
         self._tell(checks.Begin(domain_id, self.keeper))
         self._ready.wait(STOP_LIMIT)
 
     def tell_so_far(self, words: str) -> None:
-        """Let the notebook's card show this while the check goes on."""
+        """Have the notebook's card show this while the check goes on."""
         self._tell(checks.SoFar(words))
 
     def renew(self) -> None:
-        """Let the next run have a fresh context."""
+        """Have the notebook open a new context for the next run."""
         self._fresh = True
 
     def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
-        """Ask the notebook, which looks with its own participant."""
+        """Ask the notebook, which looks through its own participant."""
         self._answered.clear()
         self._seen_as_told = False
         fresh, self._fresh = self._fresh, False
@@ -97,56 +98,55 @@ class RemoteSubject:
         self._tell(checks.Meet(fresh, sorted(there), sorted(gone), max(0.0, self._news_left)))
         self._answered.wait(max(0.0, self._news_left) + STOP_LIMIT)
         self._news_left -= time.monotonic() - asked_at
-        # Who has left the conversation is not kept waiting, and gets no points.
+        # A notebook that has disconnected is not waited for. It gets no points.
         return self._seen_as_told or self._gone.is_set()
 
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
-        """Let the notebook make the node (a class) or call the function."""
+        """Have the notebook create the node (a class) or call the function."""
         self._run += 1
         self._recorder = recorder
         self._end = recorder.end_of_this_part()
         self._marker, self._may_make_more, self._ended = None, False, False
         self._stopped.clear()
         fresh, self._fresh = self._fresh, False
-        sleep_factor, spare = options.pop("sleep_factor", 1.0), options.pop("spare", 0.0)
-        self._tell(checks.Start(self._run, fresh, list(arguments), options, sleep_factor, spare))
+        self._tell(checks.Start(self._run, fresh, list(arguments), options))
         if self._is_class and not recorder.wait(
             lambda: self._marker is not None or self.ended, CONSTRUCT_LIMIT
         ):
-            # It is looked at as a program is, which may do all of its work in there.
+            # It is judged like a program: a constructor may do all of the work.
             recorder.record("subject", "never_constructed")
 
     def interrupt(self) -> None:
-        """Let the notebook press Ctrl-C at the process of a path; what runs in the kernel goes on."""
+        """Have the notebook send Ctrl-C to the process of a path. A class or function in the kernel goes on."""
         self._tell(checks.Interrupt(self._run))
 
     def release(self) -> None:
-        """Let the made node spin; where it may make more, nobody knows any longer when it has made all."""
+        """Have the node spin. If it may create more endpoints then, the marker no longer shows when all are there."""
         if self._may_make_more:
             self._marker, self._may_make_more = None, False
         self._tell(checks.Release(self._run))
 
     @property
     def ended(self) -> bool:
-        """True if the function has returned or something was raised, or the notebook is gone."""
+        """True if the function has returned or raised, or the notebook has disconnected."""
         return self._ended or self._gone.is_set()
 
     def processes(self) -> frozenset[int]:
-        """Nobody can tell: it runs in the notebook's kernel, beside whatever else that has started."""
+        """Return none: the subject runs in the notebook's kernel, next to other processes that the kernel started."""
         return frozenset()
 
     @property
     def marker(self) -> str | None:
-        """The topic that the notebook made after the subject's constructor had ended."""
+        """The topic that the notebook created after the subject's constructor had returned."""
         return self._marker or None
 
     @property
     def may_make_more(self) -> bool:
-        """True until the release of a node that has a timer or a thread of its own."""
+        """True until a node that has a timer or a thread of its own is released."""
         return self._may_make_more
 
     def stack(self) -> str:
-        """Ask the notebook where the subject's threads are."""
+        """Ask the notebook for the stacks of the subject's threads."""
         self._told_stack.clear()
         self._stack = ""
         self._tell(checks.Stack(self._run))
@@ -154,7 +154,7 @@ class RemoteSubject:
         return self._stack
 
     def stop(self) -> None:
-        """Let the notebook end the run and destroy its nodes."""
+        """Have the notebook end the run and destroy its nodes."""
         self._tell(checks.Stop(self._run))
         self._stopped.wait(STOP_LIMIT)
         self._recorder = None
@@ -185,7 +185,7 @@ class RemoteSubject:
                 self._seen_as_told = seen
                 self._answered.set()
             case checks.Check() | Source() | checks.Sources():
-                pass  # these have their place before
+                pass  # these belong to the beginning of a conversation
             case _ if message.run == self._run and self._recorder is not None:
                 self._take_of_run(message, self._recorder)
 
@@ -201,12 +201,8 @@ class RemoteSubject:
                 record("output", "notebook log" if logged else "notebook", text=text[:MAX_TEXT])
             case checks.Started(accepted=names):
                 record("subject", "started", accepted=names)
-            case checks.Spared(seconds=seconds):
-                record("spared", "a wait for a server", seconds=_bounded(seconds))
             case checks.Called():
                 record("called", "a server")
-            case checks.Willing(seconds=seconds, call=call):
-                record("willing", "to wait for an answer", seconds=_bounded(seconds), call=call)
             case checks.Looked():
                 record("looked", "graph")
             case checks.Constructed(marker=marker, goes_on=goes_on, twin=twin):
@@ -227,7 +223,10 @@ class RemoteSubject:
 
 
 class RemotePath(InOwnProcesses, RemoteSubject):
-    """A workspace or a launch file: the notebook's kernel starts what is in it."""
+    """A workspace or a launch file whose programs the notebook's kernel starts."""
+
+    in_a_notebook = True
+    is_building = True
 
     def __init__(self, lines: Lines) -> None:
         """Take over a conversation."""
@@ -236,6 +235,8 @@ class RemotePath(InOwnProcesses, RemoteSubject):
 
     tell_so_far = RemoteSubject.tell_so_far
 
-
-def _bounded(seconds: float) -> float:
-    return min(max(0.0, seconds), MAX_SECONDS)  # in this order, so that NaN is 0
+    def _take_of_run(self, message: checks.RunMessage, recorder: Recorder) -> None:
+        super()._take_of_run(message, recorder)
+        match message:
+            case checks.Output(text=text):
+                self.is_building = self.is_building and not tells_of_a_build(text)

@@ -1,4 +1,4 @@
-"""The thing under test, seen from the judge: something that starts, speaks on the wire and perhaps ends."""
+"""Define what a judge expects of a subject: it starts, communicates over ROS, and may end."""
 
 from __future__ import annotations
 
@@ -12,42 +12,48 @@ if TYPE_CHECKING:
 class Subject(Protocol):
     """A node class or a function in a notebook, or a command.
 
-    Implementations write into the recorder: ``output`` events for each line it prints and ``subject`` events named
+    Implementations write into the recorder: an ``output`` event for each line of output, and ``subject`` events named
     ``constructed``, ``returned``, ``raised`` or ``exited``.
     """
 
     shares_participant: bool
-    """True if one run after the other lives in the same ROS participant."""
+    """True if all runs share one ROS participant."""
+    in_a_notebook: bool
+    """True if a check cell, and perhaps a student, waits for the verdict."""
     keeper: str
-    """The name of a node that keeps this participant and has no endpoint of its own; empty where there is none."""
+    """The name of the node that keeps the participant alive and has no endpoints; empty if there is none."""
 
     def begin(self, domain_id: int) -> None:
-        """Called once, before the first run, with the domain of this check."""
+        """Prepare for the first run, on the ROS domain of this check; called once."""
 
     def tell_so_far(self, words: str) -> None:
-        """Tell the waiting student, in a sentence, what the judge knows so far. Only a notebook can show it."""
+        """Tell the waiting student in one sentence what the judge knows so far. Only a notebook shows it."""
+
+    @property
+    def is_building(self) -> bool:
+        """True until the packages of a workspace are built for the first time; False if nothing has to be built."""
 
     def renew(self) -> None:
-        """Begin the next run with a fresh participant: an old one would meet the judge's new one only slowly."""
+        """Begin the next run with a new participant: an old one would discover the judge's new one only slowly."""
 
     def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
-        """Wait until the participant of the next run sees what the judge has put up, and nothing of what is gone.
+        """Wait until the participant of the next run sees the judge's new endpoints and no longer the removed ones.
 
-        Each participant learns that by itself and in its own time. A subject must not be told, by what it still sees
-        of an earlier run, that a service is there.
+        Each participant discovers endpoints by itself. Otherwise a subject could still see a service of an
+        earlier run and call it.
 
         Returns:
-            False where that did not come within a generous limit, or nobody says so.
+            False if the participant did not see that within a generous time limit, or the notebook does not answer.
         """
 
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
         """Start a run."""
 
     def release(self) -> None:
-        """Let a held run spin."""
+        """Let a held run spin its node."""
 
     def interrupt(self) -> None:
-        """Ctrl-C, as a terminal sends it. What ends by that has ended by itself."""
+        """Send Ctrl-C, as a terminal does. A run that then ends counts as ended by itself."""
 
     @property
     def ended(self) -> bool:
@@ -55,48 +61,50 @@ class Subject(Protocol):
 
     @property
     def marker(self) -> str | None:
-        """A topic that appears on the graph after everything the subject made; None where nobody can know."""
+        """A topic that appears on the graph after everything that the subject creates, or None."""
 
     @property
     def may_make_more(self) -> bool:
-        """True if it is held and has a timer or a thread, which may make more once it is released."""
+        """True if the run is held and has a timer or a thread, which may create more endpoints once it is released."""
 
     def processes(self) -> frozenset[int]:
-        """The ids of the processes that it has started and that live; none where nobody can tell."""
+        """Return the ids of the running processes that the subject has started; none if they are not known."""
 
     def stack(self) -> str:
-        """The stack of each of its threads, innermost call first, as faulthandler says it; empty where unknown.
+        """Return the stack of each thread, innermost call first, as faulthandler prints it; empty if unknown.
 
         This may end the run, which does not count as ending by itself.
         """
 
     def stop(self) -> None:
-        """End the run, whatever it takes. Afterwards nothing of it lives."""
+        """End the run by all means. Afterwards no process, thread or node of it is left."""
 
 
 class InOwnProcesses:
-    """The common part of subjects whose runs are processes, each with a ROS participant of its own."""
+    """The common part of subjects whose runs are separate processes, each with its own ROS participant."""
 
     shares_participant = False
+    in_a_notebook = False
+    is_building = False
     keeper = ""
     marker = None
     may_make_more = False
 
     def processes(self) -> frozenset[int]:
-        """Nobody can tell, where they are not this process's children."""
+        """Return none: the processes are not children of this one."""
         return frozenset()
 
     def tell_so_far(self, words: str) -> None:
-        """A command has no card."""
+        """Do nothing: a command has no card."""
 
     def renew(self) -> None:
-        """The next run has a participant of its own in any case."""
+        """Do nothing: each run has its own participant."""
 
     def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
-        """A participant of its own has met nobody: it cannot know what is gone."""
+        """Return True: a new participant has discovered nothing yet, so it cannot see removed endpoints."""
         del there, gone
         return True
 
 
 class CannotStart(RuntimeError):
-    """The command does not exist or may not be executed."""
+    """The command does not exist or is not executable."""

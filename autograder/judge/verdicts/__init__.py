@@ -1,1 +1,1 @@
-"""From a look at a subject to its verdict, and to the reference output that it is held against."""
+"""Turn the evidence of a check into a verdict, and record the reference output to compare with."""

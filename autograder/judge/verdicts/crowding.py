@@ -1,7 +1,7 @@
-"""The machine's share in a failure: how crowded it was during a look in real time.
+"""Measure how overloaded the machine was during a look in real time, so that its load fails no answer.
 
-The load of the last minute (getloadavg(3)) would be the wrong measure: it still counts what has ended before the look,
-and hardly what has begun with it.
+The load average (getloadavg(3)) would be the wrong measure: it still counts programs that ended before the look, and
+hardly those that started with it.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ class TooBusy(JudgeFailed):
 
 
 class OutOfTime(BaseException):
-    """A check on a crowded machine has used up its time. No ``except Exception`` on the way may catch this."""
+    """A check on an overloaded machine has used up its time. No ``except Exception`` may catch this."""
 
 
 class Crowding:
-    """Counts, from its entry to its exit, the threads that want a processor.
+    """Counts the threads that want a processor, from ``__enter__`` to ``__exit__``.
 
     Args:
         runnable: Returns how many there are now.
@@ -84,6 +84,7 @@ class Hurry:
         runnable: Returns how many threads want a processor now.
         processors: How many processors they share.
         now: A monotonic clock, in seconds.
+        is_building: Returns True while a workspace is built: that has its own limit, so this time does not count.
     """
 
     def __init__(
@@ -91,19 +92,23 @@ class Hurry:
         runnable: Callable[[], int] = runnable_threads,
         processors: int = os.cpu_count() or 1,
         now: Callable[[], float] = time.monotonic,
+        is_building: Callable[[], bool] = lambda: False,
     ) -> None:
         self._runnable, self._processors, self._now = runnable, processors, now
+        self._is_building = is_building
         self._end = now() + ANSWER_WITHIN
         self._next_count = now()
         self._sum = self._counts = 0
 
     def __call__(self) -> None:
-        """Count, and end the check if its time is over. To be called repeatedly while the judge waits.
+        """Count, and end the check if its time is over; call it repeatedly while the judge waits.
 
         Raises:
-            OutOfTime: At most once, since the cleaning up after it waits, too.
+            OutOfTime: At most once, because cleaning up after it waits, too.
         """
         now = self._now()
+        if self._is_building():
+            self._end = max(self._end, now + ANSWER_WITHIN)
         if now >= self._next_count:
             self._next_count = now + _EVERY
             self._sum += self._runnable()

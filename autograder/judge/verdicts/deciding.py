@@ -1,7 +1,7 @@
-"""A limit on the time in which the judge decides about a subject's words and messages.
+"""Limit the time that the judge takes to decide about a subject's output and messages.
 
-What it looks at was written by a student, so there may be a text that keeps a criterion busy for ever. Thinking needs
-nothing of the machine but a processor, so a limit on processor time says the same on a busy machine as on an idle one.
+A student wrote that output, so it may keep a criterion busy forever. Deciding needs nothing but a processor, so a
+limit on processor time has the same effect on a busy machine and on an idle one.
 """
 
 from __future__ import annotations
@@ -22,35 +22,35 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 LIMIT = 10.0
-"""Seconds of processor time for one decision; a usual one takes a hundredth of a second."""
+"""Seconds of processor time for one decision; it usually takes a hundredth of a second."""
 AGAIN = 0.05
-"""Seconds of processor time after which a decision that has not ended is told so once more.
+"""Seconds of processor time after which the signal is sent again if the decision has not ended.
 
-An exception that is raised within a destructor or a callback of the garbage collector is printed and forgotten.
+Python prints and drops an exception that is raised in a destructor or in a callback of the garbage collector.
 """
 SURE = 1.0
-"""Seconds of processor time from which it is the subject's words that keep the judge: it may be told to end then."""
+"""Seconds of processor time from which the subject's output, not the machine, is what delays the decision."""
 SIGNAL = signal.SIGVTALRM
-"""Ends a decision; a judge that is not deciding anything does not hear it."""
+"""Ends a decision; a judge that is not deciding ignores it."""
 
 
 class Undecided(BaseException):
-    """The judge did not come to a decision. No ``except Exception`` on the way may take it for something else."""
+    """The judge did not reach a decision. No ``except Exception`` may catch this."""
 
 
 @contextlib.contextmanager
 def limited(seconds: float = LIMIT) -> Iterator[None]:
-    """Decide something within a limit.
+    """Run the block within a limit of processor time.
 
     Args:
-        seconds: Of processor time.
+        seconds: Limit in seconds of processor time.
 
     Raises:
-        Undecided: That was not enough, or whoever waits for the verdict has sent ``SIGNAL``. A decision that has
-            hardly begun goes on then: it was late for another reason, and has no verdict rather than a wrong one.
+        Undecided: The time is over, or the parent process has sent ``SIGNAL``. A decision that has only just begun
+            ignores the signal: it was late for another reason, and no verdict is better than a wrong one.
     """
     if threading.current_thread() is not threading.main_thread():
-        yield  # only a main thread hears signals; judges decide in theirs
+        yield  # only the main thread receives signals; judges decide in it
         return
 
     began = time.process_time()
@@ -68,7 +68,7 @@ def limited(seconds: float = LIMIT) -> Iterator[None]:
 
 
 def _no_longer(before: signal.Handlers | Callable[..., object] | int | None) -> None:
-    """Switch the limit off, also where it strikes once more in that moment."""
+    """Switch the limit off, even if the signal arrives again meanwhile."""
     while True:
         try:
             signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
@@ -79,10 +79,10 @@ def _no_longer(before: signal.Handlers | Callable[..., object] | int | None) -> 
 
 
 def undecidable(exercise: Exercise, seed: str) -> Verdict:
-    """Zero points with the reason: the subject's own words are in the way, and would be at every further try."""
+    """Return a verdict of zero points: the subject's output is too long to decide about, in this check and the next."""
     diagnosis = Diagnosis(
         "undecidable",
-        "The judge looked at what your program said and sent, and came to no end: there is far too much of it.",
+        "Your program said and sent far too much: the judge could not finish reading it.",
         "Log what the task asks for, one short line for each thing that happens, and nothing else.",
     )
     return replace(failed(exercise.id, exercise.title, float(exercise.points), diagnosis), seed=seed)

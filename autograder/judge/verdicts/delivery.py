@@ -1,7 +1,7 @@
-"""The machine's share in silence: whether what is sent still arrives here, and whether who waits for it is told.
+"""Test whether this machine still delivers messages, so that a machine that loses them fails no answer.
 
-What waits in sockets is counted for the whole machine, and how much may be watched for each user, all boxes included.
-Where others have used either up, a node is made without an error and hears little or nothing (udp(7), epoll(7)).
+The kernel limits the memory of all sockets of a machine, and the number of epoll watches of each user, sandboxes
+included. If either is used up, a node starts without an error and receives little or nothing (udp(7), epoll(7)).
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ NOT_DELIVERED = (
     "judge cannot tell whether your node sent any. Close some, or wait a little, and check again."
 )
 _DATAGRAMS, _BYTES = 16, 4096
-"""More than a socket gets where this memory is used up, and less than half of what it has room for elsewhere."""
+"""More than a socket can hold if this memory is used up, and less than half of what it can hold otherwise."""
 _ARRIVES_WITHIN = 10.0
-"""Seconds of wall time; on its way within a machine a datagram waits for nothing but a processor."""
+"""Seconds of wall time; inside one machine a datagram waits only for a processor."""
 
 
 class NotDelivered(JudgeFailed):
-    """The subject did not pass, and that may be because this machine lost its messages."""
+    """The subject did not pass, perhaps because this machine lost its messages."""
 
 
 def delivers() -> bool:
-    """True if datagrams that this process sends to itself arrive, and it is told of them."""
+    """Return True if datagrams that this process sends to itself arrive, and epoll reports them."""
     try:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as end, select.epoll() as watch:
             end.bind(("127.0.0.1", 0))

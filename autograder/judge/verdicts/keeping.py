@@ -1,7 +1,7 @@
-"""The evidence of a check as bytes that can be kept: compressed, bounded in size, and read back as it was.
+"""Pack the evidence of a check into bytes of limited size, and unpack it unchanged.
 
-It is JSON, a line for each event, under gzip. A flood is cut at the limit, and what was cut says so: from a part of the
-evidence no verdict follows.
+The format is JSON under gzip, one line for each event. Evidence that is too long is cut, and marked as cut: no verdict
+may be drawn from part of the evidence.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Reference
 
 MAX_BYTES = 400_000
-"""Compressed bytes of the evidence of one check."""
+"""Limit of the evidence of one check, in compressed bytes."""
 MAX_RAW_BYTES = 8_000_000
-"""Bytes before they are compressed: what says the same for ever is cut, too."""
+"""Limit in bytes before compression; it also cuts endless repetition, which compresses well."""
 _GZIP = 31
-"""zlib's number for a gzip header with the largest window."""
+"""zlib's ``wbits`` for a gzip header with the largest window."""
 _FLOAT = "$float"
-"""Stands for a number that JSON has no word for, such as infinity; no field of a message can be called so."""
+"""Key for a number that JSON cannot express, such as infinity; no field of a message can have this name."""
 
 
 class NoEvidence(ValueError):
-    """These bytes are no evidence; the message says why."""
+    """These bytes are not evidence; the message says why."""
 
 
 class KeptLook(msgspec.Struct, frozen=True):
@@ -49,14 +49,14 @@ class KeptLook(msgspec.Struct, frozen=True):
 
 
 class Kept(msgspec.Struct, frozen=True):
-    """All that a verdict came from.
+    """A verdict with everything that it follows from.
 
     Attributes:
-        at: When the verdict was there, in seconds of Unix time.
-        reference: The SHA-256 of the reference output that was expected, as it lay on the disk.
-        verdict: What the judge found, without the timeline, which follows from the events.
-        looks: What was seen: in the quick look, and in the one in real time where there was one.
-        cut: What is missing, and why; empty where nothing is.
+        at: Unix time of the verdict, in seconds.
+        reference: The SHA-256 of the reference output's file.
+        verdict: The verdict without its timeline, which follows from the events.
+        looks: The quick look, and the look in real time if there was one.
+        cut: What is missing, and why; empty if the evidence is whole.
     """
 
     at: float
@@ -67,7 +67,7 @@ class Kept(msgspec.Struct, frozen=True):
 
 
 def packed(checked: Checked) -> bytes:
-    """The evidence of a check, now; empty where it cannot be packed, which must not cost anybody a verdict."""
+    """Pack the evidence of a check. Return no bytes if that fails: a student must not lose a verdict by it."""
     try:
         digest = reference.digest(checked.verdict.exercise)
         return pack(checked.verdict, checked.evidence, digest, at=time.time())
@@ -77,13 +77,13 @@ def packed(checked: Checked) -> bytes:
 
 
 def pack(verdict: Verdict, evidence: Evidence, digest: str, *, at: float) -> bytes:
-    """A check as bytes; :func:`unpack` reads them.
+    """Pack a check into bytes; :func:`unpack` reads them.
 
     Args:
-        verdict: What the judge found.
-        evidence: What that follows from.
+        verdict: The verdict.
+        evidence: The evidence for it.
         digest: The SHA-256 of the reference output.
-        at: When that was, in seconds of Unix time.
+        at: Unix time of the verdict, in seconds.
     """
     looks = [look for look in (evidence.before, evidence) if look is not None]
     sheet = _Sheet()
@@ -105,7 +105,7 @@ def pack(verdict: Verdict, evidence: Evidence, digest: str, *, at: float) -> byt
 
 
 class _Sheet:
-    """Lines of JSON under gzip, until there is no room."""
+    """Lines of JSON under gzip, up to the limit of bytes."""
 
     def __init__(self) -> None:
         self._zip = zlib.compressobj(1, zlib.DEFLATED, _GZIP)
@@ -114,17 +114,17 @@ class _Sheet:
         self.lines = self.left_out = 0
 
     def write(self, row: Any) -> None:
-        """Add a line; nothing is added any more once one had no room."""
+        """Add a line, unless this line or an earlier one exceeds the limit."""
         self.lines += 1
         if self.left_out or not self._add(_line(row)):
             self.left_out += 1
 
     def end(self, row: Any) -> bytes:
-        """Everything, with a last line that always has room."""
+        """Return all bytes, with a last line that is added in any case."""
         return bytes(self._written) + self._zip.compress(_line(row)) + self._zip.flush()
 
     def _add(self, line: bytes) -> bool:
-        # What the compressor still holds counts in full until it is known what has become of it.
+        # Lines that the compressor still holds count uncompressed, until a flush shows their compressed size.
         if len(self._written) + self._pending + len(line) > MAX_BYTES:
             self._written += self._zip.flush(zlib.Z_SYNC_FLUSH)
             self._pending = 0
@@ -140,7 +140,7 @@ def unpack(data: bytes) -> Kept:
     """Read evidence back.
 
     Raises:
-        NoEvidence: It is none, or it is damaged.
+        NoEvidence: The bytes are not evidence, or are damaged.
     """
     try:
         unzip = zlib.decompressobj(_GZIP)
@@ -168,14 +168,14 @@ def _looks(rows: Sequence[Any]) -> list[dict[str, Any]]:
 
 
 def evidence_of(kept: Kept, expected: Reference) -> Evidence:
-    """The evidence as a judge decides from it.
+    """Return the evidence in the form from which a judge decides.
 
     Args:
-        kept: What was kept.
+        kept: The unpacked evidence.
         expected: The reference output.
 
     Raises:
-        NoEvidence: There is no look in it.
+        NoEvidence: It contains no look.
     """
     evidence: Evidence | None = None
     for look in kept.looks:
@@ -194,7 +194,7 @@ def _line(row: Any) -> bytes:
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON can say it: numbers that are none, such as infinity, become a word."""
+    """Return a value that JSON can express: numbers such as infinity become a dictionary with a word."""
     if isinstance(value, float) and not math.isfinite(value):
         return {_FLOAT: str(value)}
     if isinstance(value, Mapping):
@@ -205,7 +205,7 @@ def plain(value: Any) -> Any:
 
 
 def restored(value: Any) -> Any:
-    """The value for which :func:`plain` has put something plain."""
+    """Return the original of a value that :func:`plain` has changed."""
     if isinstance(value, dict):
         if value.keys() == {_FLOAT}:
             return float(value[_FLOAT])

@@ -1,4 +1,4 @@
-"""Record a reference output: look at the reference solution with the same eyes as at anybody's."""
+"""Record a reference output: run the reference solution through the same look as a student's answer."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from autograder.judge.subjects.subject import Subject
 
 SEED = "reference"
-"""Recording draws the same inputs each time."""
+"""The fixed seed of a recording, so that its inputs are the same each time."""
 LOOKS = 10
-"""The number of looks at a subject whose evidence a busy machine has blurred. With three looks, 1 recording of 36 was
-given up where eighteen were made at once on two processors."""
+"""How often recording looks again at a subject whose evidence is doubtful on a busy machine. With three looks, 1 of 36
+recordings failed while eighteen ran at once on two processors."""
 
 
 class NotRecordable(RuntimeError):
@@ -29,17 +29,17 @@ class NotRecordable(RuntimeError):
 
 
 def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference:
-    """Look at the reference solution's interface, then run the scenario on it.
+    """Record the reference solution's endpoints, then run the scenario on it.
 
-    As with any subject, a fast look that fails proves nothing unless the mistake is certain: on a busy machine a goal
-    may be over before it is canceled, or the first message lost before the judge could hear it. So it is looked at
-    again, but not once the recording has taken as long as a check may.
+    As with any subject, a fast look that fails proves nothing unless the mistake is certain: on a busy machine, a goal
+    may end before it is canceled, or the first message may be lost. So recording looks again, but not after it
+    has taken as long as a check may take.
 
     Returns:
-        The recording. Where the solution was right in none of the looks, it is the last one, by which it is not.
+        The recording of the first look in which the solution was right; if there is none, that of the last look.
 
     Raises:
-        NotRecordable: It never had an endpoint of the exercise's roles, or each look was doubtful.
+        NotRecordable: The solution had no endpoint of the exercise's roles, or each look was doubtful.
     """
     deadline = time.monotonic() + exercise.limit
     subject.begin(domain_id)
@@ -65,12 +65,12 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
         return wrong
     raise NotRecordable(
         f"{exercise.id}: the reference solution did not follow the clock, or asked to cancel at another moment in "
-        "each run; is the machine busy?"
+        "each run: wait until the machine is less busy, and record again"
     )
 
 
 def as_evidence(recorded: Reference) -> Evidence:
-    """The recording, as the evidence of a subject that is its own reference."""
+    """Return the recording as the evidence of a subject that is its own reference."""
     return Evidence(recorded.parts, recorded)
 
 
@@ -82,22 +82,22 @@ def _interface(exercise: Exercise, subject: Subject, domain_id: int) -> dict[str
             bench.part("interface")
             bench.start(*program, *exercise.sample_arguments)
             if exercise.runner:
-                # A workspace is built first, and shows its face only then.
+                # A workspace is built first; its endpoints appear only then.
                 bench.wait_until(_is_at_work, exercise.limit)
             shown = bench.await_any_endpoint(exercise.roles)
             found |= {role: shown[role] for role in shown if shown[role] or role not in found}
             if not exercise.runner and bench.seen().ending is None:
-                # It may make more than the first that was seen, and no more is waited for than until all is made.
+                # The solution may create more endpoints than the first one seen: wait until it has created all.
                 shown = bench.await_any_endpoint(())
                 found |= {role: found.get(role, {}) | shown[role] for role in shown}
-        # Several programs are not all there at once: only what was waited for is sure to be the same each time.
+        # Several programs do not run at once: only the endpoints of the roles are the same in each recording.
         return {role: found[role] for role in exercise.roles} if exercise.runner else found
     finally:
         bench.close()
 
 
 def _programs(exercise: Exercise) -> list[tuple[str, ...]]:
-    """The arguments that choose each program of the exercise; one empty tuple where there is only one subject."""
+    """Return the arguments that choose each program of the exercise; one empty tuple if there is only one subject."""
     runner = exercise.runner
     return [(name,) for name in runner.programs] if isinstance(runner, RunsPrograms) else [()]
 

@@ -1,7 +1,7 @@
-"""Reference outputs on disk: what the reference solutions do on the wire, as JSON that people review.
+"""Read and write reference outputs: what the reference solutions do on the wire, as JSON for people to review.
 
-Recording keeps what the task decides (what was published, asked, answered) and drops what the machine decides (wall
-times, node names made up by chance, the order of log lines between two channels).
+A recording keeps what the task decides (messages, requests, answers) and drops what the machine decides (wall times,
+random node names, the order of log lines between two channels).
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.exercises import reference_path
 from autograder.kit.evidence import Event, Part, Reference
+from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -25,11 +26,11 @@ _KEPT = (
 
 _ON_THE_WAY = ("feedback_heard", "result_heard")
 _MACHINE = ("number", "sent", "arrived")
-"""Data of an event that differ from run to run."""
+"""Data of an event that differs from run to run."""
 
 
 class NoReference(LookupError):
-    """There is no reference output for an exercise, or it cannot be read."""
+    """The reference output of an exercise does not exist or cannot be read."""
 
 
 def load(exercise_id: str) -> Reference:
@@ -42,28 +43,28 @@ def load(exercise_id: str) -> Reference:
     try:
         return parse(json.loads(file.read_text(encoding="utf-8")))
     except FileNotFoundError as error:
-        raise NoReference(f"{file} does not exist: run `./course record {exercise_id}`") from error
+        raise NoReference(f"{file} does not exist: run `{COMMAND} record {exercise_id}`") from error
     except (ValueError, KeyError, TypeError) as error:
         raise NoReference(
-            f"{file} is not a reference output ({error}): run `./course record {exercise_id}`"
+            f"{file} is not a reference output ({error}): run `{COMMAND} record {exercise_id}`"
         ) from error
 
 
 def digest(exercise_id: str) -> str:
-    """The SHA-256 of a reference output as it is on the disk.
+    """Return the SHA-256 of a reference output's file.
 
     Raises:
-        NoReference: It does not exist.
+        NoReference: The file does not exist.
     """
     file = reference_path(exercise_id)
     try:
         return hashlib.sha256(file.read_bytes()).hexdigest()
     except OSError as error:
-        raise NoReference(f"{file} cannot be read: run `./course record {exercise_id}`") from error
+        raise NoReference(f"{file} cannot be read: run `{COMMAND} record {exercise_id}`") from error
 
 
 def parse(data: Mapping[str, Any]) -> Reference:
-    """A reference output from its JSON form."""
+    """Return a reference output from its JSON form."""
     parts = [
         Part(
             part["name"],
@@ -79,11 +80,11 @@ def parse(data: Mapping[str, Any]) -> Reference:
 
 
 def dump(reference: Reference, kinds: Sequence[str] | None = None) -> str:
-    """The JSON form, the same for every recording of the same behaviour; one line for each event.
+    """Return the JSON form, one line for each event. Recordings of the same behavior have the same form.
 
     Args:
-        reference: What was recorded.
-        kinds: The kinds of events to keep; None for all that are ever kept.
+        reference: The recording.
+        kinds: The kinds of events to keep; None for the usual ones.
     """
     if kinds is not None:
         parts = [replace(p, events=[e for e in p.events if e.kind in kinds]) for p in reference.parts]
@@ -110,11 +111,11 @@ def _sorted(interface: Mapping[str, Mapping[str, str]]) -> dict[str, dict[str, s
 
 def _events(part: Part) -> list[dict[str, Any]]:
     kept = [event for event in part.events if event.kind in _KEPT]
-    # How far a goal has come when it is canceled is the machine's doing, too.
+    # How far a goal gets before it is canceled depends on the machine, too.
     canceled = {event.data["goal"] for event in kept if event.kind == "cancel_sent"}
     kept = [e for e in kept if not (e.kind in _ON_THE_WAY and e.data["goal"] in canceled)]
-    # Goals that run at once share one transcript. Which of them is a moment ahead, and whether a first feedback
-    # overtakes the answer to its goal, is the machine's doing.
+    # Goals that run at once share one part. Which goal is ahead, and whether the first feedback arrives before
+    # the answer to its goal, depends on the machine.
     kept.sort(key=lambda event: (event.data.get("goal", 0), event.kind not in ("goal_sent", "goal_answer")))
     start = next((event.sim for event in kept if event.sim is not None), None)
     return [_event(event, start) for event in kept]

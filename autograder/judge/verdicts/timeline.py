@@ -1,4 +1,4 @@
-"""From events to the dots of the card's timeline."""
+"""Choose the events that a card's timeline shows as dots."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part, Reference
 
 MAX_MOMENTS = 80
-"""Moments that a verdict carries: those that the story hangs on, and the first of the others."""
+"""Number of moments in a verdict: all important ones, and the first of the others."""
 MOST_MOMENTS = 120
-"""Moments that it carries where more than that are called important, as by a program that sends goals for ever."""
+"""Limit of moments if more than that are important, as for a program that sends goals forever."""
 
 MAX_LABEL = 200
-"""Characters of one of them."""
+"""Limit of one moment's label, in characters."""
 
 EXPECTED = 5
-"""Messages of the reference solution that a failed card shows for each topic: the first that were missed."""
+"""Number of missing messages that a failed card shows for each topic, from the first one on."""
 
 _ENDS = {
     "publisher": "your publisher is here",
@@ -45,12 +45,12 @@ _QUOTED = re2.compile(r"“([^”…]*\w[^”…]*)")
 
 
 def moments(evidence: Evidence, words: str = "", *, missed: bool = False) -> tuple[Moment, ...]:
-    """The traffic on the wire, in order: of too many events the first, and all of the kinds that matter most.
+    """Return the traffic on the wire in order. If there are too many events, keep the first and all important ones.
 
     Args:
-        evidence: What was seen.
-        words: The words of the card. Each line of the subject's that they quote is in the picture, a printed one too.
-        missed: Also tell which messages of the reference solution did not come, each at its time.
+        evidence: The evidence of the check.
+        words: The text of the card. Each logged or printed line that it quotes is in the timeline.
+        missed: True to add the messages of the reference solution that did not come, each at its time.
     """
     several = len(evidence.parts) > 1
     quoted = tuple(dict.fromkeys(_QUOTED.findall(words)))
@@ -69,7 +69,7 @@ def moments(evidence: Evidence, words: str = "", *, missed: bool = False) -> tup
 
 
 def _since_the_build(part: Part) -> Part:
-    """The part with the time counted from the end of its build, where it has one: the program began only then."""
+    """Return the part with times from the end of its build, if it has one: the program started only then."""
     built = build_ended(part)
     if not built:
         return part
@@ -77,7 +77,7 @@ def _since_the_build(part: Part) -> Part:
 
 
 def _first_said(part: Part, quoted: Sequence[str]) -> dict[int, Event]:
-    """For each quoted text the event in which it was first said: in the log, else in what was printed."""
+    """Return, for each quoted text, the first event with it: a log line if there is one, else printed output."""
     found: dict[str, Event] = {}
     for event in sorted(part.events if quoted else (), key=lambda event: event.kind == "output"):
         said = spoken_by(event) if event.kind in ("log", "output") else None
@@ -95,14 +95,14 @@ def _of_part(
     told = _first_said(part, quoted)
     shown = [
         event
-        for event in _without_echoes(part.events)
+        for event in _under_real_names(part)
         if event.kind in _KINDS and not _began(event) and (event.kind != "output" or id(event) in told)
     ]
     lanes = _lanes(shown)
     unlike = _first_unlike(shown, part, reference)
     found = [
         (
-            # What happened at one simulated time is told in the order in which it was said.
+            # Events at the same simulated time are in the order in which they were sent.
             (_time(event, start), _said_at(event)),
             Moment(
                 t=_time(event, start),
@@ -120,13 +120,13 @@ def _of_part(
         for event, lane in zip(shown, lanes, strict=True)
     ]
     found += [((moment.t, moment.t), moment) for moment in _astray(part, reference, title, start)]
-    if missed:  # below what did happen at that time
+    if missed:  # after the events that did happen at that time
         found += [((moment.t, math.inf), moment) for moment in _missed(part, reference, title, start)]
     return [moment for _, moment in sorted(found, key=lambda pair: pair[0])]
 
 
 def _said_at(event: Event) -> float:
-    """Seconds of wall time since the part began: when it was sent, where that is known, not when it arrived."""
+    """Return when the event was sent, if known, or else arrived, in seconds of wall time since the part began."""
     sent, arrived = event.data.get("sent"), event.data.get("arrived")
     if not isinstance(sent, float) or not isinstance(arrived, float):
         return event.t
@@ -134,19 +134,19 @@ def _said_at(event: Event) -> float:
 
 
 def _time(event: Event, start: float | None) -> float:
-    """Seconds on the axis of the event's part: simulated ones from ``start`` on, where the clock was stepped."""
+    """Return the event's seconds on the time axis: simulated time since ``start`` if the clock was stepped."""
     if start is None:
         return round(_said_at(event), 3)
     return 0.0 if event.sim is None else round(event.sim - start, 3)
 
 
 def _began(event: Event) -> bool:
-    """True if the event only shows that the subject has started, which later events show anyway."""
+    """Return True if the event shows only that the subject has started, which later events show anyway."""
     return event.kind == "subject" and event.name in ("started", "constructed")
 
 
 def _without_echoes(events: Iterable[Event]) -> Iterator[Event]:
-    """All but the judge's own messages that came back to it, on a topic on which it also listens."""
+    """Yield all events except the judge's own messages that it received on a topic to which it also subscribes."""
     on_their_way: Counter[str] = Counter()
     for event in events:
         if event.kind in ("sent", "message"):
@@ -159,8 +159,15 @@ def _without_echoes(events: Iterable[Event]) -> Iterator[Event]:
         yield event
 
 
+def _under_real_names(part: Part) -> Iterator[Event]:
+    """Yield the events without echoes, under the names that the subject gave to topics, services and actions."""
+    real = {event.name: event.data["real"] for event in part.of("misnamed")}
+    for event in _without_echoes(part.events):
+        yield replace(event, name=real[event.name]) if event.name in real else event
+
+
 def _lanes(events: Sequence[Event]) -> list[str]:
-    """For each event its lane: a name on the graph, and each goal of an action its own where there are several."""
+    """Return each event's lane: a name on the graph, or one lane for each goal if an action has several."""
     number: dict[str, int] = {}
     numbers = []
     for event in events:
@@ -184,7 +191,7 @@ def _lanes(events: Sequence[Event]) -> list[str]:
 
 
 def _first_unlike(events: Sequence[Event], part: Part, reference: Reference) -> Event | None:
-    """The first message that the reference solution did not send in this part, where it sent any on that topic."""
+    """Return the first message that the reference solution did not send, if it sent any on that topic."""
     known = next((other for other in reference.parts if other.name == part.name), None)
     for event in events:
         if event.kind == "message" and known is not None:
@@ -195,7 +202,7 @@ def _first_unlike(events: Sequence[Event], part: Part, reference: Reference) -> 
 
 
 def _astray(part: Part, reference: Reference, title: str, start: float | None) -> Iterator[Moment]:
-    """Ends of the subject's that nobody asked for, where one that was asked for is missing, each when it was seen."""
+    """Yield the subject's unexpected endpoints of each role in which an expected endpoint is missing."""
     for role, words in _ENDS.items():
         expected = set(reference.interface.get(role, {}))
         missing = expected - set(part.endpoints(role))
@@ -215,9 +222,9 @@ def _astray(part: Part, reference: Reference, title: str, start: float | None) -
 
 
 def _missed(part: Part, reference: Reference, title: str, start: float | None) -> Iterator[Moment]:
-    """The first messages of the reference solution that did not come, where a part asks the same of everybody.
+    """Yield the first messages of the reference solution that did not come, if the part has the same inputs.
 
-    They are counted from the subject's first message, or else its first words: only the intervals were asked for.
+    Times count from the subject's first message, or else its first log line: the task asks only for intervals.
     """
     known = next(
         (one for one in reference.parts if one.name == part.name and one.inputs == part.inputs), None
@@ -229,7 +236,7 @@ def _missed(part: Part, reference: Reference, title: str, start: float | None) -
         if len(due) < 2:
             continue  # no interval
         near = (due[1][0] - due[0][0]) / 2
-        # The first that was heard need not be the first that was sent: DDS numbers each publisher's messages from 1.
+        # The first message heard need not be the first one sent: DDS numbers each publisher's messages from 1.
         number = int(part.of("message", topic)[0].data.get("number", 1)) if came else 1
         due = due[min(number, len(due)) - 1 :]
         first = came or [(_time(event, start), "") for event in part.of("log")]
@@ -249,13 +256,13 @@ def _fields(data: Mapping[str, Any]) -> str:
     if len(fields) == 1 and not inner:
         return str(next(iter(fields.values())))
     leaves = dict(_leaves(fields))
-    # A message in messages is mostly zeros: what a person looks for are the others.
+    # Nested messages are mostly zeros, so show only the other fields.
     told = {name: value for name, value in leaves.items() if value or not inner} or leaves
     return ", ".join(f"{name}={value}" for name, value in told.items())
 
 
 def _goal(data: Mapping[str, Any]) -> str:
-    """A goal in words; a number alone would look like the goal's own."""
+    """Return a goal in words; a bare number would look like the number of the goal."""
     fields = data.get("fields", {})
     name = next(iter(fields), "") if len(fields) == 1 else ""
     return f"goal, {name} {_fields(data)}" if name else f"goal {_fields(data)}"
@@ -273,10 +280,10 @@ class _Kind(NamedTuple):
     """A kind of event that the timeline shows.
 
     Attributes:
-        direction: Of its dot.
-        label: Its words.
-        key: Whether it is always kept.
-        numbered: Whether it is about the judge's own goals, and carries a goal's number.
+        direction: The direction of the dot.
+        label: Returns the label of the dot.
+        key: True if the moment is important: it is always kept.
+        numbered: True if the event belongs to a goal of the judge and carries the goal's number.
     """
 
     direction: str

@@ -1,4 +1,4 @@
-"""One check from beginning to end: look, judge, look again where that is fair, say what is wrong."""
+"""Run one check: look, judge, look again if that is fair, and name the mistake."""
 
 from __future__ import annotations
 
@@ -13,22 +13,24 @@ from autograder.judge.verdicts import timeline
 from autograder.judge.verdicts.crowding import SEEN_SO_FAR, TOO_BUSY, Crowding, Hurry, OutOfTime, TooBusy
 from autograder.judge.verdicts.deciding import Undecided, limited, undecidable
 from autograder.judge.verdicts.delivery import NOT_DELIVERED, NotDelivered, delivers
+from autograder.judge.verdicts.misnamed import misnamed
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.in_words import of_its_kind, shortened
-from autograder.kit.model import Advice, Exercise, Mistake, Pace
+from autograder.kit.model import Advice, Exercise, Finding, Mistake, Pace
 from autograder.verdict import Criterion, Diagnosis, State, Verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from autograder.judge.subjects.subject import Subject
+    from autograder.kit.evidence import Event
 
 UNKNOWN = "unknown"
-"""The key of the diagnosis of a mistake that has no name."""
+"""The key of the diagnosis if the mistake is not a known one."""
 MAX_DETAIL = 6_000
-"""Characters of a traceback that a card shows."""
+"""Limit of a traceback on a card, in characters."""
 MAX_WORDS = 500
-"""Characters of one sentence of a verdict; what a subject said is quoted in them."""
+"""Limit of one sentence of a verdict, in characters; it may quote the subject's output."""
 
 
 @dataclass(frozen=True)
@@ -36,9 +38,9 @@ class Seen:
     """The result of one look.
 
     Attributes:
-        evidence: What happened.
-        doubtful: Whether even a pass must be confirmed in real time.
-        unmet: Whether a run began before the subject's participant had met what the judge put up, as far as it says.
+        evidence: The recorded events.
+        doubtful: True if even a pass must be confirmed in real time.
+        unmet: True if a run began before the subject's participant had discovered the judge's endpoints.
     """
 
     evidence: Evidence
@@ -53,8 +55,8 @@ class Checked:
     Attributes:
         verdict: What the judge found.
         evidence: What that follows from.
-        crowded: It did not pass, nothing proves a mistake, and the machine was more crowded in a look in real time than
-            the judge's limits allow for, or the subject had not met what the judge put up.
+        crowded: True if the subject did not pass, nothing proves a mistake, and the machine was busier in the real-time
+            look than the judge allows for, or the subject had not discovered the judge's endpoints.
     """
 
     verdict: Verdict
@@ -73,8 +75,8 @@ def check(
 ) -> Checked:
     """Judge a subject.
 
-    A fast pass counts; what fails fast is looked at again in real time, unless the evidence proves the failure whatever
-    the machine's load is. What cannot be decided within :data:`autograder.judge.verdicts.deciding.LIMIT` has failed.
+    A pass in the fast look counts. After a failure the judge looks again in real time, unless the evidence proves the
+    mistake whatever the load is. A check that cannot be decided within :data:`.deciding.LIMIT` has failed.
 
     Args:
         exercise: What is asked for.
@@ -82,16 +84,17 @@ def check(
         reference: What the reference solution did.
         seed: What random inputs are drawn from.
         domain_id: The ROS domain.
-        marks_crowded: Give the verdict all the same, marked, where the machine was too crowded to tell.
+        marks_crowded: Return a marked verdict instead of raising TooBusy.
 
     Raises:
-        TooBusy: It was, and nobody wants a marked verdict; or a student has waited for long on a busy machine.
-        NotDelivered: It did not pass, nothing proves a mistake, and this machine lost messages before or after.
+        TooBusy: The machine was too busy to decide; or a student has waited for long on a busy machine.
+        NotDelivered: The subject did not pass, nothing proves a mistake, and this machine lost messages.
     """
     began = time.monotonic()
     crowded, delivered = False, delivers()
-    # A student waits in front of a cell. A grader does not, and a program may be built first.
-    hurry = Hurry() if subject.shares_participant and not marks_crowded else _no_hurry
+    # A student waits for a check cell. A grader does not.
+    waited_for = subject.in_a_notebook and not marks_crowded
+    hurry = Hurry(is_building=lambda: subject.is_building) if waited_for else _no_hurry
     subject.begin(domain_id)
     look_at = partial(look, exercise, subject, reference, seed=seed, domain_id=domain_id, hurry=hurry)
     try:
@@ -102,10 +105,21 @@ def check(
     try:
         with limited():
             verdict = judge(exercise, evidence, seed)
+        names = {} if verdict.passed or exercise.runner else misnamed(evidence, verdict)
+        if names:  # a wrong name costs one criterion: judge the others under the subject's name
+            look_at = partial(look_at, names=names)
+            try:
+                seen = look_at(Pace.FAST)
+            except OutOfTime:
+                raise TooBusy(f"{TOO_BUSY} {_so_far(verdict)}".strip()) from None
+            evidence = seen.evidence
+            with limited():
+                verdict = judge(exercise, evidence, seed)
+        with limited():
             again = exercise.second_look and (seen.doubtful or not verdict.passed)
-            again = again and not is_certain(exercise, evidence)
+            again = again and not _is_explained(exercise, evidence, verdict, names)
         if again:
-            if not marks_crowded:  # a submission must not hear how its check goes
+            if not marks_crowded:  # a submission must not learn how its check goes
                 subject.tell_so_far(_so_far(verdict))
             try:
                 with Crowding() as crowding:
@@ -130,18 +144,26 @@ def check(
     return Checked(replace(verdict, seconds=round(time.monotonic() - began, 3)), evidence, crowded)
 
 
+def _is_explained(
+    exercise: Exercise, evidence: Evidence, verdict: Verdict, names: Mapping[str, object]
+) -> bool:
+    """Return True if a mistake that is certain explains every failed criterion: a wrong name explains only its own."""
+    failed = sum(not criterion.passed for criterion in verdict.criteria)
+    return is_certain(exercise, evidence) and not (names and failed > len(names))
+
+
 def _no_hurry() -> None:
-    """Let a check take its time."""
+    """Do nothing: a check without a waiting student takes its time."""
 
 
 def _so_far(verdict: Verdict) -> str:
-    """The diagnosis of a failed look as a sentence that claims nothing for sure; empty if the mistake is unknown."""
+    """Return the diagnosis of a failed look as a cautious sentence; empty if the mistake is unknown."""
     known = verdict.diagnosis
     return SEEN_SO_FAR.format(known.text) if known and known.key != UNKNOWN else ""
 
 
 def decide(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
-    """The verdict that follows from evidence that is there already, within the judge's limit."""
+    """Return the verdict that follows from kept evidence, within the judge's limit."""
     try:
         with limited():
             return judge(exercise, evidence, seed)
@@ -159,36 +181,39 @@ def look(
     domain_id: int,
     before: Evidence | None = None,
     hurry: Callable[[], None] = _no_hurry,
+    names: Mapping[str, Mapping[str, str]] | None = None,
 ) -> Seen:
-    """Run the scenario once and return what was seen.
+    """Run the scenario once and return the evidence.
 
     Args:
         exercise: What is asked for.
         subject: What is judged.
         reference: What the reference solution did.
-        pace: Of this look.
+        pace: The pace of this look.
         seed: What random inputs are drawn from.
         domain_id: The ROS domain.
-        before: What the first look saw.
+        before: The evidence of the first look.
         hurry: Called repeatedly while the judge waits; it may end the look by raising an exception.
+        names: What :func:`autograder.judge.verdicts.misnamed.misnamed` has found in an earlier look.
     """
-    bench = TestBench(subject, domain_id, reference, pace, Random(seed), before, hurry)
+    bench = TestBench(subject, domain_id, reference, pace, Random(seed), before, hurry, names)
     try:
         exercise.scenario(bench)
     finally:
         bench.close()
-    # A scenario may draw the order of its parts; what is said of them must not depend on it.
+    # A scenario may shuffle its parts; the verdict's text must not depend on their order.
     places = {part.name: place for place, part in enumerate(reference.parts)}
     parts = sorted(bench.parts, key=lambda part: places.get(part.name, len(places)))
     return Seen(Evidence(parts, reference, pace is Pace.REAL_TIME), bench.doubtful, bench.unmet)
 
 
 def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
-    """The verdict that follows from the evidence alone."""
+    """Return the verdict that follows from the evidence alone."""
+    lost = {event.data["costs"]: event for part in evidence for event in part.of("misnamed")}
     criteria = tuple(
         Criterion(c.name, c.title, c.points, finding.passed, _cut(finding.expected), _cut(finding.seen))
         for c in exercise.criteria
-        for finding in [c.judge(evidence)]
+        for finding in [_with_name(c.judge(evidence), lost.get(c.name))]
     )
     passed = all(criterion.passed for criterion in criteria)
     diagnosis, traceback = (None, "") if passed else diagnose(exercise, evidence)
@@ -208,11 +233,18 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
     )
 
 
-def diagnose(exercise: Exercise, evidence: Evidence) -> tuple[Diagnosis, str]:
-    """The first known mistake that the evidence shows, and the traceback that it was told from, where it was.
+def _with_name(finding: Finding, wrong: Event | None) -> Finding:
+    """Return the finding of a criterion, which fails if it is the one that a wrong name costs."""
+    if wrong is None or not finding.passed:
+        return finding
+    return Finding(False, f"the name {wrong.name}", f"the name {wrong.data['real']}")
 
-    No other traceback is shown beside it: that of another run, perhaps of a line that is right, would be taken for the
-    mistake.
+
+def diagnose(exercise: Exercise, evidence: Evidence) -> tuple[Diagnosis, str]:
+    """Return the first known mistake that the evidence shows, and the traceback that shows it, if any.
+
+    No other traceback is returned: a student would take it for the mistake, although it may come from another run and
+    a correct line.
     """
     found = _recognised(exercise, evidence)
     if found is not None:
@@ -240,11 +272,11 @@ def _recognised(exercise: Exercise, evidence: Evidence) -> tuple[Mistake, Advice
 
 
 def is_certain(exercise: Exercise, evidence: Evidence) -> bool:
-    """True if the evidence proves a mistake whatever the machine's load was."""
+    """Return True if the evidence proves a mistake whatever the load of the machine was."""
     found = _recognised(exercise, evidence)
     return found is not None and found[0].certain
 
 
 def _cut(text: str, limit: int = MAX_WORDS) -> str:
-    """A sentence that fits on a card, whatever a subject has said in it."""
+    """Return a sentence cut to the length that fits on a card."""
     return text if len(text) <= limit else f"{text[: limit - 1]}…"

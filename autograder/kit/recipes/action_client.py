@@ -14,7 +14,13 @@ from autograder.kit import common_mistakes as common
 from autograder.kit import goal_mistakes as goals
 from autograder.kit.crashes import OTHER_SLIPS
 from autograder.kit.draft import SeenAsItIs
-from autograder.kit.giving_up import GIVE_UP_LIMIT, PATIENCE, await_it, drawn_patience
+from autograder.kit.giving_up import (
+    PATIENCE,
+    PATIENCES,
+    PATIENCES_WITHOUT_A_SERVER,
+    await_it,
+    drawn_patience,
+)
 from autograder.kit.goal_reports import ABORTED, ABSENT, FEEDBACKS, LATE, REFUSED, unshown_feedback
 from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import (
@@ -75,15 +81,17 @@ def begin(bench: Bench, name: str) -> dict[str, Any]:
     inputs = {
         # On a command line, -3 could be an option.
         "order": order if bench.in_a_cell else abs(order),
-        PATIENCE: drawn_patience(bench),
+        PATIENCE: drawn_patience(
+            bench, PATIENCES_WITHOUT_A_SERVER[bench.pace] if name == ABSENT else PATIENCES
+        ),
     }
     bench.part(name, **inputs)
     return inputs
 
 
-def start(bench: Bench, inputs: Mapping[str, Any], *, spare: float = 0.0) -> None:
-    """Start the subject; a notebook leaves out ``spare`` seconds of its waiting for the server."""
-    bench.start(inputs["order"], patience_sec=inputs[PATIENCE], spare=spare)
+def start(bench: Bench, inputs: Mapping[str, Any]) -> None:
+    """Start the subject."""
+    bench.start(inputs["order"], patience_sec=inputs[PATIENCE])
 
 
 def late(bench: Bench) -> bool:
@@ -115,7 +123,7 @@ def meets_late_server(
         shown_within: Seconds that it has to show each feedback message, until it has not shown one.
     """
     action, type_name = bench.reference.only("action_client")
-    start(bench, inputs, spare=lateness)
+    start(bench, inputs)
     if not bench.await_endpoint("action_client", action):
         return bench.await_end(0.0)
     bench.let_wait(lateness)
@@ -233,7 +241,7 @@ def unserved(bench: Bench, _: bool) -> None:
     """One run without a server."""
     action, _ = bench.reference.only("action_client")
     inputs = begin(bench, ABSENT)
-    start(bench, inputs, spare=GIVE_UP_LIMIT)
+    start(bench, inputs)
     bench.await_endpoint("action_client", action)
     await_it(bench)
     bench.stop()
@@ -241,15 +249,10 @@ def unserved(bench: Bench, _: bool) -> None:
 
 _WHAT_IS_SAID = (
     goals.CRASHED_BY_REFUSAL,
-    goals.GOES_ON_AFTER_REFUSAL,
     goals.RESULT_OF_REJECTED_GOAL,
     goals.RESULT_NOT_REQUESTED,
-    goals.STATUS_MISREPORTED,
-    goals.WRONG_RESULT_REPORTED,
     goals.RESULT_NOT_REPORTED,
-    goals.RESULT_NOT_RETURNED,
     goals.REFUSAL_NOT_REPORTED,
-    goals.REFUSAL_RETURNED,
     goals.ABORT_NOT_REPORTED,
     goals.SILENT_END,
 )
@@ -297,7 +300,6 @@ def sends_goals() -> ActionClient:
     return ActionClient(
         scenario,
         goals.WRONG_ORDER,
-        goals.CANCELED_UNASKED,
         common.NOT_BEGUN,
         common.USAGE_MESSAGE,
         goals.GAVE_UP_TOO_EARLY,
@@ -307,7 +309,8 @@ def sends_goals() -> ActionClient:
         goals.PATIENCE_NOT_KEPT,
         goals.WAITS_FOREVER,
         *(replace(hang, certain=True) for hang in HANGS),
-        goals.NEVER_SPUN,
+        common.AWAITS_IN_VAIN,
+        common.went_deaf("action_client"),
         # Never certain: a client that is starved of time may leave feedback unread when its result is there.
         goals.FEEDBACK_NOT_SHOWN,
         *map(common.only_if_ended, _WHAT_IS_SAID),

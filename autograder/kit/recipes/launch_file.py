@@ -276,7 +276,6 @@ class LaunchFile:
             Mistake("launch_error", self._launch_error, certain=True),
             *common.OTHER_CRASHES,
             OWN_LATE,
-            Mistake("nothing_launched", _nothing_launched),
         )
 
     def seen(self, evidence: Evidence) -> Launched:
@@ -413,14 +412,4 @@ def _syntax_error(evidence: Evidence) -> Advice | None:
     return Advice(
         f"Python could not read the launch file: {what}.",
         "A bracket, a quote, a comma or the indentation is off there or just before it.",
-    )
-
-
-def _nothing_launched(evidence: Evidence) -> Advice | None:
-    """The launch went well and started nothing."""
-    if _of_nodes(evidence.main) or evidence.main.of("log") or evidence.main.traceback:
-        return None
-    return Advice(
-        "The launch file started no node.",
-        "generate_launch_description() must return LaunchDescription([...]) with a Node for each of the two programs.",
     )

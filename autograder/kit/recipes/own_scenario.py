@@ -10,7 +10,6 @@ from autograder.kit.draft import OWN, OWN_LATE, SeenAsItIs
 from autograder.kit.evidence import Event
 from autograder.kit.hangs import HANGS
 from autograder.kit.model import Finding
-from autograder.kit.recipes.service_server import RETURNED_NONE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -122,7 +121,6 @@ class OwnScenario:
         on_topics = [role for role in self.roles if role in ("publisher", "subscription")]
         return (
             *common.CRASHES,
-            *([RETURNED_NONE] if "service" in self.roles else []),
             common.NEVER_CONSTRUCTED,
             *map(common.endpoint_name, self.roles),
             *map(common.message_type, self.roles),
@@ -130,10 +128,10 @@ class OwnScenario:
             *map(common.qos_mismatch, on_topics),
             *common.OTHER_CRASHES,
             *HANGS,
+            common.AWAITS_IN_VAIN,
             *map(common.never_spun, self.roles),
             *map(common.went_deaf, self.roles),
             OWN_LATE,
-            common.one_is_missing(*self.roles),
             *common.NOTHING_THERE,
         )
 

@@ -173,7 +173,6 @@ class Program:
             Mistake("entry_point", lambda e: programs.entry_point(e, entry), certain=True),
             Mistake("entry_point", lambda e: programs.no_executable(e, entry), certain=True),
             OWN,
-            workspace.NOT_SOURCED,
             *common.CRASHES,
             *common.OTHER_CRASHES,
             OWN_LATE,

@@ -58,9 +58,11 @@ class Program:
 
     def view(self, evidence: Evidence) -> Evidence:
         """The evidence for the exercise of its node: its own runs, up to Ctrl-C."""
+        expected = evidence.reference
+        ends = {role: expected.interface.get(role, {}) for role in self.node.roles}
         return Evidence(
             [_before_ctrl_c(part) for part in self.parts(evidence)],
-            replace(evidence.reference, parts=self.parts(evidence.reference.parts)),
+            replace(expected, parts=self.parts(expected.parts), interface=ends),
             evidence.real_time,
             self.view(evidence.before) if evidence.before else None,
         )
@@ -258,7 +260,6 @@ class Programs:
         ):
             for program in self._programs:
                 yield Mistake(key, partial(self._about_package, recognise, program), certain=True)
-        yield workspace.NOT_SOURCED
 
     def _about_package(
         self,
@@ -278,7 +279,6 @@ class Programs:
                 yield replace(mistake, recognise=partial(wrong.recognise, mistake))
         for program in self._programs:
             yield Mistake("ignores_ctrl_c", partial(_ignores_ctrl_c, program))
-        yield Mistake("entry_point_lost", self._entry_point_lost, certain=True)
 
     def _another_program(self, evidence: Evidence) -> Advice | None:
         """A program shows nothing of its own node, and all that another one of them should."""
@@ -293,17 +293,6 @@ class Programs:
                         "class in that file?",
                     )
         return None
-
-    def _entry_point_lost(self, evidence: Evidence) -> Advice | None:
-        lost = self._lost(evidence)
-        if not lost:
-            return None
-        return Advice(
-            f"{lost[0]}.py is still in the package, but setup.py has no entry point for it any more: "
-            f"`ros2 run {self._name} {lost[0]}` does not work.",
-            f"Put '{lost[0]} = {self._name}.{lost[0]}:main' back into the list console_scripts, beside the new ones. "
-            "All entry points of a package share one list.",
-        )
 
     def _traceback_at_the_end(self, evidence: Evidence) -> str:
         for program in self._programs:

@@ -148,7 +148,7 @@ class Hears:
         """The publisher has the reference's message type."""
         topic, type_name = evidence.reference.only("publisher")
         heard = self.seen(evidence)
-        seen = heard.endpoints.get(topic)
+        seen = heard.endpoints.get(heard.part.real_name(topic))
         nothing = "it ended too soon to tell" if heard.part.ending else f"nothing on {topic}"
         return Finding(seen == type_name, type_name, seen or nothing)
 

@@ -20,7 +20,7 @@ from autograder.kit import common_mistakes as common
 from autograder.kit import giving_up, service_mistakes
 from autograder.kit.crashes import OTHER_SLIPS
 from autograder.kit.draft import OWN, OWN_LATE, Judge
-from autograder.kit.giving_up import GIVE_UP_LIMIT, drawn_patience
+from autograder.kit.giving_up import drawn_patience
 from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import (
     again_while,
@@ -134,7 +134,7 @@ def meets_service(bench: Bench, run: Run, calls: int, patience: float, *, latene
         lateness: Seconds after its client at which the service comes.
     """
     service, type_name = bench.reference.only("client")
-    bench.start(*run.numbers, patience_sec=patience, spare=lateness if bench.pace is Pace.FAST else 0.0)
+    bench.start(*run.numbers, patience_sec=patience)
     # The service comes when the judge has met its client. Where it was there before, the client may know it first, and
     # a call of one that ends at once would reach the judge or not, as it happens.
     # Where it has another client it waits for something else. One that has none may be slow to show it.
@@ -150,7 +150,7 @@ def meets_service(bench: Bench, run: Run, calls: int, patience: float, *, latene
     ):
         # Any node on the graph may ask the client's node something meanwhile: that is not the answer.
         bench.settle()
-        bench.let_wait(HELD, call=run.held)
+        bench.await_end(HELD)
         server.release()
     done = bench.wait_until(lambda seen: has_spoken(seen, calls), CALL_LIMIT, quiet=HANGS_AFTER)
     if done and bench.wait_until(lambda seen: is_done(seen, calls), SAYS_MORE[bench.pace]):
@@ -178,9 +178,9 @@ def unserved(bench: Bench, numbers: Sequence[int]) -> None:
     """One run without the service."""
     if bench.keep(ABSENT):
         return
-    patience = drawn_patience(bench)
+    patience = drawn_patience(bench, giving_up.PATIENCES_WITHOUT_A_SERVER[bench.pace])
     bench.part(ABSENT, numbers=list(numbers), patience_sec=patience)
-    bench.start(*numbers, patience_sec=patience, spare=GIVE_UP_LIMIT if bench.pace is Pace.FAST else 0.0)
+    bench.start(*numbers, patience_sec=patience)
     service, _ = bench.reference.only("client")
     bench.await_endpoint("client", service)
     giving_up.await_it(bench)
@@ -325,9 +325,7 @@ class Calls:
             common.USAGE_MESSAGE,
             service_mistakes.WAITS_FOR_NOBODY,
             service_mistakes.WAITS_FOREVER,
-            *(replace(hang, certain=True) for hang in HANGS),
-            service_mistakes.AWAITS_IN_VAIN,
-            service_mistakes.CALL_NEVER_SPUN,
+            *(replace(hang, certain=True) for hang in (*HANGS, common.AWAITS_IN_VAIN)),
             service_mistakes.FIELDS_NEVER_FILLED,
             Mistake("too_many_calls", self._too_many_calls, certain=True),
             OWN,

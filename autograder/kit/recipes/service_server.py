@@ -8,11 +8,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit import common_mistakes as common
-from autograder.kit.crashes import traceback_of
 from autograder.kit.draft import OWN, OWN_LATE
-from autograder.kit.hangs import HANGS, stacks
-from autograder.kit.in_words import counted
-from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
+from autograder.kit.hangs import HANGS
+from autograder.kit.model import Bench, Finding, Mistake, Pace
 
 if TYPE_CHECKING:
     from random import Random
@@ -178,47 +176,12 @@ class Asks:
             # Before any crash: a wrong answer may not fit into its field, and rclpy's server dies of that.
             OWN,
             *common.CRASHES,
-            RETURNED_NONE,
             common.endpoint_name("service"),
             common.message_type("service"),
             *common.OTHER_CRASHES,
-            Mistake("stopped_answering", self._stopped_answering),
             *HANGS,
             common.never_spun("service"),
             common.went_deaf("service"),
             OWN_LATE,
             *common.NOTHING_THERE,
         )
-
-    def _stopped_answering(self, evidence: Evidence) -> Advice | None:
-        """A callback of the student's was called and never comes back."""
-        seen = self.seen(evidence)
-        if len(seen.answers) == len(seen.asked) or seen.part.ending is not None:
-            return None
-        stuck = [s for s in stacks(seen.part) if not s[0].rclpy and any(f.rclpy == "executors.py" for f in s)]
-        if not stuck:
-            return None
-        return Advice(
-            f"Your server answered {counted(len(seen.answers), 'call')} and then no more: its callback "
-            f"{stuck[0][0].function} was called and never returned.",
-            "A callback must return each time that it is called. Look for a wait, a loop or a lock in it.",
-        )
-
-
-def _returned_none(evidence: Evidence) -> Advice | None:
-    """A bare TypeError out of nowhere: all that a notebook shows of it, where rclpy's own lines are left out."""
-    traceback = traceback_of(evidence)
-    if traceback.strip() != "TypeError":
-        return None
-    return Advice(
-        "The service callback did not return the response: it returned nothing, a number, or a type without "
-        "parentheses. rclpy cannot send that, so the client waits for an answer that never comes. A program "
-        "ends with this error.",
-        "Fill in the field of the response that you get, as in `response.sum = ...`, and end the callback "
-        "with `return` and the whole response, such as `return response`, also after an `if` or an `except`.",
-        traceback,
-    )
-
-
-RETURNED_NONE = Mistake("callback_returned_none", _returned_none, certain=True)
-"""A service's callback did not return the response, seen in a notebook; of a program its traceback tells."""

@@ -128,17 +128,6 @@ class ServiceType(SeenAsItIs):
         right = bool(seen.data["same"])
         return Finding(right, expected, str(seen.data["type"]) + ("" if right else ", with other fields"))
 
-    def _interface_missing(self, evidence: Evidence) -> Advice | None:
-        """There are packages, and none of them has the file."""
-        report = workspace.build_report(evidence.main)
-        if report is None or not report.packages or not report.complete or self._holders(evidence):
-            return None
-        others = ", ".join(i.file for p in report.packages for i in p.interfaces)
-        return Advice(
-            f"No package in src has a file {self._file}" + (f"; there is {others}." if others else "."),
-            f"Make the folder srv in your interface package and {self._file} in it; capitals count.",
-        )
-
     def _three_dashes(self, evidence: Evidence) -> Advice | None:
         """Request and response are not kept apart by exactly one line of dashes."""
         for file, text in self._texts(evidence):
@@ -222,18 +211,6 @@ class ServiceType(SeenAsItIs):
             "ament_package().",
         )
 
-    def _package_not_entered(self, evidence: Evidence) -> Advice | None:
-        """The package builds, and nothing enters it into the index in which ROS looks for packages."""
-        report = report_of(evidence.main)
-        if report is None or report.missing != AMENT_PACKAGE:
-            return None
-        return Advice(
-            f"{self._holders(evidence)[0][0].name} builds, but ROS does not find it: CMakeLists.txt does not call "
-            f"{AMENT_PACKAGE}.",
-            f"Write {AMENT_PACKAGE} as the last line of CMakeLists.txt. It enters the package into the index in which "
-            "ros2 and other packages look.",
-        )
-
     def _dependency_missing(self, evidence: Evidence) -> Advice | None:
         """Everything works here, and package.xml does not name what that needs."""
         holder = self._most_thorough(evidence)
@@ -259,14 +236,11 @@ class ServiceType(SeenAsItIs):
         """The common mistakes, most telling first."""
         return (
             OWN,
-            Mistake("interface_missing", self._interface_missing, certain=True),
             Mistake("three_dashes", self._three_dashes, certain=True),
             Mistake("interface_fields", self._interface_fields, certain=True),
             Mistake("interface_in_python_package", self._interface_in_python_package, certain=True),
             Mistake("member_of_group", self._member_of_group, certain=True),
-            Mistake("generators_missing", _generators_missing, certain=True),
             Mistake("interface_not_listed", self._interface_not_listed, certain=True),
-            Mistake("package_not_entered", self._package_not_entered, certain=True),
             *workspace.BUILD,
             *common.CRASHES,
             *common.OTHER_CRASHES,
@@ -313,17 +287,3 @@ def _expected(evidence: Evidence) -> list[Fields]:
 def _shown(sections: list[Fields]) -> str:
     texts = [", ".join(f"{kind} {name}".strip() for kind, name in section) for section in sections]
     return " --- ".join(text or "(nothing)" for text in texts)
-
-
-def _generators_missing(evidence: Evidence) -> Advice | None:
-    """CMakeLists.txt calls the generators without having looked for them."""
-    report = report_of(evidence.main)
-    if report is None or report.built or "rosidl_generate_interfaces" not in report.line + report.log:
-        return None
-    if not re2.search(r"(?i)Unknown CMake command|not found|could not find", report.line):
-        return None
-    return Advice(
-        f"The generators are missing: {report.line}",
-        "In CMakeLists.txt, above rosidl_generate_interfaces: find_package(rosidl_default_generators REQUIRED). In "
-        "package.xml: <buildtool_depend>rosidl_default_generators</buildtool_depend>.",
-    )

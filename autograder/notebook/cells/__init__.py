@@ -1,1 +1,1 @@
-"""The notebook itself: which cell runs, what is said under it, and tracebacks with the student's own lines only."""
+"""Handle the notebook's cells: which one runs, its output, and tracebacks with the student's own lines only."""

@@ -1,6 +1,6 @@
-"""What a student reads under a cell: words from whichever thread, and tracebacks with the student's own lines only.
+"""Write the output of cells: text from any thread, and tracebacks with the student's own lines only.
 
-Ten frames of rclpy help nobody find a typo.
+Ten frames of rclpy do not help a student to find a typo.
 """
 
 from __future__ import annotations
@@ -23,28 +23,28 @@ if TYPE_CHECKING:
     from types import FrameType
 
 _SYNCHRONOUS_IDLE = "\x16"
-"""A character that means nothing to a terminal; one byte, so that it is never read in halves."""
+"""A character without a meaning for terminals. It has one byte, so it is never split between two reads."""
 _LIMIT = 1.0
 _one_at_a_time = threading.Lock()
 
 
 def say(text: str) -> None:
-    """Print under the cell that runs, or that ran last.
+    """Print below the cell that runs, or that ran last.
 
     On standard output: stock nbgrader gives no points to a graded cell with anything on standard error.
     """
-    # A kernel that is ending has closed its streams: nobody is left to read it.
+    # A kernel that is shutting down has closed its streams.
     with suppress(OSError, ValueError):
         print(text, flush=True)
 
 
 def let_log_lines_arrive() -> None:
-    """Wait until the log lines written so far are with the cell that runs.
+    """Wait until the log lines written so far are in the output of the running cell.
 
-    Compiled code, which rclpy logs through, writes to the file descriptor. In a kernel that is a pipe, which
-    a thread of ipykernel's empties into ``sys.stdout``; on a busy machine the last lines would come after the
-    end of the cell, and nbclient would drop them. So one more character is sent down the pipe, and taken out
-    at its end.
+    rclpy logs through compiled code, which writes to the file descriptor. In a kernel that is a pipe, which
+    a thread of ipykernel copies to ``sys.stdout``. On a busy machine the last lines would arrive after the
+    end of the cell, and nbclient would drop them. So one more character is written to the pipe, and removed
+    at the other end.
     """
     stream: Any = sys.stdout
     descriptor = getattr(stream, "_original_stdstream_fd", None)
@@ -73,12 +73,12 @@ def let_log_lines_arrive() -> None:
 
 
 def _library_folders() -> tuple[str, ...]:
-    """Folders whose code is not the student's."""
+    """Return the folders of Python, ROS and this package: code that students did not write."""
     schemes = sysconfig.get_paths()
     folders = {schemes[name] for name in ("stdlib", "platstdlib", "purelib", "platlib")}
     folders.add(str(Path(rclpy.__file__).parent.parent))
     folders.add(str(Path(__file__).parents[1]))
-    # On a system ROS, message packages of other prefixes than rclpy's are libraries too.
+    # On a system ROS, message packages may be in prefixes different from rclpy's.
     folders.update(
         prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(":") if "/opt/ros" in prefix
     )
@@ -89,12 +89,12 @@ _LIBRARIES = _library_folders()
 
 
 def is_students(filename: str) -> bool:
-    """True if a file, or a notebook's cell, is the student's own code."""
+    """Return True if a file, or a notebook's cell, is the student's own code."""
     return not filename.startswith("<frozen") and not filename.startswith(_LIBRARIES)
 
 
 def student_frames(trace: TracebackType | None) -> TracebackType | None:
-    """A traceback without frames of Python, ROS and this package; None where nothing is left."""
+    """Return a traceback without frames of Python, ROS and this package; None if no frame is left."""
     frames = []
     while trace is not None:
         if is_students(trace.tb_frame.f_code.co_filename):
@@ -107,7 +107,7 @@ def student_frames(trace: TracebackType | None) -> TracebackType | None:
 
 
 def last_student_line(error: BaseException) -> tuple[str, int] | None:
-    """File and line number of the student's code in which the error came up; None where there is none."""
+    """Return file and line number of the student's code that raised the error; None if there is none."""
     trace = student_frames(error.__traceback__)
     if trace is None:
         return None
@@ -117,7 +117,7 @@ def last_student_line(error: BaseException) -> tuple[str, int] | None:
 
 
 def render(error: BaseException) -> list[str]:
-    """The error's traceback, as the notebook shows tracebacks, cut down to the student's lines."""
+    """Return the error's traceback in the notebook's format, with only the student's lines."""
     trace = student_frames(error.__traceback__)
     shell = notebook_shell()
     if shell is not None:
@@ -127,30 +127,30 @@ def render(error: BaseException) -> list[str]:
 
 
 def notebook_shell() -> Any:
-    """IPython's shell where this runs in a kernel or in IPython, else None."""
+    """Return IPython's shell in a kernel or in IPython, else None."""
     ipython = sys.modules.get("IPython")
     return ipython.get_ipython() if ipython is not None else None
 
 
 class PlainlyShownError(Exception):
-    """An error whose traceback in a notebook is cut down to the student's lines."""
+    """An error whose traceback in a notebook has only the student's lines."""
 
     def _render_traceback_(self) -> list[str]:
-        """Called by IPython in place of its own formatting."""
+        """Return the traceback's lines; IPython calls this instead of its own formatting."""
         return render(self)
 
 
 _COUNTS = "get_line_number_of_frame"
-"""IPython's name of what counts the lines, in ``IPython.core.ultratb``."""
+"""Name of the function in ``IPython.core.ultratb`` that counts lines."""
 
 
 def point_at_raising_lines() -> None:
-    """Have a traceback's arrow point at the line that raised, also where a ``finally`` is below it.
+    """Make a traceback's arrow point at the line that raised, even if a ``finally`` follows.
 
-    IPython counts the lines of the file in which a frame's code is, to show long files in a quicker way. A cell's file
-    is not there, and so IPython 9 takes each cell for a long one. On the quick way the arrow is at the line at which
-    the frame was last: with ``finally`` that is the clean-up, and not what went wrong (Python's data model, "Traceback
-    objects"). So a cell's lines are counted as those of a file. Outside of IPython nothing happens.
+    IPython counts the lines of a frame's file, and treats long files in a faster way. A cell has no file,
+    so IPython 9 treats each cell as long. The faster way puts the arrow at the frame's last line, which is
+    the clean-up if there is a ``finally``, and not the line that raised (Python's data model, "Traceback
+    objects"). So this counts a cell's lines as if it were a file. Outside IPython it does nothing.
     """
     if notebook_shell() is None:
         return

@@ -1,8 +1,8 @@
-"""The cell of the notebook that is running, and whether it has run before.
+"""Find out which cell of the notebook is running, and whether it has run before.
 
 JupyterLab names the cell in each request to run it (``cellId`` in the request's metadata, handed on by
-IPython to ``pre_run_cell``). Front ends that do not, such as nbclient and the console, leave the cell's text
-to know it by.
+IPython to ``pre_run_cell``). Other front ends, such as nbclient and the console, do not, so the text of the
+cell identifies it.
 """
 
 from __future__ import annotations
@@ -22,20 +22,20 @@ class CellRun:
     """One run of one cell.
 
     Attributes:
-        cell: The same for every run of the cell.
-        number: Grows with each run of any cell.
+        cell: Identifies the cell, the same in all its runs.
+        number: A counter that grows with each run of any cell.
     """
 
     cell: str
     number: int
 
     def is_later_run_of(self, other: CellRun | None) -> bool:
-        """True if this is the same cell, run again."""
+        """Return True if this is a later run of the same cell."""
         return other is not None and self.cell == other.cell and self.number > other.number
 
 
 class CellWatch:
-    """Follows which cell is running; outside a notebook none ever is."""
+    """Follows which cell is running. Outside a notebook no cell runs."""
 
     def __init__(self) -> None:
         self.current: CellRun | None = None
@@ -44,13 +44,13 @@ class CellWatch:
         if self._shell is None:
             return
         self._shell.events.register("pre_run_cell", self._cell_begins)
-        # The cell that imports us is running already.
+        # The cell that imports this module is already running.
         parent = self._parent_request()
         cell_id = parent.get("metadata", {}).get("cellId")
         self._set_current(cell_id, parent.get("content", {}).get("code", ""))
 
     def before_each_run(self, action: Callable[[CellRun], None]) -> None:
-        """Have something done before a cell runs."""
+        """Call a function before each run of a cell."""
         self._before_run.append(action)
 
     def _cell_begins(self, info: Any) -> None:

@@ -1,8 +1,8 @@
-"""Classes and functions that are not what their cell says: its last run ended with an error, or defines another name.
+"""Find classes and functions that are out of date: their cell has failed, or defines a different name now.
 
-After a ``SyntaxError`` the class of the run before is still there under its name, or none at all. A check of it would
-repeat the advice on old code, and a ``NameError`` would blame the check's own cell. A class that was given another name
-is there under both, and a check of the earlier name would pass on code that is in no cell any more.
+After a ``SyntaxError``, the class from the run before still exists under its name, or no class does. A check would
+repeat the advice on old code, and a ``NameError`` would blame the cell of the check. A class that was renamed exists
+under both names, and a check of the old name would pass with code that is in no cell any more.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from autograder import code_of_elsewhere, course
 from autograder.notebook.cells.cell_output import last_student_line, notebook_shell, student_frames
 
 _ENTRY_POINTS = "entry_points"
-"""The list that a cell hands to ``package_files.add_entry_points``."""
+"""The list that a cell passes to ``package_files.add_entry_points``."""
 _DEFINED = re.compile(rf"^(?:(?:class|(?:async\s+)?def)\s+(\w+)|({_ENTRY_POINTS})\s*=)", re.MULTILINE)
-"""Also finds names in a cell that Python cannot parse."""
+"""Finds definitions even in a cell that Python cannot parse."""
 _CHECKED = r"^[^#\n]*\b(?:check|watch)\(.*\b{}\b"
 
 
@@ -32,10 +32,10 @@ class _Failure:
 
 
 class FailedCells:
-    """Follows which names the cells of a notebook were to define, and did not.
+    """Follows which names the cells of a notebook failed to define.
 
     Args:
-        shell: IPython's.
+        shell: IPython's shell.
     """
 
     def __init__(self, shell: Any) -> None:
@@ -53,7 +53,7 @@ class FailedCells:
         )
 
     def why_missing(self, name: str) -> str:
-        """The reason why a class or function is not what the cells say now; empty if it is."""
+        """Return why a class or function is not what the cells say now; empty if it is."""
         if failure := self._failures.get(name):
             return f"Your cell that defines {name} stopped before {name} was defined: {failure.error}"
         left, now = self._dropped.get(name, (None, []))
@@ -84,7 +84,7 @@ class FailedCells:
             else:
                 self._failures[name] = _Failure(cell, " ".join(filter(None, (_named(error), _here(error)))))
         for name in known - names:
-            # What another cell has made under that name since, or an import or assignment, is as good as ever.
+            # A definition that another cell, an import or an assignment has made since then is up to date.
             maker, made = self._made.get(name, ("", None))
             if maker == cell and made is there.get(name):
                 self._dropped[name] = (made, sorted(names))
@@ -119,7 +119,7 @@ def _defined(source: str) -> set[str]:
 
 
 def _named(error: BaseException) -> str:
-    """An error's name, line and message, as a sentence."""
+    """Return an error's name, line and message as a sentence."""
     message = error.msg if isinstance(error, SyntaxError) else str(error)
     place = last_student_line(error)
     line = error.lineno if isinstance(error, SyntaxError) else place and place[1]
@@ -128,7 +128,7 @@ def _named(error: BaseException) -> str:
 
 
 def _here(error: BaseException) -> str:
-    """What to write in this course, if the error shows code of elsewhere; empty otherwise."""
+    """Return what to write in this course if the error shows code from other sources; otherwise empty."""
     shown = traceback.format_exception(type(error), error, student_frames(error.__traceback__))
     found = code_of_elsewhere.recognised("".join(shown), code_of_elsewhere.packages(_packages_of_types()))
     return f"{found.text} {found.next_step}" if found else ""
@@ -137,7 +137,7 @@ def _here(error: BaseException) -> str:
 def _packages_of_types() -> tuple[str, ...]:
     try:
         return course.interfaces()
-    except (OSError, course.NoCourse, course.BrokenChapter):  # a grader's kernel sees no course
+    except (OSError, course.NoCourse, course.BrokenChapter):  # the grader's kernel has no course
         return ()
 
 
@@ -145,20 +145,20 @@ _cells = FailedCells(notebook_shell()) if notebook_shell() is not None else None
 
 
 class StaleCodeError(Exception):
-    """A class or function of before is there under its name; its newest code is not."""
+    """A class or function is older than the code in its cell."""
 
     def _render_traceback_(self) -> list[str]:
-        """Called by IPython in place of a traceback, which would lead to the wrong cell."""
+        """Return the message only; a traceback would point to the wrong cell. IPython calls this."""
         return [f"Not checked. {self}"]
 
 
 def raise_if_stale(subject: Any) -> None:
-    """End a check of old code with words that say so; nothing happens outside a notebook.
+    """End a check of old code with a message; outside a notebook, do nothing.
 
-    A check of files goes on, since they may be right all the same: they can be written in an editor, too.
+    A check of files goes on, because a student may have written them in an editor.
 
     Raises:
-        StaleCodeError: The cell that defines the subject anew, or what it uses, ended with an error.
+        StaleCodeError: The cell that redefines the subject, or a name that it uses, ended with an error.
     """
     if _cells is None:
         return
@@ -174,7 +174,7 @@ def raise_if_stale(subject: Any) -> None:
 
 
 def _names_read(subject: Any) -> set[str]:
-    """The names of the notebook that a function reads, or the methods of a class."""
+    """Return the notebook's names that a function, or the methods of a class, read."""
     own = vars(subject).values() if isinstance(subject, type) else (subject,)
     codes = [one.__code__ for one in own if isinstance(one, FunctionType)]
     found = set()

@@ -1,4 +1,4 @@
-"""The name that a student may have meant, as Python says it where it prints an error itself."""
+"""Suggest the name that a student may have meant, as Python does when it prints an error itself."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ if TYPE_CHECKING:
     from types import TracebackType
 
 _NEAR = 0.75
-"""From 0 to 1, how much of two names is the same; ``sefl`` and ``self`` have 0.75 in common."""
+"""Least similarity of two names, from 0 to 1; that of ``sefl`` and ``self`` is 0.75."""
 
 
 def meant_name(error: BaseException, trace: TracebackType | None) -> str:
-    """``. Did you mean: 'command'?``; empty where no name is near, or where the error says it already.
+    """Return ``. Did you mean: 'command'?``; empty if no name is similar, or the error already says it.
 
-    From Python 3.12 on ``traceback`` says it. Before, only a program that ends with the error does.
+    From Python 3.12 on, ``traceback`` says it. In 3.11, only a program that ends with the error does.
 
     Args:
-        error: A NameError or an AttributeError; any other has no such name.
-        trace: Where it came up.
+        error: A NameError or an AttributeError; there is no suggestion for other errors.
+        trace: The traceback of the error.
     """
     missing = getattr(error, "name", None)
     if sys.version_info >= (3, 12) or not missing or not isinstance(error, (NameError, AttributeError)):
@@ -42,5 +42,5 @@ def meant_name(error: BaseException, trace: TracebackType | None) -> str:
 
 
 def _attributes(value: object) -> list[str]:
-    """The names of a value's attributes, without calling a ``__dir__`` of its class."""
+    """Return the names of a value's attributes, without calling a ``__dir__`` of its class."""
     return [*dir(type(value)), *getattr(value, "__dict__", {})]

@@ -1,8 +1,8 @@
-"""A subject's log lines and output while it is checked, told to the judge and kept off the cell.
+"""Send a subject's log lines and output to the judge while it is checked, instead of below the cell.
 
-Only threads that began with the check are captured, so that a demonstration node that still runs in the background is
-not taken for the subject. What the kernel's streams are told is captured, whoever holds them: a handler of Python's
-``logging`` keeps the stream that it found when its cell was run, as ``from sys import stdout`` does.
+Only threads that started during the check are captured, so a demonstration node that still runs in the background is
+not taken for the subject. Text written to the kernel's streams is captured whoever writes it: a handler of Python's
+``logging`` keeps the stream that existed when its cell was run, as ``from sys import stdout`` does.
 
 A subject that calls ``input()`` gets an EOFError, like a program without a terminal. Otherwise JupyterLab would show an
 input box below the cell, and no other cell could run until the student had answered.
@@ -28,13 +28,13 @@ if TYPE_CHECKING:
 
 
 class CapturedOutput:
-    """Forwards within a ``with`` block; puts everything back at its end."""
+    """Forwards output inside a ``with`` block, and restores the streams at its end."""
 
     def __init__(self, tell: Callable[[str, bool], None]) -> None:
         """Prepare.
 
         Args:
-            tell: Called with each line, and whether it was logged rather than printed.
+            tell: Called with each line, and with True if it was logged and not printed.
         """
         self._tell = tell
         self._others = {thread.ident for thread in threading.enumerate()}
@@ -64,7 +64,7 @@ class CapturedOutput:
         if self._kernel is not None:
             del self._kernel._input_request
         setattr(RcutilsLogger, "log", self._usual_log)  # noqa: B010
-        for stream in reversed(self._streams):  # the two may be one: what was put over the other goes first
+        for stream in reversed(self._streams):  # both may be one stream: restore the last replacement first
             stream.finish()
         sys.stdout, sys.stderr = self._usual_streams
         while self._descriptors:
@@ -73,7 +73,7 @@ class CapturedOutput:
             os.close(saved)
 
     def stacks(self) -> str:
-        """The stack of each captured thread, innermost call first, in the form of Python's faulthandler."""
+        """Return the stack of each captured thread, innermost call first, in the form of Python's faulthandler."""
         frames = sys._current_frames()
         lines = []
         for thread in threading.enumerate():
@@ -87,11 +87,11 @@ class CapturedOutput:
         return "\n".join(lines)
 
     def is_captured(self) -> bool:
-        """True if the thread that asks is one of the subject's: it began with the check."""
+        """Return True if the calling thread belongs to the subject: it started during the check."""
         return threading.get_ident() not in self._others
 
     def _silence_compiled_code(self) -> None:
-        # rcutils writes log lines to the descriptors themselves; the card shows what matters of them.
+        # rcutils writes log lines to the file descriptors; the card shows the important ones.
         nowhere = os.open(os.devnull, os.O_WRONLY)
         for descriptor in (1, 2):
             self._descriptors.append((descriptor, os.dup(descriptor)))
@@ -111,9 +111,9 @@ def _no_input_for(captured: Callable[[], bool], usual: Callable[..., str]) -> Ca
 
 
 class _CapturedStream:
-    """Stands in for sys.stdout, and hears what its stream itself is told.
+    """Replaces sys.stdout, and also receives what is written to the stream itself.
 
-    It forwards the lines of captured threads, and passes on everybody else's.
+    It forwards the lines of captured threads to the judge, and writes those of all others as usual.
     """
 
     def __init__(self, stream: Any, tell: Callable[[str, bool], None], captured: Callable[[], bool]) -> None:
@@ -124,11 +124,11 @@ class _CapturedStream:
         self._captured = captured
         self._rest = ""
         self._lock = threading.Lock()
-        with suppress(AttributeError):  # a stream of the student's own may let nobody change it
+        with suppress(AttributeError):  # a stream of the student's own class may not be changeable
             stream.write = self.write
 
     def write(self, text: str) -> int:
-        """Take some text; whole lines are told at once."""
+        """Take some text; whole lines are forwarded at once."""
         if not self._captured():
             written: int = self._usual_write(text)
             return written
@@ -140,7 +140,7 @@ class _CapturedStream:
         return len(text)
 
     def finish(self) -> None:
-        """Put the stream back as it was, and tell the last line, which had no end."""
+        """Restore the stream, and forward the last line, which has no line end."""
         with suppress(AttributeError):
             if self._own_write is None:
                 del self._stream.write

@@ -1,8 +1,8 @@
-"""The place of a check's card: one place under the cell, from its first moment to its last.
+"""Display a check's card, always in the same place below the cell.
 
-A quick check replaces the card of the check before, so that the page does not jump. A longer one shows a line that
-tells what goes on instead: a student must not read an earlier diagnosis as that of the new code. A card whose class or
-function was defined anew is dimmed and says why.
+A quick check replaces the card of the check before, so that the page does not jump. A longer check shows a line about
+its progress instead: a student must not take an earlier diagnosis for that of the new code. A card is dimmed, with a
+reason, if its class or function has been redefined.
 """
 
 from __future__ import annotations
@@ -34,19 +34,19 @@ if TYPE_CHECKING:
 VALIDATING = "NBGRADER_VALIDATING"
 """Set by nbgrader while its Validate button runs the notebook."""
 SOON = 0.7
-"""Seconds of wall time after which a check that still goes on says so, and between two words of it."""
+"""Seconds of wall time until a running check shows its progress, and between two updates."""
 LONG = 30.0
-"""Seconds of wall time after which a check that goes on says what is known so far, or that the machine is busy."""
+"""Seconds of wall time after which a running check says what is known so far, or that the machine is busy."""
 CROWDED = 4.0
-"""Processes for each processor that want to run on a busy machine, on average of the last minute."""
+"""Average number of runnable processes for each processor, in the last minute, from which a machine counts as busy."""
 
 
 @dataclass
 class Progress:
-    """The words of a check about itself while it goes on.
+    """The progress of a check.
 
     Attributes:
-        doing: What goes on, such as ``"run 2"``.
+        doing: The present step, such as ``"run 2"``.
         known: What the judge knows so far, in a sentence.
         began: When the check began, in seconds of a monotonic clock.
     """
@@ -56,7 +56,7 @@ class Progress:
     began: float = field(default_factory=time.monotonic)
 
     def words(self) -> str:
-        """One or two sentences."""
+        """Return the progress in one or two sentences."""
         seconds = time.monotonic() - self.began
         words = f"Checking: {self.doing}, {duration(seconds)} …"
         if seconds < LONG:
@@ -77,7 +77,7 @@ class _Shown:
     handle: Any
     name: str
     subject: Any
-    """Gives the class or function that was checked, while it is there; always None for a path."""
+    """Returns the class or function that was checked while it exists; always None for a path."""
     dated: bool = False
 
 
@@ -87,7 +87,7 @@ _watching: list[Any] = []
 
 @dataclass
 class CardDisplay:
-    """The place of one check's card. To be entered before the check begins, in its thread.
+    """Displays the card of one check; enter it before the check begins, in the same thread.
 
     Attributes:
         exercise: The exercise's id.
@@ -108,7 +108,7 @@ class CardDisplay:
                 self._handle = display_card(
                     _dated(earlier, "Checking again: this is the result of the check before.")
                 )
-            here = contextvars.copy_context()  # what belongs to which cell is in there
+            here = contextvars.copy_context()  # it contains the cell to which output belongs
             self._teller = threading.Thread(target=here.run, args=(self._tell,), name="check", daemon=True)
             self._teller.start()
         return self
@@ -128,15 +128,15 @@ class CardDisplay:
             update_card(self._handle, card)
 
     def doing(self, what: str) -> None:
-        """Say what goes on, in a few words such as ``"run 2"``."""
+        """Show the present step, in a few words such as ``"run 2"``."""
         self._progress.doing = what
 
     def know(self, so_far: str) -> None:
-        """Say what the judge knows already, once the check has lasted long."""
+        """Show what the judge already knows, once the check has taken long."""
         self._progress.known = so_far
 
     def show(self, verdict: Verdict) -> None:
-        """Show the result in the card's place; print it where there is no notebook."""
+        """Show the result on the card; outside a notebook, print it."""
         self._stop_telling()
         shell = notebook_shell()
         earlier = _shown.get(self.exercise)
@@ -169,12 +169,12 @@ class CardDisplay:
 
 
 def _dated(shown: _Shown, notice: str) -> dict[str, str]:
-    """A result that is on the page, as one that is out of date."""
+    """Return a shown card, marked as out of date."""
     return bundle.mimebundle(shown.verdict, before=shown.before, notice=notice)
 
 
 def renew_card(verdict: Verdict, subject: Any) -> None:
-    """Show a later result in the place of an exercise's card, where one is on the page."""
+    """Show a later result on an exercise's card, if there is one on the page."""
     shell, earlier = notebook_shell(), _shown.get(verdict.exercise)
     if shell is not None and earlier is not None:
         before = earlier.verdict.score
@@ -183,18 +183,18 @@ def renew_card(verdict: Verdict, subject: Any) -> None:
 
 
 def _full_card(verdict: Verdict, before: float | None) -> dict[str, str]:
-    # No solution in a grader's kernel: what a student hands in would carry it.
+    # No solution in a grader's kernel: the submission's notebook would contain it.
     solution = solution_of(verdict.exercise) if verdict.passed and is_live() else None
     return bundle.mimebundle(verdict, before=before, solution=solution)
 
 
 def is_live() -> bool:
-    """True if somebody may be looking: a notebook's kernel, and neither a grader's nor Validate's."""
+    """Return True if a student may be looking: this is a notebook's kernel, not a grader's or Validate's."""
     return notebook_shell() is not None and not os.environ.get(SOCKET_VARIABLE) and not is_validating()
 
 
 def is_validating() -> bool:
-    """True if nbgrader's Validate runs this notebook."""
+    """Return True if nbgrader's Validate runs this notebook."""
     return os.environ.get(VALIDATING) == "1"
 
 
@@ -208,7 +208,7 @@ def _remember(shell: Any, exercise: str, subject: Any, shown: _Shown) -> None:
 
 
 def _dim_what_is_out_of_date(_: Any = None) -> None:
-    """After each cell: a card stays true for as long as its class or function is the one that was checked."""
+    """After each cell, dim each card whose class or function is no longer the one that was checked."""
     names = getattr(_watching[0], "user_ns", {})
     for shown in _shown.values():
         if shown.dated or not shown.name or shown.name not in names:
@@ -220,21 +220,21 @@ def _dim_what_is_out_of_date(_: Any = None) -> None:
 
 
 def display_card(card: dict[str, str]) -> Any:
-    """Show a card below the cell that runs; what it is updated with."""
+    """Show a card below the running cell, and return the handle to update it."""
     from IPython.display import display
 
     return display(card, raw=True, display_id=True)  # type: ignore[no-untyped-call]
 
 
 def update_card(handle: Any, card: dict[str, str]) -> None:
-    """Show another card in a card's place."""
-    # A kernel that is ending has closed its streams.
+    """Replace a shown card by another one."""
+    # A kernel that is shutting down has closed its streams.
     if not sys.is_finalizing():
         handle.update(card, raw=True)
 
 
 def solution_of(exercise: str) -> Solution | None:
-    """The reference solution, for full marks; None where it is not there. A grader's box sees no course, and so none.
+    """Return the reference solution, to show after full marks; None if there is none, as in a grader's sandbox.
 
     Args:
         exercise: The exercise's id.
@@ -246,5 +246,5 @@ def solution_of(exercise: str) -> Solution | None:
                     said = json.loads(file.with_suffix(course.SOLUTION).read_text(encoding="utf-8"))
                     return Solution(tuple(said["code"]), said["why"], said["other_way"], said["other_code"])
     except (OSError, ValueError, KeyError, TypeError, course.NoCourse, course.BrokenChapter):
-        pass  # an offer beside a check, which nothing may break
+        pass  # the solution is an extra: an error here must not break the check
     return None

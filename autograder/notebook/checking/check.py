@@ -17,8 +17,8 @@ from autograder.notebook.checking.card_display import CardDisplay, is_live, is_v
 from autograder.notebook.checking.check_context import CheckContext
 from autograder.notebook.checking.judge_link import JudgeLink, JudgeUnreachable
 from autograder.notebook.checking.path_run import PathRun, is_path, send_sources
-from autograder.notebook.checking.shorter_waits import GraphQuestions, ShorterWaits
 from autograder.notebook.checking.subject_run import SubjectRun, Tell
+from autograder.notebook.checking.told_calls import ToldCalls
 from autograder.notebook.checking.validating import raise_unless_full
 from autograder.notebook.nodes.ros_session import prepare_environment
 from autograder.student import journal
@@ -149,8 +149,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: Place) -> Verdi
     with (
         CheckContext(first.domain, first.keeper) as place,
         CapturedOutput(lambda line, logged: tell(messages.Output, text=line, logged=logged)) as captured,
-        ShorterWaits(captured.is_captured, tell) as waits,
-        GraphQuestions(lambda: tell(messages.Looked), captured.is_captured) as questions,
+        ToldCalls(captured.is_captured, tell) as calls,
     ):
         link.say(messages.Ready())
         try:
@@ -169,8 +168,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: Place) -> Verdi
                             if is_path(subject)
                             else SubjectRun(number, subject, place.context, link.say)
                         )
-                        waits.begin_run(factor=order.sleep_factor, spare=order.spare)
-                        questions.begin_run()
+                        calls.begin_run()
                         run.start(order.arguments, order.options)
                     case messages.Release() if run is not None:
                         run.release()

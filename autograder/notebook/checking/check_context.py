@@ -1,7 +1,7 @@
-"""A ROS context for checks alone: fresh, on the judge's domain, and rclpy's default for as long as a check runs.
+"""Provide a new ROS context for each check: on the judge's domain, and rclpy's default while the check runs.
 
-A student's class says ``super().__init__("talker_node")`` and means the default context. While a check runs, that is
-this one, so that nodes of the notebook's demonstrations are neither heard nor disturbed.
+A student's class calls ``super().__init__("talker_node")``, which uses the default context. While a check runs, that is
+this one, so that nodes of the notebook's demonstrations neither disturb the check nor are disturbed.
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ if TYPE_CHECKING:
 _GLOBAL_EXECUTOR = "__executor"
 """The name in ``rclpy/__init__.py``."""
 MEETING = 0.5
-"""Seconds of wall time for which a run waits until the judge is met. Without it, it is only met later."""
+"""Seconds of wall time that a run waits until the judge is discovered. Otherwise it is discovered later."""
 MEETING_POLL = 0.002
-"""Seconds between two looks whether the judge is met."""
+"""Seconds between two tests whether the judge is discovered."""
 
 
 class CheckContext:
-    """Swaps rclpy's default context within a ``with`` block.
+    """Replaces rclpy's default context inside a ``with`` block.
 
     Args:
         domain_id: The judge's domain.
-        keeper: The name of the node that keeps the check's participant, as the judge knows it. It begins with an
+        keeper: The name, known to the judge, of the node that keeps the check's participant alive. It begins with an
             underscore, so that ``ros2 node list`` hides it.
     """
 
@@ -53,10 +53,10 @@ class CheckContext:
     def __enter__(self) -> Self:
         with rclpy.utilities.g_context_lock:
             self._usual = rclpy.utilities.g_default_context
-        # rclpy.spin and its kin share one executor, which stays with the context it was first used on.
+        # rclpy.spin and similar functions share one executor, which stays with its first context.
         self._usual_executor = getattr(rclpy, _GLOBAL_EXECUTOR, None)
         setattr(rclpy, _GLOBAL_EXECUTOR, None)
-        # What the subject starts as a process, such as the ros2 command, must be on the judge's domain, too.
+        # Processes that the subject starts, such as the ros2 command, must be on the judge's domain, too.
         self._usual_domain = os.environ.get(DOMAIN_VARIABLE)
         os.environ[DOMAIN_VARIABLE] = str(self._domain_id)
         return self
@@ -71,18 +71,18 @@ class CheckContext:
             os.environ[DOMAIN_VARIABLE] = self._usual_domain
 
     def ensure(self, *, fresh: bool) -> None:
-        """Make a new context where one is asked for, or where the student's code has shut the last one down."""
+        """Make a new context if asked to, or if the student's code has shut down the last one."""
         if fresh or not self.context.ok():
             self.renew()
         else:
             self._put(self.context)
 
     def renew(self) -> None:
-        """Begin with a fresh participant, and meet the judge with it.
+        """Start a new participant, and let it discover the judge.
 
-        A participant lives as long as it has a node (rmw_fastrtps), and two participants need a fifth of a second to
-        learn what the other one had before they met, but hardly a millisecond for what is made afterwards. So a node
-        that does nothing is there before the subject, and through all of its runs.
+        A participant lives as long as it has a node (rmw_fastrtps). Two participants need a fifth of a second to
+        discover each other's existing endpoints, but hardly a millisecond for later ones. So a node that does nothing
+        exists before the subject, and during all of its runs.
         """
         self._end()
         self.context = Context()
@@ -106,14 +106,14 @@ class CheckContext:
             time.sleep(MEETING_POLL)
 
     def sees(self, there: Sequence[Endpoint], gone: Sequence[Endpoint], within: float) -> bool:
-        """Wait until this participant knows all of the first and none of the second; whether that came.
+        """Wait until this participant sees all endpoints of ``there`` and none of ``gone``. Return True if it does.
 
-        An endpoint and the node that it belongs to are announced separately; where it is to be there, both are known.
+        An endpoint and its node are announced separately: for endpoints of ``there``, both must be known.
 
         Args:
             there: Endpoints that are on the graph.
-            gone: Endpoints that were.
-            within: Seconds of wall time.
+            gone: Endpoints that have been removed.
+            within: Limit in seconds of wall time.
         """
         deadline = time.monotonic() + within
         while True:
@@ -126,7 +126,7 @@ class CheckContext:
             time.sleep(MEETING_POLL)
 
     def _known(self, topics: set[str]) -> dict[tuple[str, ...], str]:
-        """The endpoints on these topics, each with the name of its node."""
+        """Return the endpoints on these topics, each with the name of its node."""
         node = self._keeper
         assert node is not None
         return {
@@ -137,10 +137,10 @@ class CheckContext:
         }
 
     def _end(self) -> None:
-        """End what is on the context, then the context.
+        """Destroy the nodes on the context, then the context.
 
-        A node that outlives it would hold the place of its name among the loggers: what a later node of that name logs
-        would go to a dead publisher ("Failed to publish log message to rosout").
+        A node that outlives its context would keep the logger of its name: a later node of that name would log
+        to a destroyed publisher ("Failed to publish log message to rosout").
         """
         keeper, self._keeper = self._keeper, None
         if keeper is not None:

@@ -1,7 +1,7 @@
-"""The notebook's end of the conversation with the judge, and the judge process where nobody has given one.
+"""Connect a notebook to the judge, and start a judge process if the grader has not started one.
 
-What both say is in :mod:`autograder.messages.checks`. It shares no more code with the judge, on purpose: what runs here
-is in the student's hands.
+The messages are in :mod:`autograder.messages.checks`. On purpose, the notebook shares no other code with the judge:
+a student can change what runs here.
 """
 
 from __future__ import annotations
@@ -16,29 +16,30 @@ from typing import TYPE_CHECKING
 from autograder.messages.checks import SOCKET_VARIABLE, FromJudge
 from autograder.messages.lines import Hangup, Lines, NotUnderstood
 from autograder.temporary_folders import HeldFolder
+from environment.installation import COMMAND
 from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from autograder.messages.lines import Message
 
 MAX_TEXT = 4_000
-"""Characters of one text of the subject's that the judge looks at; more at once would end the conversation."""
+"""Limit of one text of the subject, in characters; a longer message would end the connection."""
 START_LIMIT = 60.0
-"""Seconds of wall time in which a judge of one's own must be up."""
+"""Seconds of wall time in which the kernel's own judge must start."""
 
 
 class JudgeUnreachable(ConnectionError):
-    """There is no judge to ask."""
+    """No judge can be reached."""
 
 
 class JudgeLink:
-    """One check's conversation. Sending is safe from any thread; receiving is for one."""
+    """The connection of one check. Any thread may send; only one may receive."""
 
     def __init__(self) -> None:
-        """Connect to the judge, starting one where that is needed.
+        """Connect to the judge; start one if there is none.
 
         Raises:
-            JudgeUnreachable: There is none and none could be started.
+            JudgeUnreachable: There is no judge and none could be started.
         """
         path = os.environ.get(SOCKET_VARIABLE) or own_judge().path()
         try:
@@ -47,15 +48,15 @@ class JudgeLink:
             raise JudgeUnreachable(f"the judge cannot be reached ({error})") from error
 
     def say(self, message: Message) -> None:
-        """Say one thing; nothing happens when the judge is gone, which :meth:`hear` tells."""
+        """Send a message. If the judge has ended, do nothing: :meth:`hear` raises then."""
         with contextlib.suppress(Hangup):
             self._lines.say(message)
 
     def hear(self) -> FromJudge:
-        """The judge's next message.
+        """Return the judge's next message.
 
         Raises:
-            JudgeUnreachable: The judge is gone.
+            JudgeUnreachable: The judge has ended.
         """
         try:
             message: FromJudge = self._lines.hear(FromJudge)
@@ -64,12 +65,12 @@ class JudgeLink:
         return message
 
     def close(self) -> None:
-        """Hang up."""
+        """Close the connection."""
         self._lines.close()
 
 
 class OwnJudge:
-    """The judge process of this kernel; it ends with the kernel, which holds its standard input."""
+    """The judge process of this kernel; it ends with the kernel, which owns its standard input."""
 
     def __init__(self) -> None:
         self._folder = HeldFolder("autograder-judge-")
@@ -87,27 +88,27 @@ class OwnJudge:
         self._ready = False
 
     def path(self) -> str:
-        """Its socket, once it listens.
+        """Return the path of the judge's socket once it listens.
 
         Raises:
-            JudgeUnreachable: It did not start.
+            JudgeUnreachable: The process did not start.
         """
         if not self._ready:
             assert self._process.stdout is not None
             self._ready = self._process.stdout.readline() == b"ready\n"
         if not self._ready or not self.alive:
             raise JudgeUnreachable(
-                "the judge did not start; `./course doctor` in a terminal says what is missing"
+                f"the judge did not start; `{COMMAND} doctor` in a terminal says what is missing"
             )
         return str(self._socket)
 
     @property
     def alive(self) -> bool:
-        """True if the process runs and is this kernel's, not one inherited by a fork."""
+        """Return True if the process runs and belongs to this kernel, not to the parent of a fork."""
         return self._pid == os.getpid() and self._process.poll() is None
 
     def stop(self) -> None:
-        """End it."""
+        """End the process."""
         if self._process.stdin is not None:
             self._process.stdin.close()
         try:
@@ -121,7 +122,7 @@ _own: OwnJudge | None = None
 
 
 def own_judge() -> OwnJudge:
-    """This kernel's own judge; started at the first call, and again where it has died."""
+    """Return this kernel's own judge. The first call starts it, and so does a call after it has died."""
     global _own
     if _own is None or not _own.alive:
         _own = OwnJudge()
@@ -130,6 +131,6 @@ def own_judge() -> OwnJudge:
 
 
 def warm_up() -> None:
-    """Start the judge before the first check needs it, unless a grader has one ready."""
+    """Start the judge before the first check needs it, unless the grader has started one."""
     if not os.environ.get(SOCKET_VARIABLE):
         own_judge()

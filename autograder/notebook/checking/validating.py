@@ -1,8 +1,8 @@
-"""The words of nbgrader's Validate about a check.
+"""Show the result of a check when nbgrader's Validate runs the notebook.
 
-Validate runs the notebook and shows, for each check without full marks, the error of its cell. A cell that has none
-is called "Partial credit; passed some but not all", also one with no points at all. So, while it validates, such a
-check ends with an error that says what the card says.
+Validate shows, for each check without full marks, the error of its cell. A cell without an error
+is called "Partial credit; passed some but not all", even if it has no points at all. So during Validate such a
+check ends with an error that has the text of the card.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 WIDTH = 76
-"""Columns of a line: nbgrader cuts what is longer."""
+"""Length of a line in characters: nbgrader cuts longer ones."""
 
 
 class NotFullMarksError(Exception):
-    """A check without full marks, in words for Validate."""
+    """A check without full marks, with the message for Validate."""
 
     def __init__(self, verdicts: list[Verdict]) -> None:
         super().__init__("\n".join(_lines(verdicts)))
 
     def _render_traceback_(self) -> list[str]:
-        """Called by IPython in place of a traceback, which says nothing here."""
+        """Return the message only; a traceback would not help. IPython calls this."""
         return str(self).splitlines()
 
 
@@ -34,10 +34,10 @@ _checked: dict[str, Verdict] = {}
 
 
 def raise_unless_full(verdict: Verdict) -> None:
-    """End a check cell with words that Validate shows; nothing happens where the check has full marks.
+    """End a check cell with a message that Validate shows; do nothing if the check has full marks.
 
     Raises:
-        NotFullMarksError: It has not.
+        NotFullMarksError: The check does not have full marks.
     """
     _checked.pop(verdict.exercise, None)
     _checked[verdict.exercise] = verdict
@@ -46,7 +46,7 @@ def raise_unless_full(verdict: Verdict) -> None:
 
 
 def _lines(verdicts: list[Verdict]) -> list[str]:
-    """The last check in detail, and the total of all so far where there are several."""
+    """Return the last check in detail, and the total of all checks so far if there are several."""
     last = verdicts[-1]
     state = wording.STATE_WORDS[last.state]
     lines = wrap(f"{one_line(last.title or last.exercise, 120)}: {state}, {wording.score_line(last)}", WIDTH)

@@ -1,11 +1,11 @@
-"""Watch mode: a class is checked again each time that its cell defines it anew.
+"""Watch mode: check a class again each time that its cell redefines it.
 
 It begins by itself after a check that did not earn all points, or on the student's request.
 
-The cell ends as fast as ever, and the check goes on while the kernel has nothing else to do. A check swaps rclpy's
-default context and reads all that is printed, so it cannot go on beside a cell: it gives way to whatever is run next,
-and begins again after that. What is watched is in the memory of the kernel alone, so a restart ends it; where a class
-is graded nothing is watched.
+The cell ends as fast as before, and the check runs while the kernel is idle. A check replaces rclpy's
+default context and captures all output, so it cannot run at the same time as a cell: it stops for the next cell,
+and starts again after that. Only the kernel's memory knows what is watched, so a restart ends it. While a class
+is graded, nothing is watched.
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ class Watch:
 
     Attributes:
         exercise: The exercise's id.
-        name: What the class or function is called in the notebook.
-        subject: The one that was seen last.
-        due: Whether it is still to be checked.
+        name: The name of the class or function in the notebook.
+        subject: The newest class or function of that name.
+        due: True if it is still to be checked.
     """
 
     exercise: str
@@ -51,44 +51,44 @@ class Watch:
     _here: contextvars.Context = field(default_factory=contextvars.copy_context)
 
     def is_defined_anew(self, subject: Any) -> bool:
-        """True if this is another class or function than the one seen last."""
+        """Return True if this class or function is not the newest one so far."""
         return subject is not self.subject and (inspect.isclass(subject) or inspect.isfunction(subject))
 
     def begin(self, subject: Any) -> None:
-        """Show a card below the cell that runs, which has just defined this subject; it is due from now on."""
+        """Show a card below the running cell, which has just defined this subject, and make it due."""
         if self._handle is not None:
-            # Where the same cell was run again, its earlier card is gone already.
+            # If the same cell was run again, its earlier card is already gone.
             self._say(f"Another cell has defined {self.name} since.", over=True)
         self.subject, self.due = subject, True
-        self._here = contextvars.copy_context()  # what belongs to which cell is in there
+        self._here = contextvars.copy_context()  # it contains the cell to which output belongs
         self._handle = display_card(self._card("Is checked as soon as this cell has ended."))
 
     def get_ready(self) -> None:
-        """Say that the check begins."""
+        """Show that the check begins."""
         self._progress = Progress()
         self._say(self._progress.words())
 
     def doing(self, what: str) -> None:
-        """Say what goes on, in a few words."""
+        """Show the present step, in a few words."""
         self._progress.doing = what
         self._say(self._progress.words())
 
     def know(self, so_far: str) -> None:
-        """Say what the judge knows already, once the check has lasted long."""
+        """Show what the judge already knows, once the check has taken long."""
         self._progress.known = so_far
 
     def give_way(self) -> None:
-        """Say that another cell runs first."""
+        """Show that another cell runs first."""
         self._say("Is checked as soon as the cell that runs now has ended.")
 
     def show(self, verdict: Verdict) -> None:
-        """Show the result of its own check, here and in the card of the check cell."""
+        """Show the result of this check, here and on the card of the check cell."""
         self.settle(verdict)
         self._here.run(renew_card, verdict, self.subject)
         self._here.run(keep, verdict)
 
     def settle(self, verdict: Verdict) -> None:
-        """Show a result in the card's place; nothing is due then."""
+        """Show a result on the card; the subject is no longer due."""
         before = self._verdict.score if self._verdict else None
         self._verdict, self.due = verdict, False
         self._here.run(update_card, self._handle, bundle.mimebundle(verdict, before=before, short=True))
@@ -107,10 +107,10 @@ class Watch:
 
 
 class Watches:
-    """All that is watched in this kernel.
+    """Everything that is watched in this kernel.
 
     Args:
-        shell: IPython's.
+        shell: IPython's shell.
     """
 
     def __init__(self, shell: Any) -> None:
@@ -120,13 +120,13 @@ class Watches:
         self._link: JudgeLink | None = None
         self._giving_way = False
         self._lock = threading.Lock()
-        # Before all else that follows a cell, and around each execution, also of what front ends ask for silently.
+        # Before everything else that follows a cell, and around each execution, even the silent ones of front ends.
         shell.events.register("pre_execute", self._give_way)
         shell.events.register("post_execute", self._go_on)
         atexit.register(self._give_way)  # before ROS is shut down
 
     def _go_on(self) -> None:
-        """A cell has ended: check what it has defined anew, and what had to give way to it."""
+        """After a cell, check what it has redefined, and continue the checks that it interrupted."""
         for watch in self.all.values():
             subject = self._names.get(watch.name)
             if watch.is_defined_anew(subject):
@@ -137,7 +137,7 @@ class Watches:
             self._thread.start()
 
     def _give_way(self) -> None:
-        """A cell is about to run: end the check that goes on; it begins again afterwards."""
+        """Before a cell, stop the running check, which starts again afterwards."""
         if self._thread is None:
             return
         with self._lock:
@@ -169,7 +169,7 @@ class Watches:
                 watch.give_way()
                 return
             verdict = not_checked(watch.exercise, watch.exercise, 0.0, str(error), "Run the cell again.")
-        if verdict is not None:  # else a grader's judge, which tells no notebook
+        if verdict is not None:  # a grader's judge sends the notebook no verdict
             watch.show(verdict)
 
 
@@ -180,7 +180,7 @@ _ended_by_the_student = False
 def watch(exercise: str, subject: Callable[..., Any]) -> Watch:
     """Check a class again whenever its cell is run, until ``unwatch()`` or the kernel's restart.
 
-    A short card with the points, what happened and what to do next comes below that cell. It changes no grade. While a
+    A short card below that cell shows the points, what happened and what to do next. It changes no grade. While a
     class is graded, and while Validate runs the notebook, nothing is watched.
 
     Args:
@@ -197,7 +197,7 @@ def watch(exercise: str, subject: Callable[..., Any]) -> Watch:
     begun = Watch(exercise, subject.__name__, subject)
     if is_live():
         _watches = _watches or Watches(notebook_shell())
-        # A call in the class's own cell comes with each run, and must not take the new class for one that it has seen.
+        # A call in the class's own cell happens in each run, and must not take the new class for a checked one.
         earlier = _watches.all.get(exercise)
         if earlier is not None and earlier.name == begun.name:
             return earlier
@@ -206,7 +206,7 @@ def watch(exercise: str, subject: Callable[..., Any]) -> Watch:
 
 
 def unwatch() -> None:
-    """Watch nothing any more, and begin with nothing by itself; what the cards say stays."""
+    """Watch nothing any more, not even after a failed check. The cards stay."""
     global _ended_by_the_student
     _ended_by_the_student = True
     if _watches is not None:
@@ -214,14 +214,14 @@ def unwatch() -> None:
 
 
 def switch(exercise: str, subject: Callable[..., Any]) -> str:
-    """Watch a class or function, or nothing where it is watched already: the button *Watch*.
+    """Watch a class or function, or stop watching it: the button *Watch*.
 
     Args:
         exercise: The exercise's id.
         subject: The class or function.
 
     Returns:
-        What holds from now on, in words.
+        What is watched from now on, in words.
     """
     if _watches is not None and exercise in _watches.all:
         unwatch()
@@ -230,9 +230,9 @@ def switch(exercise: str, subject: Callable[..., Any]) -> str:
 
 
 def watch_after(verdict: Verdict, subject: Any) -> None:
-    """Take what a check by hand has found: it need not be found again, and what is left to mend is watched from now on.
+    """After a check by hand, watch the subject if it did not pass; its result need not be found again.
 
-    Nothing begins by itself once the student has ended it.
+    After ``unwatch()``, nothing is watched until the student asks for it.
     """
     watched = _watches.all.get(verdict.exercise) if _watches is not None else None
     if watched is not None and watched.due and watched.subject is subject:

@@ -1,1 +1,1 @@
-"""Students' nodes: ROS in the kernel, spinning in the background, and how a node ends."""
+"""Run students' nodes: start ROS in the kernel, spin nodes in the background, and end them."""

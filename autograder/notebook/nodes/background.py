@@ -1,4 +1,4 @@
-"""Nodes that spin in the background of a notebook, and what becomes of them when their cell is run again.
+"""Spin nodes in the background of a notebook, and end them when their cell is run again.
 
 ``with spinning(TalkerNode(), ListenerNode()): …`` spins nodes while the cell's body runs;
 ``spin_in_background(TalkerNode())`` spins them until they are stopped or the cell is run again.
@@ -34,24 +34,24 @@ _GRACE_AT_EXIT = 0.5
 def spinning(*nodes: Node, threads: int = 1) -> Spinning:
     """Spin nodes in the background while a ``with`` block runs.
 
-    ``as`` gives the node, or a tuple of them where there are several::
+    ``as`` gives the node, or a tuple if there are several nodes::
 
         with spinning(TalkerNode(), ListenerNode()) as (talker, listener):
             time.sleep(3)
 
     At the end of the block, however it ends, the executor is shut down, its threads are joined and the nodes
-    are destroyed. The executor is the nodes' own context's.
+    are destroyed. The executor belongs to the nodes' own context.
 
     Args:
         nodes: At least one node.
         threads: How many callbacks may run at a time. From 2 on the executor is a MultiThreadedExecutor.
 
     Raises:
-        NotANodeError: Something given is not a node.
+        NotANodeError: One of the arguments is not a node.
         UnusableNodeError: A node has ended.
         NodeBusyError: A node spins already.
         SettingError: ``threads`` is not a number of threads.
-        CallbackFailedError: At the end of the block, when a callback raised and the block itself did not.
+        CallbackFailedError: At the end of the block, if a callback raised and the block itself did not.
     """
     check_nodes("spinning", nodes)
     check_threads(threads)
@@ -61,20 +61,20 @@ def spinning(*nodes: Node, threads: int = 1) -> Spinning:
 def spin_in_background(node: Node, *more: Node, name: str | None = None, threads: int = 1) -> Background:
     """Spin nodes in the background until ``.stop()``, or until this cell is run again.
 
-    Running the cell again first ends what its earlier run left spinning, and the nodes that run made. With a
-    ``name`` of its own, a background outlasts that: only one of the same name takes its place.
+    Running the cell again first stops the nodes of its earlier run and destroys them. A background with a
+    ``name`` goes on: only another background of the same name replaces it.
 
     Args:
         node: A node.
         more: More nodes for the same executor.
-        name: Tells this background from others that the same cell starts.
+        name: Distinguishes this background from others that the same cell starts.
         threads: How many callbacks may run at a time. From 2 on the executor is a MultiThreadedExecutor.
 
     Raises:
-        NotANodeError: Something given is not a node.
+        NotANodeError: One of the arguments is not a node.
         UnusableNodeError: A node has ended.
         NodeBusyError: A node spins already.
-        SettingError: ``threads`` is not a number of threads, or ``name`` not a text.
+        SettingError: ``threads`` is not a number of threads, or ``name`` is not a string.
     """
     nodes = (node, *more)
     check_threads(threads)
@@ -89,7 +89,7 @@ def spin_in_background(node: Node, *more: Node, name: str | None = None, threads
 
 
 def stop_all(grace: float = GRACE) -> None:
-    """Stop all that spins in the background and destroy every node made in this notebook.
+    """Stop everything that spins in the background and destroy every node made in this notebook.
 
     Args:
         grace: Seconds that each running callback has to return by itself.
@@ -106,7 +106,7 @@ class Background:
     Args:
         nodes: At least one; they have been checked.
         threads: How many callbacks may run at a time.
-        name: What the student calls it, if anything.
+        name: The student's name for it, or None.
     """
 
     def __init__(self, nodes: Sequence[Node], *, threads: int = 1, name: str | None = None) -> None:
@@ -136,7 +136,7 @@ class Background:
         return self._errors.all
 
     def start(self) -> None:
-        """Begin to spin."""
+        """Start spinning."""
         with _lock:
             _running.append(self)
         self._threads.start()
@@ -167,7 +167,7 @@ class Background:
         let_log_lines_arrive()
 
     def drop(self, node: Node) -> None:
-        """Part with one node for good; with the last one the background ends."""
+        """Remove one node for good. The background ends with its last node."""
         self._threads.let_go(node)
         destroy_node(node)
         if not self.nodes:
@@ -219,7 +219,7 @@ class Background:
 
 
 class Interrupted(KeyboardInterrupt):
-    """The kernel was interrupted within ``with spinning(...)``; shown as one line instead of a traceback."""
+    """The kernel was interrupted inside ``with spinning(...)``; shown as one line instead of a traceback."""
 
     def _render_traceback_(self) -> list[str]:
         return [str(self)]
@@ -234,7 +234,7 @@ class Spinning:
         self._background = Background(nodes, threads=threads)
 
     def __enter__(self) -> Any:
-        """Begin to spin; the node, or a tuple of several."""
+        """Start spinning. Return the node, or a tuple if there are several."""
         check_nodes("spinning", self._nodes)
         self._background.start()
         return self._nodes[0] if len(self._nodes) == 1 else self._nodes
@@ -250,14 +250,14 @@ class Spinning:
             raise CallbackFailedError(self._background.errors) from self._background.errors[0].error
 
     def __repr__(self) -> str:
-        """One line for the end of a cell in which ``with`` was forgotten."""
+        """Return one line for a cell that ends with ``spinning(...)`` without ``with``."""
         return (
             f"{self._label} not spinning: write `with spinning(...):` and indent what is to happen meanwhile."
         )
 
 
 def replace_named(name: str, keep: Collection[Node]) -> None:
-    """Stop the background of that name, if there is one, but leave some nodes alive."""
+    """Stop the background with this name, if there is one, but leave some nodes alive."""
     for background in running_backgrounds():
         if background.name == name:
             background.end(keep=keep)
@@ -274,10 +274,10 @@ def _background_of(node: Node) -> Background | None:
 
 
 def _undo_earlier_run(run: CellRun) -> None:
-    """Before a cell is run again, end what its earlier run left: its nodes would echo into the new run.
+    """Before a cell is run again, end the nodes of its earlier run: their messages would mix with the new run's.
 
-    A node that another cell made only stops spinning, as the variable that holds it may be used again. What
-    was given a name of its own stays.
+    A node that another cell made only stops spinning, because its variable may be used again. A background
+    with a name goes on.
     """
     left_behind = [
         made.node for made in _made.alive() if run.is_later_run_of(made.run) and not _is_named(made.node)
@@ -290,10 +290,10 @@ def _undo_earlier_run(run: CellRun) -> None:
 
 
 def _make_room(newcomer: NodeIdentity) -> None:
-    """Before a node is made, end one of its name that another run of a cell left: all would come twice.
+    """Before a node is made, end one with the same name from another cell's run: every message would come twice.
 
-    Before and not after, as rcl would warn, and would end the logs of both when either is destroyed. Two of
-    one name out of one run are meant to be: the course shows what two servers of a name do.
+    This must happen before: otherwise rcl warns, and ends the logs of both nodes when one is destroyed. Two nodes
+    of one name from the same run are intended: the course shows what two servers of one name do.
     """
     for made in _made.alive():
         if made.identity == newcomer and made.run != _cells.current:
@@ -337,5 +337,5 @@ _made.watch()
 _cells.before_each_run(_undo_earlier_run)
 prepare_environment()
 point_at_raising_lines()
-# The threads must be gone before the interpreter goes: see spin_threads.
+# The threads must end before the interpreter does: see spin_threads.
 atexit.register(stop_all, grace=_GRACE_AT_EXIT)

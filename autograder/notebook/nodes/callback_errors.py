@@ -1,4 +1,4 @@
-"""A callback's exception as the student sees it: the traceback once, then a count."""
+"""Show exceptions of callbacks: the traceback once, then a count."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ _HUNG_CALL = (
 
 @dataclass(frozen=True)
 class CallbackError:
-    """One error in a callback, however often it came.
+    """One error in a callback, however often it happened.
 
     Attributes:
         node: The node's name.
-        where: Whose callback it was, such as ``"its timer (every 0.5 s)"``.
-        error: The exception when it came first, with its traceback.
-        count: How often it came.
+        where: The owner of the callback, such as ``"its timer (every 0.5 s)"``.
+        error: The first exception, with its traceback.
+        count: How often the error happened.
     """
 
     node: str
@@ -47,16 +47,16 @@ class CallbackError:
     count: int = 1
 
     def __str__(self) -> str:
-        """One line: where, what and how often."""
+        """Return one line: where, what and how often."""
         times = "" if self.count == 1 else f", {self.count} times"
         return f"{self.node}, in the callback of {self.where}{times}: {_last_line(self.error)}"
 
 
 class CallbackFailedError(PlainlyShownError, RuntimeError):
-    """Raised at the end of ``with spinning(...)`` when a callback raised in it; its traceback is out already.
+    """Raised at the end of ``with spinning(...)`` if a callback raised; the traceback is already shown.
 
     Attributes:
-        errors: What was raised in callbacks, in the order in which it came first.
+        errors: The errors of callbacks, in the order in which they first happened.
     """
 
     def __init__(self, errors: Sequence[CallbackError]) -> None:
@@ -75,7 +75,7 @@ class CallbackErrors:
         self._errors: dict[Any, CallbackError] = {}
 
     def record(self, failure: Failure) -> None:
-        """Take note of an error; show it if it is a new one."""
+        """Record an error, and show it if it is new."""
         key = (type(failure.error), id(failure.entity), last_student_line(failure.error))
         with self._lock:
             known = self._errors.get(key)
@@ -91,12 +91,12 @@ class CallbackErrors:
 
     @property
     def all(self) -> tuple[CallbackError, ...]:
-        """The errors so far, in the order in which they came first."""
+        """Return the errors so far, in the order in which they first happened."""
         with self._lock:
             return tuple(self._errors.values())
 
     def show_counts(self) -> None:
-        """Say how often each error came that came more than once."""
+        """Print how often each repeated error happened."""
         for seen in self.all:
             if seen.count > 1:
                 say(f"Error in {seen}")
@@ -116,7 +116,7 @@ def _report(seen: CallbackError, failure: Failure) -> str:
 
 
 def _hints(failure: Failure) -> list[str]:
-    """The advice on an error that rclpy itself raised after, or instead of, the student's callback."""
+    """Return advice on an error that rclpy itself raised after, or instead of, the student's callback."""
     if isinstance(failure.entity, Timer) and failure.entity.callback is None:
         return [
             "The timer has None for a callback: the method was called when the timer was made, and what it "
@@ -129,13 +129,13 @@ def _hints(failure: Failure) -> list[str]:
 
 
 def _likely_callback(node: Node | None) -> str:
-    """The one method that the student's class has of its own; where there are several, a word for it."""
+    """Return the only method of the student's class, or a general word if there are several."""
     own = [name for name, value in vars(type(node)).items() if callable(value) and not name.startswith("__")]
     return own[0] if len(own) == 1 else "your_method"
 
 
 def describe(entity: Any) -> str:
-    """The owner of the callback, in words."""
+    """Return the owner of the callback in words."""
     if isinstance(entity, Timer):
         return f"its timer (every {entity.timer_period_ns / 1e9:g} s)"
     if isinstance(entity, Subscription):
@@ -155,5 +155,5 @@ def _last_line(error: BaseException) -> str:
 
 
 def _is_milestone(count: int) -> bool:
-    """10, 100, 1000 and so on."""
+    """Return True for 10, 100, 1000 and so on."""
     return count >= 10 and str(count).strip("0") == "1"

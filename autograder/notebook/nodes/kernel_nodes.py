@@ -1,8 +1,8 @@
-"""The nodes in this kernel: noted as each comes into being, and ended so that nothing of it stays on the graph.
+"""Keep a list of the nodes in this kernel, and destroy them so that nothing of them stays on the graph.
 
-rclpy keeps no list of its nodes, and a node that was made and forgotten lives until Python happens to collect
-it: a service of an earlier run of the cell goes on swallowing requests. So each node is noted as it comes
-into being, with the run of a cell that made it.
+rclpy keeps no list of its nodes, and a forgotten node lives until Python collects it: a service from an earlier run
+of the cell would go on answering requests. So this module records each new node, with the run of the cell that
+made it.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _STOPPED = "was stopped while this call was waiting for its answer"
 
 @dataclass(frozen=True)
 class NodeIdentity:
-    """The identity of a node: its full name, on one context's domain.
+    """The full name of a node and its context.
 
     Attributes:
         name: The node's name with its namespace, such as ``"/robot/talker_node"``.
@@ -45,12 +45,12 @@ class NodeIdentity:
 
 @dataclass(frozen=True)
 class MadeNode:
-    """A node, and where it comes from.
+    """A node and the run of the cell that made it.
 
     Attributes:
         node: The node.
-        identity: What it is called.
-        run: The run of a cell that made it; None outside a notebook.
+        identity: The full name of the node and its context.
+        run: The run of the cell; None outside a notebook.
     """
 
     node: Node
@@ -59,10 +59,10 @@ class MadeNode:
 
 
 class MadeNodes:
-    """Notes every node that is made from now on.
+    """Records every node that is made from now on.
 
     Args:
-        current_run: Tells which run of a cell is going on; None outside a notebook.
+        current_run: Returns the current run of a cell; None outside a notebook.
         before_making: Called with the identity of each node that is about to be made.
     """
 
@@ -75,7 +75,7 @@ class MadeNodes:
         self._made: list[tuple[weakref.ref[Node], NodeIdentity, CellRun | None]] = []
 
     def watch(self) -> None:
-        """Begin to take note, by wrapping ``Node.__init__``: rclpy tells of new nodes nowhere else."""
+        """Start recording, by wrapping ``Node.__init__``: rclpy has no other hook for new nodes."""
         plain_init = Node.__init__
 
         @functools.wraps(plain_init)
@@ -98,7 +98,7 @@ class MadeNodes:
             self._made.append((weakref.ref(node), identity, self._current_run()))
 
     def alive(self) -> list[MadeNode]:
-        """The nodes that are on the graph."""
+        """Return the nodes that are on the graph."""
         with self._lock:
             entries = [(reference(), identity, run) for reference, identity, run in self._made]
         return [
@@ -108,14 +108,14 @@ class MadeNodes:
         ]
 
     def on(self, context: Context) -> list[Node]:
-        """The nodes that were made on a context and are still in memory, also those that are destroyed or failed."""
+        """Return the nodes of a context that are in memory, including destroyed and failed ones."""
         with self._lock:
             entries = [(reference(), identity) for reference, identity, _ in self._made]
         return [node for node, identity in entries if node is not None and identity.context is context]
 
 
 def _identity_to_be(node_name: str, options: dict[str, Any]) -> NodeIdentity:
-    """The name that a node made with these options of ``Node.__init__`` will have."""
+    """Return the identity that a node with these options of ``Node.__init__`` will have."""
     namespace = str(options.get("namespace") or "").strip("/")
     return NodeIdentity(
         name="/".join(["", *filter(None, [namespace]), str(node_name)]),
@@ -124,7 +124,7 @@ def _identity_to_be(node_name: str, options: dict[str, Any]) -> NodeIdentity:
 
 
 def _has_begun(node: Node) -> bool:
-    """True if the node is neither destroyed nor gave up half-way through its ``__init__``."""
+    """Return True if the node is not destroyed and its ``__init__`` did not fail."""
     try:
         return not is_destroyed(node)
     except AttributeError:
@@ -132,33 +132,33 @@ def _has_begun(node: Node) -> bool:
 
 
 class NodeEndedError(RuntimeError):
-    """The node has ended: it was destroyed, or ROS was shut down under it."""
+    """The node was destroyed, or ROS was shut down."""
 
 
 def destroy_node(node: Node) -> None:
-    """Destroy a node with all that hangs on it; harmless for one that is destroyed already.
+    """Destroy a node with its action servers and clients; harmless if it is already destroyed.
 
-    ``Node.destroy_node`` leaves action servers and clients alone, and as long as one of them lives the node
-    stays on the graph: goals would still be sent to it. Whoever waits for an answer to a call through this
-    node is woken with a ``NodeEndedError``, as that answer can no longer come.
+    ``Node.destroy_node`` does not destroy action servers and clients, and as long as one of them lives, the node
+    stays on the graph: clients would still send it goals. Code that waits for an answer through this node
+    gets a ``NodeEndedError``, because the answer can no longer come.
     """
     release_waiting_calls(node)
     for waitable in _parts(node, "waitables"):
         if hasattr(waitable, "destroy"):
             with suppress(InvalidHandle):
                 waitable.destroy()
-    # A node whose __init__ failed half-way lacks some of its parts.
+    # A node whose __init__ failed lacks some of its parts.
     with suppress(InvalidHandle, AttributeError):
         node.destroy_node()
 
 
 def node_label(node: Any) -> str:
-    """The node's name; its class where the node cannot be asked any more."""
+    """Return the node's name, or its class if the node is destroyed."""
     if node is None:
         return "a node"
     try:
         return str(node.get_name())
-    except (InvalidHandle, AttributeError):  # destroyed, or its super().__init__() was never called
+    except (InvalidHandle, AttributeError):  # destroyed, or super().__init__() was never called
         return type(node).__name__
 
 
@@ -172,21 +172,21 @@ def is_destroyed(node: Node) -> bool:
 
 
 def release_waiting_calls(node: Node) -> None:
-    """Wake everybody who waits for a service's or an action's answer through this node."""
+    """End each wait for a service's or an action's answer through this node."""
     error = NodeEndedError(f"{node_label(node)} {_STOPPED}")
     for future in list(_pending_answers(node)):
         if not future.done():
             with warnings.catch_warnings():
-                # A callback that asks for the answer gets this error. rclpy would warn of it, though all is as meant.
+                # A callback that reads the answer gets this error, as intended. rclpy would warn of it.
                 warnings.filterwarnings("ignore", f".* {_STOPPED}", UserWarning)
                 future.set_exception(error)
-            # Nobody needs to look at it: unfetched exceptions are written to stderr when the future is
+            # Mark the exception as read: otherwise it is written to stderr when the future is
             # collected.
             future.exception()
 
 
 def _pending_answers(node: Node) -> Iterator[Future]:
-    # rclpy keeps what it waits for in dicts by sequence number (rclpy/client.py, rclpy/action/client.py).
+    # rclpy keeps pending futures in dicts by sequence number (rclpy/client.py, rclpy/action/client.py).
     for client in (*_parts(node, "clients"), *_parts(node, "waitables")):
         for name, requests in vars(client).items():
             if name.startswith("_pending_") and isinstance(requests, dict):
@@ -194,7 +194,7 @@ def _pending_answers(node: Node) -> Iterator[Future]:
 
 
 def _parts(node: Node, kind: str) -> list[Any]:
-    """The node's ``clients`` or ``waitables``; none where its ``__init__`` did not get that far."""
+    """Return the node's ``clients`` or ``waitables``; none if its ``__init__`` failed before making them."""
     try:
         return list(getattr(node, kind))
     except AttributeError:

@@ -1,8 +1,8 @@
-"""The two executors of rclpy, made aware of somebody taking one of their nodes away, and of goals that fail.
+"""Extend rclpy's two executors: they take back nodes that rclpy moves away, and report goals that fail.
 
 A node is in one executor at a time. ``rclpy.spin_once(node)`` and ``rclpy.spin_until_future_complete(node,
-…)`` move it into rclpy's global executor and afterwards leave it in none: a node that spun in the background
-is deaf from then on (``rclpy/__init__.py``, ``rclpy/node.py``). These executors lend the node instead, and
+…)`` move it into rclpy's global executor and afterwards leave it in none: a node that spun in the background no
+longer receives anything (``rclpy/__init__.py``, ``rclpy/node.py``). These executors lend the node instead, and
 take it back.
 """
 
@@ -28,16 +28,16 @@ if TYPE_CHECKING:
 
 
 def report_goal_errors(task: Any, arguments: tuple[Any, ...], report: GoalErrorReport) -> tuple[Any, ...]:
-    """The arguments for a task of an executor, changed where it is an action server's that executes a goal.
+    """Return the arguments for a task of an executor, changed if the task executes a goal of an action server.
 
     rclpy catches an error of the execute callback itself and prints the traceback on standard error, among lines of
-    its own (``ActionServer._execute_goal`` in ``rclpy/action/server.py``). Here it takes the way of all other
-    callbacks' errors, and the goal still ends as it does there: aborted, with an empty result.
+    its own (``ActionServer._execute_goal`` in ``rclpy/action/server.py``). Here it is reported like all other
+    callbacks' errors, and the goal still ends as in rclpy: aborted, with an empty result.
 
     Args:
         task: The function that the executor is to run.
-        arguments: What it is to be given.
-        report: Called with an error of the execute callback, and the server.
+        arguments: The arguments of the task.
+        report: Called with an error of the execute callback and the server.
     """
     server = getattr(task, "__self__", None)
     if not isinstance(server, ActionServer) or getattr(task, "__name__", "") != "_execute_goal":
@@ -77,9 +77,9 @@ class Taken:
 
     Attributes:
         node: The node.
-        caller: The rclpy function that took it, such as ``"spin_once"``; None where it was another executor's
-            ``add_node``.
-        comes_back: Whether the node returns when that function ends.
+        caller: The rclpy function that took the node, such as ``"spin_once"``; None if another executor's
+            ``add_node`` took it.
+        comes_back: True if the node returns when that function ends.
     """
 
     node: Node
@@ -88,21 +88,21 @@ class Taken:
 
 
 class LendingExecutor(Executor):
-    """The additions of both executors of this module to rclpy's."""
+    """What both executors of this module add to rclpy's."""
 
     on_taken: Callable[[Taken], None] | None = None
-    """Called in the thread that takes a node, before it is gone."""
+    """Called in the thread that takes a node, before it takes it."""
     on_goal_error: GoalErrorReport | None = None
     """Called with an error of an action server's execute callback."""
 
     def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task:
-        """Have something run; rclpy's action servers have their goals executed so."""
+        """Schedule a task; rclpy's action servers execute goals this way."""
         if self.on_goal_error is not None:
             args = report_goal_errors(callback, args, self.on_goal_error)
         return super().create_task(callback, *args, **kwargs)
 
     def release(self, node: Node) -> None:
-        """Let a node go for good, without a word."""
+        """Remove a node for good, without reporting it."""
         on_taken, self.on_taken = self.on_taken, None
         try:
             super().remove_node(node)
@@ -110,7 +110,7 @@ class LendingExecutor(Executor):
             self.on_taken = on_taken
 
     def remove_node(self, node: Node) -> None:
-        """Called by rclpy when another executor takes the node."""
+        """Lend the node; rclpy calls this when another executor takes it."""
         had_it = node in self.get_nodes()
         super().remove_node(node)
         if not had_it or self.on_taken is None:
@@ -121,7 +121,7 @@ class LendingExecutor(Executor):
         self.on_taken(Taken(node, _spinning_function(sys._getframe(1)), comes_back=borrower is not None))
 
     def take_back(self, node: Node) -> None:
-        """Spin a node again that was lent."""
+        """Spin a lent node again."""
         if self.on_taken is not None:
             self.add_node(node)
 
@@ -135,33 +135,33 @@ class LendingMultiThreadedExecutor(LendingExecutor, MultiThreadedExecutor):
 
 
 def make_executor(threads: int, context: Context) -> LendingExecutor:
-    """The executor for so many threads, on the nodes' own context."""
+    """Return an executor with this number of threads, on the nodes' own context."""
     if threads == 1:
         return LendingSingleThreadedExecutor(context=context)
     return LendingMultiThreadedExecutor(num_threads=threads, context=context)
 
 
 def wake_global_executor() -> None:
-    """Bring a callback that waits within ``rclpy.spin_once()`` back to Python for a moment."""
+    """Wake a callback that waits inside ``rclpy.spin_once()``, so that it runs Python for a moment."""
     executor = _global_executor()
     if executor is not None:
         executor.wake()
 
 
 def _global_executor() -> Executor | None:
-    """The executor of ``rclpy.spin`` and the like, if there is one; rclpy's own function would make one."""
+    """Return the executor of ``rclpy.spin`` if there is one; rclpy's own function would create one."""
     executor: Executor | None = getattr(rclpy, "__executor", None)
     return executor
 
 
 def _global_executor_holding(node: Node) -> Executor | None:
-    """The global executor, if that is the one which has just added the node."""
+    """Return the global executor if it is the one that has just added the node."""
     executor = _global_executor()
     return executor if executor is not None and node in executor.get_nodes() else None
 
 
 def _return_afterwards(borrower: Executor, node: Node, owner: LendingExecutor) -> None:
-    """Have the borrower give the node back when it removes it."""
+    """Make the borrower return the node when it removes it."""
     loans: dict[int, LendingExecutor] | None = borrower.__dict__.get(_LOANS)
     if loans is None:
         loans = {}
@@ -183,7 +183,7 @@ def _hook_remove_node(borrower: Any, loans: dict[int, LendingExecutor]) -> None:
 
 
 def _spinning_function(frame: FrameType | None) -> str | None:
-    """The function of rclpy, called by the student, that is taking the node."""
+    """Return the rclpy function, called by the student, that is taking the node."""
     while frame is not None:
         if frame.f_globals.get("__name__") == "rclpy" and frame.f_code.co_name in _RCLPY_SPINS:
             return frame.f_code.co_name

@@ -1,4 +1,4 @@
-"""ROS in a notebook's kernel: started once, on a domain of its own, and shut down when the kernel ends."""
+"""Start ROS in a notebook's kernel, once, on a domain of its own, and shut it down when the kernel ends."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from autograder.ros_domain import (
 _CHECK_FIELDS = "ROS_PYTHON_CHECK_FIELDS"
 
 _DEFAULTS = {
-    # A log line on stderr makes stock nbgrader give a right answer no points.
+    # If a log line is on stderr, stock nbgrader gives a right answer no points.
     "RCUTILS_LOGGING_USE_STDOUT": "1",
     "RCUTILS_COLORIZED_OUTPUT": "0",
-    # Line by line. Where a kernel's output does not go to a terminal (a batch, a hub), C's library would keep
-    # log lines back until there are 4 KB of them, and they would come under another cell or never.
+    # Write each line at once. If a kernel's output does not go to a terminal (a batch, a hub), the C library keeps
+    # log lines back until there are 4 KB, and they would appear below another cell or never.
     "RCUTILS_LOGGING_BUFFERED_STREAM": "1",
-    # A field of the wrong type is named at once, instead of arriving as garbage.
+    # Report a field of the wrong type at once, instead of sending garbage.
     _CHECK_FIELDS: "1",
 }
 _DISCOVERY_VARIABLES = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
@@ -36,11 +36,11 @@ _DISCOVERY_VARIABLES = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
 
 @dataclass(frozen=True, repr=False)
 class RosSession:
-    """The state of ROS in this kernel, once it is up.
+    """The state of ROS in this kernel after its start.
 
     Attributes:
-        domain: The ROS domain that the kernel's nodes are on.
-        picked: Whether ``start_ros`` picked that domain, as ``ROS_DOMAIN_ID`` did not name one.
+        domain: The ROS domain of the kernel's nodes.
+        picked: True if ``start_ros`` chose the domain because ``ROS_DOMAIN_ID`` was not set.
     """
 
     domain: int
@@ -59,10 +59,10 @@ _claim: DomainClaim | None = None
 
 
 def prepare_environment() -> None:
-    """Give ROS the settings a notebook needs, where the user has not chosen any.
+    """Set the environment variables that ROS needs in a notebook, unless the user has set them.
 
-    Logs go to standard output without colour codes, message fields are type-checked, and discovery stays on
-    this host. The settings are exported, so that what a cell starts as a process has them too.
+    Logs go to standard output without color codes, message fields are type-checked, and discovery stays on
+    this host. Processes that a cell starts inherit the settings.
     """
     for name, value in _DEFAULTS.items():
         os.environ.setdefault(name, value)
@@ -73,7 +73,7 @@ def prepare_environment() -> None:
 
 
 def _check_fields_of_imported_messages() -> None:
-    """Switch the checks on in generated modules that were imported before the variable was set.
+    """Switch on type checks in generated modules that were imported before the variable was set.
 
     Each of them reads the variable once, at import, into a global that its messages' constructors look up
     (``rosidl_generator_py/resource/_msg.py.em``).
@@ -85,14 +85,14 @@ def _check_fields_of_imported_messages() -> None:
 
 
 def start_ros() -> RosSession:
-    """Start ROS in this kernel; where it is up already, only say so.
+    """Start ROS in this kernel; if it already runs, only report that.
 
-    The domain is the one in ``ROS_DOMAIN_ID``. Where that is not set, a domain nobody uses is picked, held until the
-    kernel ends, and exported, so that processes started from the notebook join it. ROS installs no signal handlers:
+    The domain is the one in ``ROS_DOMAIN_ID``. If that is not set, a free domain is chosen, held until the kernel
+    ends, and exported, so that processes started from the notebook use it. ROS installs no signal handlers:
     interrupting the kernel stops the cell and leaves the nodes alone. After ``rclpy.shutdown()`` it starts ROS again.
 
     Raises:
-        ValueError: ``ROS_DOMAIN_ID`` is set to something that is no domain.
+        ValueError: ``ROS_DOMAIN_ID`` is not the number of a domain.
         NoFreeDomainError: Every domain on this host is in use.
     """
     with _lock:
@@ -100,7 +100,7 @@ def start_ros() -> RosSession:
         if ok():
             _drop_signal_handlers()
         else:
-            # Forgets a default context that was shut down, so that a fresh one takes its place.
+            # Drop a default context that was shut down, so that a new one replaces it.
             try_shutdown()
             rclpy.init(args=[], domain_id=_session_domain(), signal_handler_options=SignalHandlerOptions.NO)
         domain = get_default_context().get_domain_id()
@@ -109,7 +109,7 @@ def start_ros() -> RosSession:
 
 
 def _drop_signal_handlers() -> None:
-    """Someone called ``rclpy.init()`` first: its handlers would end ROS when the kernel is interrupted."""
+    """Remove the handlers of an earlier ``rclpy.init()``, which would end ROS when the kernel is interrupted."""
     if get_current_signal_handlers_options() != SignalHandlerOptions.NO:
         uninstall_signal_handlers()
 
@@ -124,5 +124,5 @@ def _session_domain() -> int:
     return domain
 
 
-# Registered before the executors' own exit handler, therefore run after it: nodes end first, then ROS.
+# Registered before the executors' own exit handler, so it runs after that: nodes end first, then ROS.
 atexit.register(try_shutdown)

@@ -1,14 +1,14 @@
-"""The threads that spin nodes in the background, and how they end.
+"""Spin nodes in background threads, and end these threads.
 
 Three properties of rclpy shape this file (``rclpy/executors.py`` of Jazzy):
 
-* an exception in a callback leaves ``spin``, so the thread would end and every node with it fall silent;
-* ``Executor.shutdown`` tears the executor down while another thread still waits in it, so the thread leaves
+* an exception in a callback leaves ``spin``, so the thread would end and all of its nodes would stop;
+* ``Executor.shutdown`` destroys the executor even if another thread still waits in it, so the thread must leave
   first;
 * nodes hold their executor by a weak reference only, so it is kept here.
 
-And one of Python's: a thread that still runs rclpy when the interpreter ends aborts the whole process. So
-every thread is joined, and a callback that never returns is broken off.
+And one property of Python: a thread that still runs rclpy when the interpreter ends aborts the whole process. So
+every thread is joined, and a callback that does not return is interrupted by an exception.
 """
 
 from __future__ import annotations
@@ -38,26 +38,26 @@ if TYPE_CHECKING:
     from rclpy.task import Task
 
 GRACE = 2.0
-"""Seconds that a running callback has to return by itself once its nodes are to stop."""
+"""Seconds that a running callback has to return by itself after a stop was asked for."""
 _RELEASE_EVERY = 0.05
-"""Seconds between two looks for calls that wait for an answer."""
+"""Seconds between two searches for calls that wait for an answer."""
 _LAST_GRACE = 1.0
-"""Seconds that a callback has to end once it is broken off."""
+"""Seconds that an interrupted callback has to end."""
 _ATTEMPTS = 3
 _LONG_WAIT = 1.0
-"""A call that waited longer than this, in seconds, when its node was stopped, hung."""
+"""Seconds; a call that had waited longer than this when its node was stopped counts as hung."""
 _MAX_FAILED_WAITS = 10
 
 
 class CallbackBrokenOff(BaseException):
-    """Raised inside a callback that has not returned although its node is to stop."""
+    """Raised inside a callback that does not return although its node must stop."""
 
     def __str__(self) -> str:
         return "the callback did not return when its node was told to stop; it was broken off here"
 
 
 class Ending(Enum):
-    """The reason why nodes no longer spin."""
+    """The reasons why nodes no longer spin."""
 
     STOPPED = "stopped"
     ROS_SHUT_DOWN = "ROS was shut down"
@@ -67,13 +67,13 @@ class Ending(Enum):
 
 @dataclass(frozen=True)
 class Failure:
-    """A callback raised an exception.
+    """An exception of a callback.
 
     Attributes:
-        error: What it raised, with its traceback.
-        entity: The timer, subscription, service or the like whose callback it was; None for a task.
-        node: Its node; None for a task.
-        goes_on: Whether the nodes go on spinning.
+        error: The exception, with its traceback.
+        entity: The owner of the callback, such as a timer, subscription or service; None for a task.
+        node: The node of the owner; None for a task.
+        goes_on: True if the nodes go on spinning.
     """
 
     error: BaseException
@@ -96,13 +96,13 @@ class _Running:
 
 
 class SpinThreads:
-    """Spins nodes in threads of their own until told to stop, then destroys them.
+    """Spins nodes in separate threads until stopped, then destroys them.
 
     Args:
         nodes: At least one, all of one context.
-        threads: How many callbacks may run at a time; more than one makes it a multi-threaded executor.
+        threads: How many callbacks may run at a time; more than one needs a multi-threaded executor.
         on_failure: Called for each callback that raised, in the thread that ran it.
-        on_end: Called once when all has ended, in whichever thread saw to it.
+        on_end: Called once after the end, in the thread that finished it.
     """
 
     def __init__(
@@ -133,41 +133,41 @@ class SpinThreads:
         self._alive = len(self._threads)
 
     def _make_thread(self, job: Callable[[], None]) -> threading.Thread:
-        # A daemon: Python joins all other threads before it runs exit handlers, so that one stuck callback
+        # A daemon thread: Python joins all other threads before it runs exit handlers, so that one stuck callback
         # would keep the kernel from ever ending.
         return threading.Thread(target=self._thread, args=(job,), name="ros-spin", daemon=True)
 
     @property
     def nodes(self) -> tuple[Node, ...]:
-        """The nodes that it spins and will destroy."""
+        """The nodes that spin and will be destroyed."""
         return self._nodes
 
     @property
     def running(self) -> bool:
-        """True if the nodes are spun and nobody has asked to stop."""
+        """True if the nodes spin and no stop was asked for."""
         return self._threads[0].is_alive() and not self._stop.is_set()
 
     def is_own_thread(self) -> bool:
-        """True if the caller is one of the callbacks."""
+        """Return True if the caller is one of the callbacks."""
         return threading.current_thread() in self._threads
 
     def start(self) -> None:
-        """Begin to spin."""
+        """Start spinning."""
         for node in self._nodes:
             self.executor.add_node(node)
         for thread in self._threads:
             thread.start()
 
     def let_go(self, node: Node) -> None:
-        """Stop spinning one node, which is not destroyed."""
+        """Stop spinning one node without destroying it."""
         self.executor.release(node)
         self._nodes = tuple(other for other in self._nodes if other is not node)
 
     def stop(self, grace: float = GRACE) -> None:
         """Stop spinning, wait for the callbacks that are running, and destroy the nodes.
 
-        A callback that does not return is broken off and reported as a failure. Called from within a
-        callback, this only asks: the end comes after that callback.
+        A callback that does not return is interrupted and reported as a failure. Called from inside a
+        callback, this only asks for the stop: it happens after that callback.
 
         Args:
             grace: Seconds that a running callback has to return by itself.
@@ -180,11 +180,11 @@ class SpinThreads:
         self._finish()
 
     def _await_callbacks(self, grace: float) -> bool:
-        """Wait for the callbacks that are running; whether they returned."""
+        """Wait for the callbacks that are running. Return True if they have returned."""
         deadline = time.monotonic() + grace
         while True:
-            # Nobody takes an answer from the wire any more: a callback that waits for one would wait for ever. It may
-            # make its call only now.
+            # Answers are no longer received: a callback that waits for one would wait forever. It may
+            # call only now.
             for node in self._nodes:
                 release_waiting_calls(node)
             left = deadline - time.monotonic()
@@ -202,7 +202,7 @@ class SpinThreads:
             self.executor.wake()
 
     def _join(self, limit: float) -> bool:
-        """Wait for all threads to end, ``limit`` seconds at most; whether they did."""
+        """Wait at most ``limit`` seconds for all threads to end. Return True if they have ended."""
         deadline = time.monotonic() + limit
         for thread in self._threads:
             if thread.ident is not None:
@@ -216,7 +216,7 @@ class SpinThreads:
             wake_global_executor()
             if self._join(_LAST_GRACE / _ATTEMPTS):
                 return
-        # Stuck outside Python, or catching everything. The thread is left behind: it runs no rclpy, so that
+        # The callback is stuck outside Python, or catches everything. Leave the thread: it runs no rclpy, so
         # it does no harm when the interpreter ends.
         frames = sys._current_frames()
         for ident, running in list(self._running.items()):
@@ -224,7 +224,7 @@ class SpinThreads:
             self._on_failure(Failure(error, running.work.entity, running.work.node, goes_on=False))
 
     def _finish(self) -> None:
-        """Take everything down; whoever comes first does it."""
+        """Destroy nodes and executor; the first thread that calls this does it."""
         with self._finish_lock:
             if self._finished:
                 return
@@ -238,19 +238,19 @@ class SpinThreads:
         self._on_end(self._ending)
 
     def _close_unfinished_tasks(self) -> None:
-        """Close coroutines that will not run any more: Python complains on stderr of any never awaited."""
+        """Close coroutines that will not run any more: Python would warn of them on stderr."""
         for task, *_ in list(getattr(self.executor, "_tasks", ())):
             if not task.executing():
                 with suppress(Exception):
                     task.cancel()
 
-    # What follows runs in the threads.
+    # The methods below run in the threads.
 
     def _thread(self, job: Callable[[], None]) -> None:
         try:
             job()
         except CallbackBrokenOff:
-            pass  # It came a moment after the callback had returned.
+            pass  # The interruption came after the callback had returned.
         finally:
             with self._lock:
                 self._alive -= 1
@@ -259,13 +259,13 @@ class SpinThreads:
                 self._finish()
 
     def _take_work(self) -> None:
-        """Wait on the wire and hand out what there is to do, until told to stop."""
+        """Wait for messages and run their callbacks until stopped."""
         failed_waits = 0
         try:
             while not self._stop.is_set():
                 try:
                     work = self._next_work()
-                except Exception as error:  # Such as InvalidHandle, of a node destroyed at this moment.
+                except Exception as error:  # such as InvalidHandle if a node is just being destroyed
                     failed_waits += 1
                     if failed_waits == _MAX_FAILED_WAITS:
                         self._on_failure(Failure(error, goes_on=False))
@@ -279,7 +279,7 @@ class SpinThreads:
                 self._to_workers.put(None)
 
     def _next_work(self) -> _Work | None:
-        """The next callback that is ready; None where there is reason to look again."""
+        """Return the next callback that is ready; None to look again."""
         try:
             if not self._context.ok():
                 raise ExternalShutdownException
@@ -287,7 +287,7 @@ class SpinThreads:
         except (ExternalShutdownException, ShutdownException):
             self._ask_to_stop(Ending.ROS_SHUT_DOWN)
         except ConditionReachedException:
-            pass  # Told to stop.
+            pass  # stopped
         return None
 
     def _hand_out(self, work: _Work) -> None:
@@ -299,7 +299,7 @@ class SpinThreads:
 
     def _run_queued_work(self) -> None:
         while (work := self._to_workers.get()) is not None:
-            # Before it runs: while a callback awaits something, its task is offered again and again.
+            # Before it runs, because rclpy offers the task of a callback that awaits something again and again.
             self._queued.discard(work.task)
             if not self._stop.is_set():
                 self._run(work)
@@ -324,7 +324,7 @@ class SpinThreads:
         self._on_failure(Failure(error, entity, node, goes_on=not self._stop.is_set()))
 
     def _is_of_the_end(self, error: BaseException, running: _Running) -> bool:
-        """True if a callback failed only because its node was stopped in the midst of a healthy call."""
+        """Return True if a callback failed only because its node was stopped during a healthy call."""
         waited = time.monotonic() - running.since
         return self._stop.is_set() and isinstance(error, NodeEndedError) and waited < _LONG_WAIT
 
@@ -333,14 +333,14 @@ def raise_in_thread(ident: int, error: type[BaseException]) -> None:
     """Raise in another thread, at the next line of Python that it runs.
 
     Args:
-        ident: The thread's.
-        error: The class of what is raised.
+        ident: The id of the thread.
+        error: The class of the exception.
     """
     ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(ident), ctypes.py_object(error))
 
 
 def _traceback_of(frame: FrameType | None) -> TracebackType | None:
-    """The traceback of a running thread, in the form in which exceptions carry it."""
+    """Return the stack of a running thread as a traceback."""
     traceback = None
     while frame is not None:
         traceback = TracebackType(traceback, frame, frame.f_lasti, frame.f_lineno)

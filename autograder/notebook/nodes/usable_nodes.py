@@ -1,4 +1,4 @@
-"""A check of what a student wants to spin: an error names the mistake where that cannot be spun."""
+"""Check what a student wants to spin, and name the mistake if it cannot be spun."""
 
 from __future__ import annotations
 
@@ -13,31 +13,31 @@ from autograder.notebook.nodes.lending_executors import LendingExecutor
 
 
 class NotANodeError(PlainlyShownError, TypeError):
-    """Something else than a node was given."""
+    """An argument is not a node."""
 
 
 class UnusableNodeError(PlainlyShownError, NodeEndedError):
-    """The node has ended, or never quite began."""
+    """The node has ended, or its ``__init__`` did not finish."""
 
 
 class NodeBusyError(PlainlyShownError, RuntimeError):
-    """The node spins already."""
+    """The node already spins."""
 
 
 class SettingError(PlainlyShownError, ValueError):
-    """A setting, such as the number of threads, that cannot be."""
+    """A setting, such as the number of threads, is not valid."""
 
 
 def check_nodes(caller: str, nodes: tuple[Any, ...]) -> None:
-    """See that all nodes can be spun together.
+    """Check that all nodes can be spun together.
 
     Args:
         caller: The function that was called, for the messages.
-        nodes: What it was given.
+        nodes: The arguments of that call.
 
     Raises:
-        NotANodeError: Something is not a node, or there is none.
-        UnusableNodeError: A node was destroyed, its ROS shut down, or its ``__init__`` skipped.
+        NotANodeError: An argument is not a node, or there is none.
+        UnusableNodeError: A node was destroyed, its ROS was shut down, or its ``__init__`` was skipped.
         NodeBusyError: A node spins already, or is given twice.
     """
     if not nodes:
@@ -56,10 +56,10 @@ def check_nodes(caller: str, nodes: tuple[Any, ...]) -> None:
 
 
 def check_threads(threads: Any) -> None:
-    """See that a number of threads is one.
+    """Check that a number of threads is valid.
 
     Raises:
-        SettingError: It is not a whole number from 1 on.
+        SettingError: The number is not a whole number from 1 on.
     """
     if not isinstance(threads, int) or isinstance(threads, bool) or threads < 1:
         raise SettingError(f"threads must be a whole number from 1 on, not {threads!r}")

@@ -1,1 +1,1 @@
-"""The running graph for students: live pictures, plots and recordings."""
+"""Show students the running graph: live pictures, plots and recordings."""

@@ -1,8 +1,8 @@
-"""The layout of a graph's boxes and arrows: in columns, from what gives to what takes.
+"""Lay out a graph's boxes and arrows in columns, from publisher to subscriber.
 
-igraph decides which arrows close a circle, which box is in which column, in which order, and by which way a long arrow
-passes the columns between (Sugiyama's layered drawing). Here it becomes pixels: each arrow has a point of its own on
-the edge of a box, so that one that closes a circle never begins where another one ends.
+igraph decides which arrows close a cycle, which box is in which column, in which order, and how a long arrow
+passes the columns between (Sugiyama's layered drawing). This module computes pixels: each arrow has its own point on
+the edge of a box, so that an arrow that closes a cycle never begins where another one ends.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 Point = tuple[float, float]
-"""Pixels along the way that most arrows take, and beside it."""
+"""Pixels along the main direction of the arrows, and across it."""
 
 SWEEPS = 100
-"""The number of times that igraph goes through the columns to have fewer arrows cross."""
+"""The number of passes in which igraph reduces crossings of arrows."""
 GAP_BESIDE = 24
 """Pixels between two boxes of a column."""
 _PORTS = 0.72
-"""The part of a box's edge along which arrows begin and end."""
+"""The part of a box's edge, from 0 to 1, on which arrows begin and end."""
 
 
 @dataclass(frozen=True)
@@ -40,8 +40,8 @@ class Layout:
 
     Attributes:
         centres: The middle of each box.
-        arrows: In the order in which they were given.
-        extent: What all of it takes, along and beside.
+        arrows: The arrows, in the order of the input.
+        extent: The size of the whole layout, along and across.
     """
 
     centres: Mapping[str, Point]
@@ -53,11 +53,11 @@ def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: 
     """Place boxes and arrows, from 0 on.
 
     Args:
-        sizes: For each box how much it takes, along and beside.
-        arrows: Pairs of boxes, from and to. What leads from a box to itself is left out.
+        sizes: The size of each box, along and across.
+        arrows: Pairs of boxes, from and to. Arrows from a box to itself are left out.
         gap: Pixels between two columns.
     """
-    import igraph  # at the first picture: a notebook without one need not wait for it
+    import igraph  # at the first picture, so that a notebook without a picture need not wait for it
 
     boxes = list(sizes)
     drawn = [(a, b) for a, b in dict.fromkeys(arrows) if a != b]
@@ -65,7 +65,7 @@ def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: 
         return Layout({}, (), (0.0, 0.0))
     number = {box: index for index, box in enumerate(boxes)}
     edges = [(number[a], number[b]) for a, b in drawn]
-    # Turned round before: of those that igraph 1.0 turns itself, it gives the ways of other arrows.
+    # Reverse these arrows first: igraph 1.0 returns wrong routes for arrows that it reverses itself.
     back = set(igraph.Graph(n=len(boxes), edges=edges, directed=True).feedback_arc_set(method="eades"))
     onward = [(b, a) if index in back else (a, b) for index, (a, b) in enumerate(edges)]
     graph = igraph.Graph(n=len(boxes), edges=onward, directed=True)
@@ -95,7 +95,7 @@ def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: 
 
 
 def _push_apart(places: Sequence[list[float]]) -> None:
-    """Let no two in a column be nearer than one: igraph's gap is not always kept."""
+    """Keep boxes of a column at least one unit apart: igraph does not always keep its gap."""
     last: dict[int, float] = {}
     for place in sorted(places):
         column = round(place[1])
@@ -104,7 +104,7 @@ def _push_apart(places: Sequence[list[float]]) -> None:
 
 
 def _columns(columns: Sequence[int], widths: Sequence[float], gap: float) -> list[float]:
-    """The middle of each column: as wide as its widest box."""
+    """Return the middle of each column, which is as wide as its widest box."""
     middles = []
     edge = 0.0
     for column in range(max(columns) + 1):
@@ -117,7 +117,7 @@ def _columns(columns: Sequence[int], widths: Sequence[float], gap: float) -> lis
 def _with_ports(
     drawn: Sequence[tuple[str, str]], ways: Sequence[list[Point]], sizes: Mapping[str, Point]
 ) -> tuple[Arrow, ...]:
-    """The arrows with their ends on the edges of boxes, spread in the order in which they leave to other places."""
+    """Return the arrows with their ends spread on the edges of boxes, in the order of their directions."""
     ends: dict[tuple[str, bool], list[tuple[float, int, bool]]] = {}
     for index, ((a, b), way) in enumerate(zip(drawn, ways, strict=True)):
         onward = way[-1][0] > way[0][0]

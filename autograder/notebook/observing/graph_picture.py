@@ -1,7 +1,7 @@
-"""A picture of the running graph, also a live one: nodes, and the topics, services and actions between them.
+"""Draw the running graph, once or live: nodes, and the topics, services and actions between them.
 
-It is SVG, with the same in words beside it for those who cannot see it. JupyterLab's theme does not reach into it, so
-its dark form is the light one with the brightness turned round.
+The picture is SVG, with the same content in words for readers who cannot see it. JupyterLab's theme does not apply
+inside it, so the dark form is the light one with inverted brightness.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ if TYPE_CHECKING:
 PERIOD = 1.0
 """Seconds between two looks at the graph."""
 AGAIN = 10.0
-"""Seconds after which a picture with traffic is shown again: its lines flow only a little longer than that by
-themselves, so that nothing flows in a picture whose kernel has gone."""
+"""Seconds after which a picture with traffic is shown again. The animation of its lines lasts only a little longer, so
+that it stops if the kernel has ended."""
 _DARK = '<style>[data-jp-theme-light="false"] .ros-graph { filter: invert(0.93) hue-rotate(180deg); }</style>'
-"""The hues stay what they are."""
+"""Inverts the brightness and keeps the hues."""
 
 # Pixels.
 _LETTER = 7.3
@@ -38,7 +38,7 @@ _GAP_ALONG = 52
 _GAP_ALONG_DOWN = 34
 _MARGIN = 12
 _PAGE = 860
-"""The width of a notebook's column; a wider picture is drawn from top to bottom, where that is narrower."""
+"""The width of a notebook's column; a wider picture is drawn from top to bottom if that is narrower."""
 
 _STYLE = """
 .ground { fill: #fff; }
@@ -58,10 +58,10 @@ path.flows { stroke: #0b5cad; stroke-dasharray: 7 5; animation: flow 0.8s linear
 
 
 def draw_graph() -> GraphPicture:
-    """A picture of what runs now, to be shown at the end of a cell.
+    """Return a picture of the present graph, to be shown at the end of a cell.
 
-    It shows every node that this kernel's ROS domain has, also those of other programs. What every node has
-    (its log, its parameters) is left out.
+    It shows every node of this kernel's ROS domain, including those of other programs. The endpoints of every node
+    (for its log and parameters) are left out.
     """
     return GraphPicture(read_graph())
 
@@ -69,13 +69,13 @@ def draw_graph() -> GraphPicture:
 def watch_graph(minutes: float = 10.0) -> LivePicture:
     """Show the running graph below this cell, and draw it again as nodes come and go.
 
-    Lines with traffic flow, and each topic carries its rate. The watch ends by itself after a while, when the cell is
+    Lines with traffic move, and each topic shows its rate. The watch ends by itself after a while, when the cell is
     run again, when another watch begins, when everything is stopped or ROS is shut down; its last picture stays. To
-    count, it subscribes to the topics with a node of a hidden name: ``ros2 topic info`` counts one subscription more
+    count messages, a hidden node subscribes to the topics, so ``ros2 topic info`` counts one more subscription
     meanwhile.
 
     Args:
-        minutes: How long it goes on at most.
+        minutes: Limit in minutes.
 
     Raises:
         ValueError: ``minutes`` is not a positive number.
@@ -90,15 +90,15 @@ class GraphPicture:
     """A graph that JupyterLab shows as a picture and that reads as text anywhere else.
 
     Attributes:
-        graph: What runs.
-        rates: Messages in a second on topics, where that is known.
+        graph: The nodes and their connections.
+        rates: Messages per second of each topic, if known.
     """
 
     graph: RosGraph
     rates: Mapping[Channel, float] = field(default_factory=dict)
 
     def __repr__(self) -> str:
-        """The graph in words."""
+        """Return the graph in words."""
         return "\n".join(self.sentences())
 
     def _repr_html_(self) -> str:
@@ -109,7 +109,7 @@ class GraphPicture:
         return f"{_DARK}{image}<details><summary>The graph in words</summary><ul>{items}</ul></details>"
 
     def svg(self) -> str:
-        """The picture alone."""
+        """Return the picture as SVG."""
         labels = {_node_key(node): _Label("node", node) for node in self.graph.nodes}
         labels |= {_channel_key(c): _Label(c.kind, c.name, c.type) for c in self.graph.channels}
         rates = {_channel_key(channel): f"{rate:g}/s" for channel, rate in self.rates.items() if rate}
@@ -117,11 +117,11 @@ class GraphPicture:
 
     @property
     def is_moving(self) -> bool:
-        """True if anything flows in it."""
+        """True if a line of the picture moves."""
         return any(self.rates.values())
 
     def sentences(self) -> list[str]:
-        """The graph in words, a sentence for each node and for each topic with traffic."""
+        """Return the graph in words, one sentence for each node and for each topic with traffic."""
         moving = [
             f"{channel.name} carries {rate:g} messages per second."
             for channel, rate in self.rates.items()
@@ -152,7 +152,7 @@ class _GraphPictures:
         return picture
 
     def last(self) -> GraphPicture | None:
-        """Nothing flows in a picture that is no longer kept up to date."""
+        """Return the last picture, in which no line moves."""
         return GraphPicture(self._shown.graph) if self._shown.is_moving else None
 
 
@@ -169,7 +169,7 @@ class _Label:
 
     @property
     def width(self) -> float:
-        """Of the box, in pixels."""
+        """The width of the box, in pixels."""
         return max(len(self.name) * 1.1, len(self.small_print)) * _LETTER + 2 * _PADDING
 
 
@@ -182,7 +182,7 @@ def _channel_key(channel: Channel) -> str:
 
 
 def _arrows(graph: RosGraph) -> list[tuple[str, str]]:
-    """From who publishes or asks to the channel, and from there to who subscribes or serves."""
+    """Return the arrows from publishers and clients to channels, and from there to subscribers and servers."""
     return [
         (_node_key(end.node), _channel_key(end.channel))
         if end.gives
@@ -194,7 +194,7 @@ def _arrows(graph: RosGraph) -> list[tuple[str, str]]:
 class _Drawing:
     """Turns a layout into SVG.
 
-    *Along* is the way that the arrows take, *beside* is across it. Along runs to the right, or down where the
+    *Along* is the direction of the arrows, *beside* is across it. Along is to the right, or down if the
     picture would be too wide.
     """
 
@@ -215,12 +215,12 @@ class _Drawing:
         if self._layout.extent[0] + 2 * _MARGIN > _PAGE:
             sizes = {key: (float(_HEIGHT), label.width) for key, label in labels.items()}
             down = lay_out(sizes, arrows, _GAP_ALONG_DOWN)
-            # A page shrinks a picture that is too wide, with its letters.
+            # A page shrinks a picture that is too wide, and its text with it.
             if down.extent[1] < self._layout.extent[0]:
                 self._down, self._layout = True, down
 
     def svg(self) -> str:
-        """The whole picture."""
+        """Return the whole picture."""
         width, height = (extent + 2 * _MARGIN for extent in self._turned(self._layout.extent))
         boxes = "".join(self._box(name) for name in self._layout.centres)
         lines = "".join(self._line(arrow) for arrow in self._layout.arrows)
@@ -252,7 +252,7 @@ class _Drawing:
         return f'<g class="box {label.shape}">{rect}{texts}</g>'
 
     def _line(self, arrow: Arrow) -> str:
-        """A curve from box to box, by the way that was kept free, with a head where it points to."""
+        """Return a curve from box to box along its route, with an arrowhead at the end."""
         path = "M{:.1f},{:.1f}".format(*self._xy(arrow.points[0]))
         for (a1, b1), (a2, b2) in itertools.pairwise(arrow.points):
             middle = (a1 + a2) / 2

@@ -1,4 +1,4 @@
-"""A picture below a cell that is drawn again from time to time, by a thread and a hidden node of its own."""
+"""Keep a picture below a cell up to date, by a thread and a hidden node of its own."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 GONE = (InvalidHandle, RCLError, NotInitializedException, ExternalShutdownException)
-"""The errors of a node's methods where the node was destroyed or ROS was shut down meanwhile."""
+"""The errors of a node's methods if the node was destroyed or ROS was shut down meanwhile."""
 
 
 def svg_page(width: float, height: float, head: str, style: str, body: str) -> str:
-    """An SVG picture on a ground of its own, so that it is readable where its style is taken out.
+    """Return an SVG picture with its own background, so that it is readable even without its style.
 
     Args:
         width: Pixels.
         height: Pixels.
-        head: Its title, and a description where there is one, as elements.
+        head: The elements for its title and, if any, its description.
         style: CSS.
-        body: The elements above the ground.
+        body: The elements in front of the background.
     """
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" role="img" width="{width:.0f}" height="{height:.0f}" '
@@ -43,12 +43,12 @@ def svg_page(width: float, height: float, head: str, style: str, body: str) -> s
 
 
 def as_image(svg: str, words: str, attributes: str = "") -> str:
-    """A picture as an ``img`` with data in it: JupyterLab takes SVG elements out of what it does not trust yet.
+    """Return a picture as an ``img`` with a data URL: JupyterLab removes SVG elements from untrusted output.
 
     Args:
         svg: The picture.
-        words: The same in words, for those who cannot see it.
-        attributes: More of the element's.
+        words: The picture in words, for readers who cannot see it.
+        attributes: More attributes of the element.
     """
     data = base64.b64encode(svg.encode()).decode()
     more = f" {attributes}" if attributes else ""
@@ -59,29 +59,29 @@ class Pictures(Protocol):
     """The pictures to be shown."""
 
     name: str
-    """Of the node that looks; names that begin with an underscore are hidden in ROS."""
+    """The name of the observing node; ROS hides names that begin with an underscore."""
     period: float
     """Seconds between two looks."""
 
     def first(self) -> Any:
-        """The first picture."""
+        """Return the first picture."""
 
     def next(self, node: Node) -> Any:
-        """The next picture; None where nothing has changed."""
+        """Return the next picture; None if nothing has changed."""
 
     def last(self) -> Any:
-        """The picture that stays at the end; None where that is what is shown."""
+        """Return the picture that stays at the end; None to keep the shown one."""
 
 
 class LivePicture:
     """A picture that is kept up to date in the background.
 
     It ends by itself after a while, when its cell is run again, when another of its kind begins, when everything is
-    stopped or ROS is shut down. What was seen last stays.
+    stopped or ROS is shut down. The last picture stays.
 
     Args:
-        pictures: What is to be seen.
-        minutes: How long it goes on at most.
+        pictures: The pictures to show.
+        minutes: Limit in minutes.
 
     Raises:
         ValueError: ``minutes`` is not a positive number.
@@ -104,7 +104,7 @@ class LivePicture:
         return self._thread is not None and self._thread.is_alive()
 
     def start(self) -> None:
-        """Show the first picture and begin; where nobody looks, as while a class is graded, that is all."""
+        """Show the first picture and keep it up to date, but not while a class is graded."""
         from IPython.display import display
 
         picture = self._pictures.first()
@@ -113,7 +113,7 @@ class LivePicture:
             return
         self._handle = display(picture, display_id=True)  # type: ignore[no-untyped-call]
         if is_live():
-            # Made in the cell's own thread: it belongs to this run of the cell, and ends with it.
+            # Made in the cell's own thread, so that the node belongs to this run of the cell and ends with it.
             node = hidden_node(self._pictures.name)
             here = contextvars.copy_context()
             self._thread = threading.Thread(
@@ -122,7 +122,7 @@ class LivePicture:
             self._thread.start()
 
     def stop(self) -> None:
-        """End it; the last picture stays."""
+        """Stop updating; the last picture stays."""
         self._over.set()
         if self._thread is not None:
             self._thread.join()

@@ -1,4 +1,4 @@
-"""A field of the messages of a topic, drawn over time."""
+"""Plot a field of a topic's messages over time."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from rclpy.subscription import Subscription
 
 PERIOD = 0.5
-"""Seconds between two pictures, where something has arrived."""
+"""Seconds between two pictures if messages have arrived."""
 WINDOW = 30.0
-"""Seconds that a plot shows."""
+"""Length of the time axis, in seconds."""
 _LARGEST = 1e300
-"""No value beyond it is drawn, infinity and what is no number included: a laser says ``inf`` where it sees nothing."""
+"""Larger values, infinity and NaN are not drawn: a laser scan has ``inf`` where it detects nothing."""
 _MOST = 3_000
-"""Points that a plot keeps."""
+"""Limit of the points in a plot."""
 _WIDTH, _HEIGHT, _LEFT, _FOOT, _HEAD = 720, 220, 70, 24, 26
 
 _STYLE = """
@@ -45,12 +45,12 @@ circle { fill: #0b5cad; }
 def plot(topic: str, field: str, minutes: float = 10.0) -> LivePicture:
     """Draw a number of each message of a topic over time, below this cell, as messages arrive.
 
-    Like ``watch_graph``, it ends by itself; what was seen last stays.
+    Like ``watch_graph``, it ends by itself; the last picture stays.
 
     Args:
-        topic: Its name, such as ``"/odom"``.
-        field: Where the number is in a message, such as ``"data"``, ``"pose.pose.position.x"`` or ``"ranges[0]"``.
-        minutes: How long it goes on at most.
+        topic: The name of the topic, such as ``"/odom"``.
+        field: The path of the number in a message, such as ``"data"``, ``"pose.pose.position.x"`` or ``"ranges[0]"``.
+        minutes: Limit in minutes.
 
     Raises:
         ValueError: ``minutes`` is not a positive number, or ``field`` is not written like a field.
@@ -69,10 +69,10 @@ _STEP = re2.compile(r"(\w+)(?:\[(\d+)\])?")
 
 
 def number_in(message: Any, field: str) -> float:
-    """The number that is in a field of a message.
+    """Return the number in a field of a message.
 
     Raises:
-        LookupError: There is no such field, or what is there is no number; the error says what there is.
+        LookupError: The field does not exist or is not a number; the error lists what exists.
     """
     value, way = message, list[str]()
     for name, index in _STEP.findall(field):
@@ -84,7 +84,7 @@ def number_in(message: Any, field: str) -> float:
         if index:
             if not hasattr(value, "__len__"):
                 raise LookupError(
-                    f"{'.'.join(way)} is a {type(value).__name__}, no list: leave out [{index}]"
+                    f"{'.'.join(way)} is a {type(value).__name__}, not a list: leave out [{index}]"
                 )
             if not 0 <= int(index) < len(value):
                 raise LookupError(f"{'.'.join(way)} has {len(value)} items: there is no [{index}]")
@@ -97,12 +97,12 @@ def number_in(message: Any, field: str) -> float:
         except TypeError:
             fields = _fields(value)
             there = f": name one of its fields ({', '.join(fields)})" if fields else ""
-            raise LookupError(f"{field} is a {type(value).__name__}, no number{there}") from None
+            raise LookupError(f"{field} is a {type(value).__name__}, not a number{there}") from None
     return float(value)
 
 
 def _fields(value: Any) -> Mapping[str, str]:
-    """The fields of a message and their types; none of anything else."""
+    """Return the fields of a message and their types; none if the value is not a message."""
     found: Mapping[str, str] = getattr(value, "get_fields_and_field_types", dict)()
     return found
 
@@ -112,9 +112,9 @@ class PlotPicture:
     """One picture of a plot.
 
     Attributes:
-        title: What is drawn.
-        points: Seconds before now, as negative numbers, and values, in order.
-        note: What is in the way, or an empty text.
+        title: The name of the plotted field.
+        points: Pairs of time and value, in order; times are negative seconds before now.
+        note: Why nothing can be drawn; otherwise empty.
     """
 
     title: str
@@ -122,7 +122,7 @@ class PlotPicture:
     note: str = ""
 
     def __repr__(self) -> str:
-        """The plot in words."""
+        """Return the plot in words."""
         if words := self._words():
             return f"{self.title}: {words}"
         values = [value for _, value in self._drawn()]
@@ -135,7 +135,7 @@ class PlotPicture:
         return as_image(self.svg(), repr(self))
 
     def svg(self) -> str:
-        """The picture alone."""
+        """Return the picture as SVG."""
         words = self._words()
         curve = f'<text x="{_LEFT}" y="{_HEIGHT / 2}">{escape(words)}</text>' if words else self._curve()
         name = f'<text class="name" x="{_LEFT}" y="16">{escape(self.title)}</text>'
@@ -146,7 +146,7 @@ class PlotPicture:
         return [(t, value) for t, value in self.points if abs(value) <= _LARGEST]
 
     def _words(self) -> str:
-        """What stands in the place of a curve, or an empty text."""
+        """Return the text to show in place of a curve; otherwise empty."""
         if not self.points:
             return self.note or "nothing has arrived yet"
         return self.note or (
@@ -189,7 +189,7 @@ class PlotPicture:
 
 class _Plots:
     def __init__(self, topic: str, field: str) -> None:
-        # A name of its own for each curve: of two with one name, the later ends the earlier.
+        # A different name for each curve: a new background ends an earlier one of the same name.
         self.name = f"_plot_{zlib.crc32(f'{topic} {field}'.encode()):x}"
         self.period = PERIOD
         self._topic = topic
@@ -219,7 +219,7 @@ class _Plots:
         return PlotPicture(f"{self._topic} {self._field}", points, note)
 
     def _take(self, node: Node) -> bool:
-        """Take what has arrived; whether that was anything."""
+        """Take the messages that have arrived. Return True if there were any."""
         if self._subscription is None:
             types = dict(node.get_topic_names_and_types()).get(self._topic)
             if not types:

@@ -1,6 +1,6 @@
-"""Recordings of what is on the wire, as MCAP: the format that ``ros2 bag``, Foxglove and Python programs open.
+"""Record messages as MCAP, the format that ``ros2 bag``, Foxglove and Python programs open.
 
-The messages are written as they came, in CDR, with the definition of their type; nothing has to be known of them.
+Messages are written as received, in CDR, with the definition of their type, so any type can be recorded.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from rclpy.subscription import Subscription
 
 LOOK_AGAIN = 0.05
-"""Seconds between two looks at what has arrived, and for new topics."""
+"""Seconds between two looks for new messages and new topics."""
 DEPTH = 1000
 """Messages of a topic that may arrive between two looks."""
 _EVERY_NODE = ("/rosout", "/parameter_events")
@@ -39,10 +39,10 @@ class Recorded:
     """One message of a recording.
 
     Attributes:
-        t: When it was sent, in seconds of Unix time.
-        topic: Where.
-        type: Of the message, such as ``"std_msgs/msg/String"``.
-        message: Its fields are its attributes.
+        t: Unix time at which the message was sent, in seconds.
+        topic: The name of the topic.
+        type: The type of the message, such as ``"std_msgs/msg/String"``.
+        message: The message; its attributes are the fields.
     """
 
     t: float
@@ -59,15 +59,15 @@ def recording(path: str | os.PathLike[str], topics: Collection[str] = ()) -> Rec
         with recording("hello.mcap"), spinning(TalkerNode()):
             time.sleep(3)
 
-    A topic is recorded from the moment at which its publisher is found, a few hundredths of a second after it was made.
+    A topic is recorded once its publisher is discovered, a few hundredths of a second after the publisher was made.
     The file is complete at the end of the block, however that ends.
 
     Args:
-        path: The file; one that is there is written anew.
-        topics: Only these. Without them, all topics but those that every node has (its log, its parameters).
+        path: The file; an existing one is overwritten.
+        topics: The topics to record; by default all except those of every node (for its log and parameters).
 
     Raises:
-        ValueError: ``path`` has another ending than ``.mcap``.
+        ValueError: ``path`` does not end in ``.mcap``.
         OSError: The file cannot be written.
     """
     file = Path(path)
@@ -92,8 +92,10 @@ class Recording:
         self._subscriptions: dict[int, Subscription] = {}
 
     def __enter__(self) -> Self:
-        """Begin to record."""
-        self._node = hidden_node("_recorder")  # first: without ROS no recording that is there is written over
+        """Start recording."""
+        self._node = hidden_node(
+            "_recorder"
+        )  # first, so that without ROS no existing recording is overwritten
         try:
             self._file: IO[bytes] = self._path.open("wb")
         except OSError:
@@ -113,14 +115,12 @@ class Recording:
         self._file.close()
 
     def __repr__(self) -> str:
-        """The recording in one line."""
+        """Return the recording in one line."""
         listed = ", ".join(f"{count} on {topic}" for topic, count in sorted(self.counts.items()))
         return f"{self._path}: {listed or 'no messages'}"
 
     def _record(self) -> None:
-        with contextlib.suppress(
-            *GONE
-        ):  # ROS was shut down, or everything was stopped: what was recorded stays
+        with contextlib.suppress(*GONE):  # ROS was shut down, or everything was stopped: the recording stays
             while not self._over.wait(LOOK_AGAIN):
                 self._take()
                 self._look_for_topics()
@@ -128,7 +128,7 @@ class Recording:
             self._node.destroy_node()
 
     def _take(self) -> None:
-        """Write what has arrived since the last time."""
+        """Write the messages that have arrived since the last time."""
         for channel, subscription in self._subscriptions.items():
             with subscription.handle:
                 while (taken := subscription.handle.take_message(subscription.msg_type, True)) is not None:
@@ -151,7 +151,7 @@ class Recording:
         try:
             kind, text = message_class(type_name), definition(type_name)
         except LookupError:
-            return  # of a package that this environment does not have
+            return  # this environment does not have the package of the type
         channel = self._messages.channel(topic, type_name, text, about={"offered_qos_profiles": ""})
         self.counts[topic] = 0
         self._subscriptions[channel] = self._node.create_subscription(
@@ -160,7 +160,7 @@ class Recording:
 
 
 def _as_offered(node: Node, topic: str) -> QoSProfile:
-    """The most that all publishers of a topic offer: so nothing is lost on the way, and no message of before."""
+    """Return the strictest QoS that all publishers of a topic offer, so that no message is lost."""
     offered = [info.qos_profile for info in node.get_publishers_info_by_topic(topic)]
     reliable = all(profile.reliability is ReliabilityPolicy.RELIABLE for profile in offered)
     kept = all(profile.durability is DurabilityPolicy.TRANSIENT_LOCAL for profile in offered)
@@ -173,15 +173,15 @@ def _as_offered(node: Node, topic: str) -> QoSProfile:
 
 
 def read_recording(path: str | os.PathLike[str], topics: Collection[str] = ()) -> Iterator[Recorded]:
-    """The messages of a recording, in the order in which they arrived.
+    """Yield the messages of a recording, in the order in which they arrived.
 
     Args:
-        path: A file that ``recording``, or ``ros2 bag record -s mcap``, has written.
-        topics: Only these; without them, all.
+        path: A file from ``recording`` or ``ros2 bag record -s mcap``.
+        topics: The topics to read; by default all.
 
     Raises:
         OSError: The file cannot be read.
-        mcap.exceptions.McapError: It is no recording.
+        mcap.exceptions.McapError: The file is not a recording.
     """
     with Path(path).open("rb") as stream:
         reader = make_reader(stream, decoder_factories=[DecoderFactory()])

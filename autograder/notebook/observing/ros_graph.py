@@ -1,4 +1,4 @@
-"""The running graph as plain data: which nodes there are, and what connects them."""
+"""Read the running graph as plain data: its nodes, and what connects them."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 READER = "_graph_reader"
-"""The name of the node that looks; names that begin with an underscore are hidden in ROS."""
+"""The name of the observing node; ROS hides names that begin with an underscore."""
 
 PATIENCE = 2.0
 """Seconds to wait for two looks that agree; after that the last one counts."""
 SETTLING = 0.05
-"""Seconds between two looks that must agree: a node's ends are announced one after the other."""
+"""Seconds between two looks that must agree: a node's endpoints are announced one after the other."""
 
-# Every node has these; they say nothing about what it does (rclpy/node.py, parameter_service.py).
+# Every node has these, whatever it does (rclpy/node.py, parameter_service.py).
 _EVERY_TOPIC = {"/rosout", "/parameter_events"}
 _EVERY_SERVICE = {
     "describe_parameters",
@@ -42,7 +42,7 @@ _EVERY_SERVICE = {
 
 
 class ChannelKind(StrEnum):
-    """The kind of a connection of nodes."""
+    """The kinds of connections between nodes."""
 
     TOPIC = "topic"
     SERVICE = "service"
@@ -60,12 +60,12 @@ class Channel:
 
 @dataclass(frozen=True, order=True)
 class End:
-    """A node's end of a channel.
+    """A node's endpoint of a channel.
 
     Attributes:
         node: The node's full name, such as ``/talker``.
-        channel: What it is an end of.
-        gives: Whether the node publishes, or is the client; otherwise it subscribes, or is the server.
+        channel: The channel of the endpoint.
+        gives: True if the node is the publisher or client; False if it is the subscriber or server.
     """
 
     node: str
@@ -75,18 +75,18 @@ class End:
 
 @dataclass(frozen=True)
 class RosGraph:
-    """The graph at one look, each part in order of the names."""
+    """The graph at one moment, each part sorted by name."""
 
     nodes: tuple[str, ...]
     ends: tuple[End, ...]
 
     @property
     def channels(self) -> tuple[Channel, ...]:
-        """The topics, services and actions that have an end."""
+        """The topics, services and actions that have an endpoint."""
         return tuple(sorted({end.channel for end in self.ends}))
 
     def sentences(self) -> list[str]:
-        """The graph in words, a sentence for each node."""
+        """Return the graph in words, one sentence for each node."""
         return [self._sentence(node) for node in self.nodes] or ["No node is running."]
 
     def _sentence(self, node: str) -> str:
@@ -109,7 +109,7 @@ _VERBS = {
 
 
 def read_graph() -> RosGraph:
-    """Look at the graph of this kernel's ROS domain, until two looks in a row agree or it keeps changing."""
+    """Read the graph of this kernel's ROS domain until two looks agree, or for at most :data:`PATIENCE` seconds."""
     deadline = time.monotonic() + PATIENCE
     with _reader() as node:
         seen = look(node)
@@ -130,12 +130,12 @@ def _reader() -> Iterator[Node]:
 
 
 def hidden_node(name: str) -> Node:
-    """A node that looks, and that no list of nodes shows, as its name begins with an underscore."""
+    """Return an observing node that no list of nodes shows, because its name begins with an underscore."""
     return rclpy.create_node(name, enable_rosout=False, start_parameter_services=False)
 
 
 def look(node: Node) -> RosGraph:
-    """The graph as one node knows it at this moment, hidden nodes left out."""
+    """Return the graph as one node knows it now, without hidden nodes."""
     pairs = [
         (name, space) for name, space in node.get_node_names_and_namespaces() if not name.startswith("_")
     ]
@@ -150,13 +150,13 @@ def _full(name: str, space: str) -> str:
 
 
 def _topic_ends(node: Node) -> Iterator[End]:
-    """The publishers and subscribers of all topics.
+    """Yield the publishers and subscribers of all topics.
 
-    They are asked for by topic: where two nodes have one name, a question by the node's name is answered for one of
+    They are asked for by topic: if two nodes have the same name, asking by the node's name returns only one of
     them only.
     """
     for topic, types in node.get_topic_names_and_types():
-        # A topic that belongs to every node, or to an action, is no channel: nobody has to be asked about it.
+        # A topic of every node, or of an action, is not shown.
         if not list(_channels(ChannelKind.TOPIC, [(topic, types)])):
             continue
         for gives, infos in (
@@ -169,7 +169,7 @@ def _topic_ends(node: Node) -> Iterator[End]:
 
 
 def _service_and_action_ends(node: Node, name: str, space: str) -> Iterator[End]:
-    """The services and actions of one node. A node that has just gone has none."""
+    """Yield the services and actions of one node; none if the node has just ended."""
     services, actions = ChannelKind.SERVICE, ChannelKind.ACTION
     try:
         found = [
@@ -193,7 +193,7 @@ def _channels(kind: ChannelKind, names_and_types: Iterable[tuple[str, list[str]]
             if kind is ChannelKind.TOPIC
             else kind is ChannelKind.SERVICE and last in _EVERY_SERVICE
         )
-        # An action's own topics and services are below <action>/_action.
+        # An action's own topics and services have names that begin with <action>/_action.
         hidden = any(part.startswith("_") for part in name.split("/"))
         if not common and not hidden:
             yield from (Channel(kind, name, type_name) for type_name in types)

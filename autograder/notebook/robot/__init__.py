@@ -1,4 +1,4 @@
-"""A small robot in the plane, drawn live below a cell, that anybody can drive over ordinary topics."""
+"""Simulate a small robot in the plane, drawn live below a cell and driven over ordinary topics."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ def start_robot() -> LiveRobot:
     """Start a small robot and show it, alive, below this cell.
 
     It is a node, ``/robot``, that subscribes to ``/cmd_vel``, publishes on ``/odom`` and ``/scan``, and offers the
-    services ``/reset`` and ``/lamp`` and the action ``/walk_to``. It stops where no command has come for a second. A
-    second run of the cell starts it anew; it ends with ``.stop()`` or with the kernel. Its picture is kept up to date
+    services ``/reset`` and ``/lamp`` and the action ``/walk_to``. It stops if no command arrives for a second. A
+    second run of the cell starts it again; it ends with ``.stop()`` or with the kernel. Its picture is kept up to date
     for half an hour; ``.show()`` shows it again.
     """
-    # Imported by those notebooks alone that start it: it needs more types of messages than all others.
+    # Imported only by notebooks that start the robot, because it needs many message types.
     from autograder.notebook.robot.starting import LiveRobot
 
     robot = LiveRobot()

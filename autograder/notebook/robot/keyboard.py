@@ -1,4 +1,4 @@
-"""The keyboard as a driver: JupyterLab sends its arrow keys here, and a node publishes them as commands."""
+"""Drive the robot by keyboard: JupyterLab sends arrow keys here, and a node publishes them as commands."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from rclpy.publisher import Publisher
 
 NAME = "keyboard"
-"""Of the node; ``draw_graph`` shows it beside the robot."""
+"""The name of the node; ``draw_graph`` shows it next to the robot."""
 _DISCOVERY = 1.0
-"""Seconds after which a robot that listens would have been found."""
+"""Seconds after which a listening robot would have been discovered."""
 
 
 @dataclass(frozen=True)
@@ -43,11 +43,11 @@ def drive(forward: float, turn: float) -> str:
     """Publish one command on ``/cmd_vel``.
 
     Args:
-        forward: Metres per second.
+        forward: Meters per second.
         turn: Radians per second, to the left.
 
     Returns:
-        What to tell the student where nothing can be driven; empty otherwise.
+        What to tell the student if no robot can be driven; otherwise empty.
     """
     global _keyboard
     if not rclpy.ok():

@@ -1,4 +1,4 @@
-"""The motion of the robot in its two rooms: it turns, it rolls forward, and it stops at a wall."""
+"""Compute the motion of the robot in its two rooms: it turns, rolls forward, and stops at a wall."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import math
 from dataclasses import dataclass, replace
 
 Point = tuple[float, float]
-"""Metres: x to the right, y up; (0, 0) is the lower left corner."""
+"""Meters: x to the right, y up; (0, 0) is the lower left corner."""
 TICK = 0.1
 """Seconds between two steps, and between two messages on ``/odom``."""
 RADIUS = 0.2
 """Metres."""
 FASTEST = 1.0
-"""Metres per second; a faster command is cut."""
+"""Limit of the speed, in meters per second."""
 FASTEST_TURN = 2.0
 """Radians per second."""
 _STEP = 0.05
-"""Metres that are rolled between two looks for a wall."""
+"""Distance between two tests for a wall, in meters."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Wall:
     end: Point
 
     def distance_to(self, point: Point) -> float:
-        """Metres from a point to the nearest point of this wall."""
+        """Return the meters from a point to the nearest point of this wall."""
         (x1, y1), (x2, y2) = self.start, self.end
         along = ((point[0] - x1) * (x2 - x1) + (point[1] - y1) * (y2 - y1)) / math.dist(
             self.start, self.end
@@ -36,7 +36,7 @@ class Wall:
         return math.dist(point, (x1 + nearest * (x2 - x1), y1 + nearest * (y2 - y1)))
 
     def distance_along(self, origin: Point, direction: Point) -> float:
-        """Metres from a point in a direction (of length 1) to this wall; infinity where the ray misses it."""
+        """Return the meters from a point in a direction (of length 1) to this wall; infinity if the ray misses it."""
         wall_x, wall_y = self.end[0] - self.start[0], self.end[1] - self.start[1]
         across = direction[0] * wall_y - direction[1] * wall_x
         if abs(across) < 1e-12:
@@ -64,11 +64,11 @@ class Room:
     door: Point
 
     def clearance(self, point: Point) -> float:
-        """Metres from a point to the nearest wall."""
+        """Return the meters from a point to the nearest wall."""
         return min(wall.distance_to(point) for wall in self.walls)
 
     def ranges(self, origin: Point, angles: tuple[float, ...]) -> list[float]:
-        """Metres from a point to the first wall at each angle, in radians; 0 looks along x."""
+        """Return the meters from a point to the first wall at each angle, in radians; 0 is the x direction."""
         rays = [(math.cos(angle), math.sin(angle)) for angle in angles]
         return [min(wall.distance_along(origin, ray) for wall in self.walls) for ray in rays]
 
@@ -81,12 +81,12 @@ def _two_rooms() -> Room:
 
 
 ROOM = _two_rooms()
-"""Six by four metres, with a wall at x = 4 and a doorway of 1.2 m in the middle of it."""
+"""Six by four meters, with a wall at x = 4 m and a doorway of 1.2 m in its middle."""
 
 
 @dataclass(frozen=True)
 class Pose:
-    """The place of the robot: metres, and radians to the left of the x axis."""
+    """Position of the robot in meters, and heading in radians to the left of the x axis."""
 
     x: float
     y: float
@@ -94,23 +94,23 @@ class Pose:
 
     @property
     def point(self) -> tuple[float, float]:
-        """Its centre."""
+        """The center of the robot."""
         return self.x, self.y
 
 
 START = Pose(1.0, 2.0, 0.0)
-"""It looks at the door."""
+"""The robot faces the door."""
 
 
 @dataclass(frozen=True)
 class Velocity:
-    """The command to the robot: metres per second forward, radians per second to the left."""
+    """A command to the robot: meters per second forward, radians per second to the left."""
 
     forward: float = 0.0
     turn: float = 0.0
 
     def within_limits(self) -> Velocity:
-        """The command within the motors' limits; no movement for what is no number."""
+        """Return the command within the motors' limits; no movement if a value is not a number."""
         return Velocity(_limited(self.forward, FASTEST), _limited(self.turn, FASTEST_TURN))
 
 
@@ -126,9 +126,9 @@ class Moved:
     """One step of a movement.
 
     Attributes:
-        pose: Where it is now.
-        velocity: What it really did: nothing forward where a wall is in the way.
-        bumped: Whether a wall is in the way.
+        pose: The new pose.
+        velocity: The real velocity: zero forward if a wall is in the way.
+        bumped: True if a wall is in the way.
     """
 
     pose: Pose
@@ -137,7 +137,7 @@ class Moved:
 
 
 def move(pose: Pose, velocity: Velocity, seconds: float, room: Room) -> Moved:
-    """Turn and roll for some seconds, no further than the first wall."""
+    """Return the result of turning and rolling for some seconds, at most to the first wall."""
     speed = velocity.within_limits()
     pieces = max(1, math.ceil(abs(speed.forward) * seconds / _STEP))
     here = pose
@@ -154,7 +154,7 @@ def move(pose: Pose, velocity: Velocity, seconds: float, room: Room) -> Moved:
 
 
 def towards(pose: Pose, goal: tuple[float, float]) -> Velocity:
-    """The next command on the way to a point: turn first, then roll."""
+    """Return the next command on the way to a point: turn first, then roll."""
     off = _wrapped(math.atan2(goal[1] - pose.y, goal[0] - pose.x) - pose.heading)
     if abs(off) > 0.3:
         return Velocity(0.0, math.copysign(1.2, off))

@@ -1,4 +1,4 @@
-"""The robot as a node: it obeys ``/cmd_vel`` and tells on ``/odom`` and ``/scan`` where it is and what it sees."""
+"""The robot's node: it obeys ``/cmd_vel`` and publishes its position on ``/odom`` and its laser scan on ``/scan``."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 SCAN_EVERY = 5
 """Steps between two messages on ``/scan``."""
 OBEYS_FOR = 1.0
-"""Seconds for which a command holds: who does not repeat it has let go, and the robot stops."""
+"""Seconds for which a command is valid: the robot stops if it is not repeated."""
 RAYS = 36
 """Distances in a scan, all around the robot."""
 FARTHEST = 10.0
-"""Metres that the laser sees."""
+"""Range of the laser, in meters."""
 
 
 @dataclass(frozen=True)
@@ -35,12 +35,12 @@ class RobotState:
     """The robot's visible state at one moment.
 
     Attributes:
-        pose: Where it is.
-        velocity: How it moves.
-        bumped: Whether a wall is in its way.
-        lamp: Whether its lamp is on.
-        ranges: Metres to the walls all around, from straight ahead to the left.
-        says: What is in its bubble; empty for no bubble.
+        pose: The pose of the robot.
+        velocity: The velocity of the robot.
+        bumped: True if a wall is in its way.
+        lamp: True if its lamp is on.
+        ranges: Meters to the walls all around, from straight ahead to the left.
+        says: The text of its speech bubble; empty for none.
     """
 
     pose: Pose = START
@@ -52,7 +52,7 @@ class RobotState:
 
 
 class RobotNode(Node):
-    """Simulates the robot. Anybody may drive it: a node, a terminal, another notebook of the same ROS domain.
+    """Simulates the robot. Any program of the same ROS domain may drive it: a node, a terminal, another notebook.
 
     Its callbacks run one at a time, so none of them needs a lock.
     """
@@ -73,16 +73,16 @@ class RobotNode(Node):
 
     @property
     def state(self) -> RobotState:
-        """The visible state now; safe from any thread."""
+        """The present state; safe from any thread."""
         return self._state
 
     def play(self, scene: Scene) -> None:
-        """Let a scene drive the robot, as long as nobody else does; it takes the place of the one before."""
+        """Let a scene drive the robot until another command arrives; it replaces the earlier scene."""
         self._scene = scene
 
     @property
     def rests(self) -> bool:
-        """True if no scene is going on and the robot stands still."""
+        """True if no scene is running and the robot stands still."""
         return (self._scene is None or self._scene.is_over) and self._state.velocity == STILL
 
     def _obey(self, command: Twist) -> None:
@@ -124,7 +124,7 @@ class RobotNode(Node):
 
 
 def odometry(state: RobotState, now: Time) -> Odometry:
-    """The robot's odometry, as a message."""
+    """Return the robot's odometry as a message."""
     message = Odometry()
     message.header.stamp, message.header.frame_id = now.to_msg(), "odom"
     message.child_frame_id = "base_link"
@@ -137,7 +137,7 @@ def odometry(state: RobotState, now: Time) -> Odometry:
 
 
 def laser_scan(state: RobotState, now: Time) -> LaserScan:
-    """The robot's laser scan, as a message."""
+    """Return the robot's laser scan as a message."""
     message = LaserScan()
     message.header.stamp, message.header.frame_id = now.to_msg(), "base_link"
     message.angle_min, message.angle_increment = 0.0, math.tau / RAYS

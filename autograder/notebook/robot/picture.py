@@ -1,4 +1,4 @@
-"""The robot in its two rooms as a picture: SVG in an ``img`` as all live pictures are, with the same in words."""
+"""Draw the robot in its two rooms: SVG in an ``img``, as all live pictures, with the same in words."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from autograder.notebook.robot.node import RobotState
 
 _SCALE = 75
-"""Pixels per metre."""
+"""Pixels per meter."""
 _MARGIN = 14
 _FOOT = 26
 _LETTER, _PADDING, _BUBBLE = 7.85, 10, 24
@@ -44,11 +44,11 @@ class RobotPicture:
     """The robot at one moment.
 
     Attributes:
-        state: What there is to see.
-        trail: Where it has been, oldest first.
-        before: Where it was in the picture before: it glides from there. None where it stands.
-        glide: Seconds for that.
-        robots: How many robots of this name there are on the ROS domain.
+        state: The state of the robot.
+        trail: Its earlier positions, oldest first.
+        before: Its pose in the picture before, from which it glides; None if it stands still.
+        glide: Seconds of that animation.
+        robots: The number of robots of this name on the ROS domain.
     """
 
     state: RobotState
@@ -58,7 +58,7 @@ class RobotPicture:
     robots: int = 1
 
     def __repr__(self) -> str:
-        """The picture in words."""
+        """Return the picture in words."""
         pose, velocity = self.state.pose, self.state.velocity
         room = "the left room" if pose.x < ROOM.door[0] else "the right room"
         doing = "It stands still."
@@ -91,7 +91,7 @@ class RobotPicture:
         return as_image(self.svg(), repr(self), attributes) + warning
 
     def svg(self) -> str:
-        """The picture alone."""
+        """Return the picture as SVG."""
         width, height = _page()
         dials = f'<text x="{_MARGIN}" y="{height - 10}">{escape(self._dials())}</text>'
         body = "".join(
@@ -136,7 +136,7 @@ class RobotPicture:
         )
 
     def _bubble(self) -> str:
-        """What it says, above it or, where no room is there, below it."""
+        """Return its speech bubble, above it or, if there is no space, below it."""
         if not self.state.says:
             return ""
         x, y = _at(self.state.pose.point)
@@ -173,7 +173,7 @@ def _page() -> tuple[int, int]:
 
 
 def _at(point: Point) -> tuple[float, float]:
-    """From metres, y up, to pixels, y down."""
+    """Convert meters, y up, to pixels, y down."""
     return round(_MARGIN + point[0] * _SCALE, 1), round(_MARGIN + (ROOM.height - point[1]) * _SCALE, 1)
 
 
@@ -183,12 +183,12 @@ def _line(kind: str, start: Point, end: Point) -> str:
 
 
 def _placed(pose: Pose, length: str, angle: str = "") -> str:
-    """A transform; SVG's attribute has no units, CSS has."""
+    """Return a transform; an SVG attribute has no units, CSS has."""
     x, y = _at(pose.point)
     return f"translate({x}{length}, {y}{length}) rotate({-math.degrees(pose.heading):.1f}{angle})"
 
 
 def _unwound(before: Pose, state: RobotState) -> Pose:
-    """The pose with the heading that is nearest to the one before: it turns the short way round."""
+    """Return the earlier pose with a heading at most half a turn from the new one: the robot turns the short way."""
     turned = math.remainder(state.pose.heading - before.heading, math.tau)
     return replace(state.pose, heading=before.heading + turned)

@@ -1,4 +1,4 @@
-"""Scenes of the labs: the robot tells where it is on a topic, or walks the numbers that an action computes."""
+"""Scenes of the labs: the robot reports its position on a topic, or walks the numbers that an action computes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from autograder.notebook.robot.motion import Pose
 
 SAYS_EVERY = 5
-"""Steps between two messages about where it is."""
+"""Steps between two messages about its position."""
 METRES = 0.1
 """Radius of the arc for the number 1."""
 _TOUR = ((2.5, 2.4), (3.6, 2.0))
@@ -26,7 +26,7 @@ _QUARTER = math.pi / 2
 
 
 class Tour:
-    """The robot rolls to the door and says on a topic where it is.
+    """The robot rolls to the door and reports its position on a topic.
 
     Args:
         node: The robot.
@@ -41,11 +41,11 @@ class Tour:
 
     @property
     def is_over(self) -> bool:
-        """True if it has arrived, or a wall was in the way."""
+        """True if the robot has arrived, or a wall was in the way."""
         return not self._way
 
     def next(self, pose: Pose, bumped: bool) -> Velocity | None:
-        """The command for the next step; every fifth step the robot says where it is."""
+        """Return the command for the next step; every fifth step the robot reports its position."""
         if bumped:
             self._way.clear()
         if self._way and math.dist(pose.point, self._way[0]) < NEAR_ENOUGH:
@@ -95,7 +95,7 @@ class Spiral:
 
     @property
     def is_over(self) -> bool:
-        """True if it has walked all numbers that came."""
+        """True if the robot has walked all numbers so far."""
         return not self._left and not self._steps
 
     def _hear(self, message: Any) -> None:
@@ -105,7 +105,7 @@ class Spiral:
         self._numbers = numbers
 
     def next(self, pose: Pose, bumped: bool) -> Velocity | None:
-        """The command for the next step; behind a wall no number is walked."""
+        """Return the command for the next step. The robot does not walk through walls."""
         del pose
         if bumped:
             self._left.clear()
@@ -122,7 +122,7 @@ class Spiral:
 
 
 def _quarter_circle(radius: float) -> tuple[Velocity, int]:
-    """The velocity on a quarter of a circle to the left, at most what the motors allow, and the number of its steps."""
+    """Return the velocity on a quarter circle to the left, within the motors' limits, and its number of steps."""
     if radius <= 0:
         return STILL, 0
     speed = min(FASTEST, FASTEST_TURN * radius)

@@ -1,4 +1,4 @@
-"""The robot that runs, its picture, and how both end."""
+"""Start and stop the robot and its picture."""
 
 from __future__ import annotations
 
@@ -24,25 +24,25 @@ if TYPE_CHECKING:
     from autograder.notebook.robot.node import RobotState
 
 NAME = "robot"
-"""Of the background: a second run of the cell takes the place of the first."""
+"""The name of the background, so that a second run of the cell replaces the first."""
 MINUTES = 30.0
-"""The time for which a picture is kept up to date."""
+"""Minutes for which a picture is kept up to date."""
 PERIOD = 0.2
-"""Seconds between two pictures, where something has changed."""
+"""Seconds between two pictures if the robot has moved."""
 _TRAIL = 150
-"""Places that the trail keeps."""
+"""Limit of the positions in the trail."""
 _TRAIL_STEP = 0.08
-"""Metres between them."""
+"""Distance of two positions in the trail, in meters."""
 _BUTTON = (
     '<button type="button" class="ros2-course-drive" hidden="hidden" data-commandlinker-command="ros2-course:drive" '
     'data-commandlinker-args="{}">Drive with the arrow keys</button>'
 )
-"""Shown where JupyterLab has the command."""
+"""Shown if JupyterLab has the command."""
 LONGEST_WAIT = 20.0
-"""Seconds for which a cell waits for the end of a scene."""
+"""Seconds that a cell waits for the end of a scene."""
 _LOOK_EVERY = 0.05
 _TELEPORT = 0.5
-"""Metres that it cannot roll from one picture to the next: it was put back to the start."""
+"""Meters that the robot cannot roll between two pictures: after such a jump it was reset to the start."""
 
 
 class LiveRobot:
@@ -57,26 +57,26 @@ class LiveRobot:
 
     @property
     def running(self) -> bool:
-        """True if the robot obeys and tells where it is."""
+        """True if the robot is running."""
         return self._background.running
 
     @property
     def state(self) -> RobotState:
-        """Its place, its motion and what its laser sees."""
+        """The position, motion and laser scan of the robot."""
         return self._node.state
 
     def show(self) -> None:
-        """Show the robot below this cell; a picture above stops, and keeps what was seen last."""
+        """Show the robot below this cell. An earlier picture stops and stays as it is."""
         if self._picture is not None:
             self._picture.stop()
         self._picture = LivePicture(_RobotPictures(self._node), MINUTES)
         self._picture.start()
         if self._picture.running:
-            # Below the picture, and no part of it: it is not drawn anew while it is clicked.
+            # Below the picture and not part of it, so that it is not drawn again while it is clicked.
             display({"text/html": _BUTTON, "text/plain": ""}, raw=True)  # type: ignore[no-untyped-call]
 
     def talk(self, topic: str) -> None:
-        """Roll to the door, and say twice a second on a topic of strings where the robot is."""
+        """Roll to the door, and report the position twice a second on a topic of strings."""
         self._node.play(Tour(self._node, topic))
 
     def walk_numbers(self, action_type: Any, name: str) -> None:
@@ -84,7 +84,7 @@ class LiveRobot:
         self._node.play(Spiral(self._node, action_type, name))
 
     def wait(self) -> None:
-        """Wait until the robot has done this and stands still, at most 20 seconds."""
+        """Wait until the robot has finished its scene and stands still, at most 20 seconds."""
         deadline = time.monotonic() + LONGEST_WAIT
         while self.running and not self._node.rests and time.monotonic() < deadline:
             time.sleep(_LOOK_EVERY)
@@ -126,12 +126,12 @@ class _RobotPictures:
         return RobotPicture(self._shown, tuple(self._trail), start, PERIOD, self._robots)
 
     def last(self) -> RobotPicture:
-        """It glides nowhere when nobody looks any more."""
+        """Return the last picture, in which the robot stands still."""
         self._follow()
         return RobotPicture(self._shown, tuple(self._trail))
 
     def _follow(self) -> bool:
-        """Take in where it is now; whether that is too far to have rolled there."""
+        """Record the present position. Return True if it is too far from the last one to have rolled there."""
         state, before = self._robot.state, self._shown
         far = math.dist(state.pose.point, before.pose.point) > _TELEPORT
         if far:

@@ -1,4 +1,4 @@
-"""The action ``/walk_to``: the robot walks to a point, tells how far it is still, and can be asked to stop."""
+"""The action ``/walk_to``: the robot walks to a point, reports the remaining distance, and can be canceled."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from autograder.notebook.robot.motion import Pose, Velocity
 
 NEAR_ENOUGH = 0.1
-"""Metres from the goal at which it has arrived."""
+"""Distance to the goal, in meters, at which the robot has arrived."""
 TRIES = 5
-"""Steps with a wall in the way after which it gives up."""
+"""Steps with a wall in the way after which the robot gives up."""
 FEEDBACK_EVERY = 5
 """Steps between two feedback messages."""
 
@@ -42,7 +42,7 @@ class _Walk:
 
 
 class Walking:
-    """Serves the action. There is one walk at a time: a newer goal takes the place of an older one.
+    """Serves the action. There is one walk at a time: a new goal replaces the earlier one.
 
     Args:
         node: The robot.
@@ -62,11 +62,11 @@ class Walking:
         )
 
     def next(self, pose: Pose, bumped: bool) -> Velocity | None:
-        """The command for the next step; None where there is no way to walk.
+        """Return the command for the next step; None if there is no walk.
 
         Args:
-            pose: Where the robot is.
-            bumped: Whether a wall was in its way in the last step.
+            pose: The pose of the robot.
+            bumped: True if a wall was in its way in the last step.
         """
         self._pose, walk = pose, self._walk
         if walk is None:
@@ -87,7 +87,7 @@ class Walking:
         return None
 
     def give_up(self) -> None:
-        """End the walk, where there is one: somebody else drives."""
+        """End the walk, if there is one, because another node drives."""
         self._end(_Ending.GAVE_UP)
 
     def _end(self, ending: _Ending) -> None:
@@ -99,7 +99,7 @@ class Walking:
         self.give_up()
         ended = Future(executor=self._node.executor)
         self._walk = _Walk(goal, (goal.request.x, goal.request.y), ended)
-        # Awaited and not slept through: the robot goes on, and a request to cancel is heard.
+        # Await instead of sleeping, so that the robot goes on and cancel requests are received.
         ending = await ended
         getattr(goal, ending.value)()
         x, y = self._pose.point if self._pose is not None else (math.nan, math.nan)

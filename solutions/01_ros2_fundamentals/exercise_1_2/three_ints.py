@@ -171,14 +171,14 @@ EXERCISE = adder.exercise(
     sample_arguments=(1, 2, 3),
     text={
         "Wait for the service for `patience_sec` seconds.": "late limit",
-        "if no node offers it in time: raise `TimeoutError` then": "limit",
-        "You may also raise another exception, or log that there is no service and return `None`.": "limit",
+        "raise `TimeoutError` then, with a message that contains `not available`": "limit",
+        "you may also raise another exception, or log a line that contains `not available` and return `None`.": "limit",
         "Ask for the sum of `a` and `b`.": "calls chain",
         "Ask for the sum of that answer and `c`.": "calls chain",
         "Use the sum that the *service* gave you": "chain",
         "Log or print the sum, and return it.": "sum",
         "returning the sum is enough for the judge, and logging it alone is not.": "sum",
         "A program has to log or print it.": "sum",
-        "it must say so and end within 12 seconds, or say at least every three seconds that it still waits.": "limit",
+        "it must say `not available` and end within 12 seconds, or say at least every three seconds": "limit",
     },
 )

@@ -5,15 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from autograder.kit.crashes import on_purpose
-from autograder.kit.goal_reports import REFUSED, asked_for, left_at_once
+from autograder.kit.goal_reports import CANCELED, REFUSED, SUCCEEDED, WAS_ABORTED, asked_for, left_at_once
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part
+    from autograder.kit.outcomes import Outcome
 
 HONOURED = "the server cancels"
 CANCEL_REFUSED = "the server refuses to cancel"
 AGREED = "the server agrees to cancel, and then fails"
+
+OUTCOMES = {"canceled": CANCELED, "succeeded": SUCCEEDED, "aborted": WAS_ABORTED}
+"""What a client has to report of a goal, by the goal's end."""
 
 FIRST_FEEDBACK, LAST_FEEDBACK = 3, 5
 """The cancel request must come after this many feedback messages, at the earliest and at the latest."""
@@ -84,17 +87,15 @@ def after_result(part: Part) -> list[str]:
     return part.said(after=result) if result else []
 
 
-def says_nothing_of_its_success(part: Part) -> bool:
-    """True if the goal of a run came to its end and nothing was said of that, nor shown by an exception."""
-    ended = part.first("result") is not None
-    return ended and not on_purpose(part.traceback) and not any(map(str.strip, after_result(part)))
-
-
-def aborted_run(evidence: Evidence) -> Part | None:
-    """The run in which the server agreed to cancel and the goal was aborted; None where it did not come to that."""
-    part = evidence.part(AGREED)
-    result = part.first("result")
-    return part if result is not None and result.data["status"] == "aborted" else None
+def unreported_end(evidence: Evidence) -> tuple[Outcome, Part, list[Part]] | None:
+    """The first goal whose end is not reported: how it ended, its run, and the runs that ended otherwise."""
+    ends = {part.name: end.data["status"] for part in evidence if (end := part.first("result"))}
+    for name in (HONOURED, CANCEL_REFUSED, AGREED):
+        outcome, part = OUTCOMES.get(ends.get(name, "")), evidence.part(name)
+        others = [other for other in evidence if ends.get(other.name) != ends.get(name)]
+        if outcome is not None and outcome.missing(part, others):
+            return outcome, part, others
+    return None
 
 
 def asks_again_when_refused(evidence: Evidence) -> bool:

@@ -6,25 +6,23 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from exercise_1_3._cancel_evidence import (
+    AGREED,
     CANCEL_REFUSED,
     FIRST_FEEDBACK,
     HONOURED,
     LAST_FEEDBACK,
-    aborted_run,
-    after_result,
     asks_again_when_refused,
     cancels_every_goal,
     expected_order,
     goals,
     left_before_its_answer,
     orders_as_seen,
-    says_nothing_of_its_success,
     telling_count,
+    unreported_end,
 )
-from exercise_1_3._cancel_words import HAS_SUCCEEDED, false_claim, says_canceled
 
 from autograder.kit import goal_mistakes
-from autograder.kit.common_mistakes import only_if_ended
+from autograder.kit.common_mistakes import AWAITS_IN_VAIN, only_if_ended, went_deaf
 from autograder.kit.crashes import LEFT_LYING, last_line_of, meant, what_and_where
 from autograder.kit.hangs import HANGS
 from autograder.kit.in_words import counted
@@ -33,6 +31,12 @@ from autograder.kit.model import Advice, Mistake
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence
 
+HOW = {
+    HONOURED: "was canceled",
+    CANCEL_REFUSED: "succeeded in spite of the cancel request",
+    AGREED: "was aborted, though the server had agreed to cancel it",
+}
+"""The ends of the goals in words."""
 WAITS_FOR_ITSELF = ("nested_spin", "call_in_same_group")
 """Hangs that no time can end. In the others the client may be busy with something that comes to an end."""
 
@@ -60,18 +64,6 @@ def not_waited_for(evidence: Evidence) -> Advice | None:
         "Wait for the server with a few seconds of patience, and raise or end where it does not come: "
         "`if not your_action_client.wait_for_server(timeout_sec=5.0):`. It returns True when the server is there; a "
         "goal that is sent before is lost.",
-    )
-
-
-def never_spun(evidence: Evidence) -> Advice | None:
-    """It sent its goal, and nothing that came back was taken in."""
-    part = evidence.main
-    if not goals(part) or part.first("cancel") is not None or not part.of("unanswered"):
-        return None
-    return Advice(
-        "Your client sent its goal, but it receives no answer: none of its callbacks is called any more.",
-        "Spin it while it waits: rclpy.spin(your_node) or rclpy.spin_until_future_complete(your_node, your_future, "
-        "timeout_sec=5.0), in one place, and never inside a callback.",
     )
 
 
@@ -170,19 +162,11 @@ def cancel_repeated(evidence: Evidence) -> Advice | None:
 
 def status_not_reported(evidence: Evidence) -> Advice | None:
     """It cancels, and of one of its goals it never says how that ended."""
-    part, refused = evidence.part(HONOURED), evidence.part(CANCEL_REFUSED)
-    if part.first("cancel") is None:
+    part, unreported = evidence.part(HONOURED), unreported_end(evidence)
+    if part.first("cancel") is None or unreported is None:
         return None
-    if says_canceled(after_result(part), refused.said(), refused, aborted_run(evidence)):
-        if not says_nothing_of_its_success(refused):
-            return None
-        return Advice(
-            f"The judge ran your client several times. In one run its goal {HAS_SUCCEEDED}, and your client did not "
-            "say how it ended.",
-            "A cancel is a request, which the server may refuse. Log the name of the status whatever it is, not only "
-            "CANCELED.",
-        )
-    if part.first("result_request") is None:
+    outcome, where, others = unreported
+    if where is part and part.first("result_request") is None:
         return Advice(
             "Your client asked to cancel, but it never asked for the result, so it cannot know how the goal ended.",
             "Call get_result_async() of the goal handle once the goal is accepted, and read the status of its result() "
@@ -196,24 +180,12 @@ def status_not_reported(evidence: Evidence) -> Advice | None:
             "Where on_feedback, or another callback, waits or spins, leave that out: it takes the node away from the "
             "spin that waits for the result. Go on in a function that you give to the future's add_done_callback(...).",
         )
-    return Advice(
-        "The goal ended with the status CANCELED (5), but your client said neither its name nor its number after it "
-        "got the result.",
-        "When the future of get_result_async() is done, log the status of its result(), by name or by number.",
-    )
-
-
-def status_misreported(evidence: Evidence) -> Advice | None:
-    """It says of one goal something that is true of the other one."""
-    honoured, refused = evidence.part(HONOURED), evidence.part(CANCEL_REFUSED)
-    claim = false_claim(honoured, refused, aborted_run(evidence))
-    if claim is None:
-        return None
-    words, ended = claim
-    return Advice(
-        f"The judge ran your client several times. In one run its goal {ended}, but your client said of it “{words}”.",
-        "A cancel is a request. The server may refuse it, or agree to it and end the goal in another way. So look at "
-        "the status of the result, and say how the goal really ended.",
+    return outcome.advice(
+        where,
+        others,
+        f"The judge ran your client several times. In one run its goal {HOW[where.name]}",
+        "A cancel is a request. The server may refuse it, or agree to it and end the goal in another way. So log the "
+        "status of the result each time, by its name, or by its number behind the word `status`.",
     )
 
 
@@ -222,18 +194,16 @@ MISTAKES = (
     Mistake("ended_too_early", ended_on_the_way),
     *(replace(hang, certain=hang.key in WAITS_FOR_ITSELF) for hang in HANGS),
     Mistake("gave_up_too_early", not_waited_for),
-    Mistake("never_spun", never_spun),
+    AWAITS_IN_VAIN,
+    went_deaf("action_client"),
     Mistake("cancel_missing", cancel_missing),
     Mistake("cancel_repeated", cancel_repeated, certain=True),
     Mistake("cancel_too_early", cancel_too_early),
     Mistake("cancel_too_late", cancel_too_late),
     goal_mistakes.RESULT_REPEATED,
-    only_if_ended(Mistake("status_misreported", status_misreported)),
     only_if_ended(Mistake("status_not_reported", status_not_reported)),
-    Mistake("status_misreported", status_misreported),
     Mistake("status_not_reported", status_not_reported),
     goal_mistakes.CRASHED_BY_REFUSAL,
-    goal_mistakes.GOES_ON_AFTER_REFUSAL,
     goal_mistakes.RESULT_OF_REJECTED_GOAL,
     goal_mistakes.REFUSAL_NOT_REPORTED,
     goal_mistakes.STAYS_AFTER_REFUSAL,

@@ -167,7 +167,7 @@ def serve_goal(bench: Bench, name: str, *, accept: bool, pause: float, late: flo
         held: Seconds that the answers to goal and cancel are held back.
     """
     action, type_name = bench.reference.only("action_client")
-    bench.start(spare=late)
+    bench.start()
     there = bench.await_endpoint("action_client", action)
     bench.release()
     if there and late:

@@ -10,19 +10,17 @@ from exercise_1_3._cancel_evidence import (
     HONOURED,
     LAST_FEEDBACK,
     LEFT,
-    aborted_run,
     after_result,
     asks_again_when_refused,
     cancels_every_goal,
     expected_order,
     left_before_its_answer,
     orders_as_seen,
-    says_nothing_of_its_success,
     telling_count,
+    unreported_end,
 )
 from exercise_1_3._cancel_mistakes import MISTAKES
 from exercise_1_3._cancel_scenario import scenario
-from exercise_1_3._cancel_words import HAS_SUCCEEDED, false_claim, says_canceled
 
 from autograder.kit.draft import Draft
 from autograder.kit.goal_reports import (
@@ -114,26 +112,18 @@ def _cancels(part: Part) -> list[Event]:
 
 
 def reports_the_status(evidence: Evidence) -> Finding:
-    """It says "canceled" of the goal that was canceled, once that has ended, and of no other."""
-    expected = "learns the status and says CANCELED (5), and only where it is so"
-    part, refused = evidence.part(HONOURED), evidence.part(CANCEL_REFUSED)
+    """It says of each goal how that ended."""
+    expected = "says `canceled`, `succeeded` or `aborted`, or `status` and the number, as each goal ended"
+    part = evidence.part(HONOURED)
     if part.first("cancel") is None:
         return Finding(False, expected, "no cancel request")
-    asked = len(part.of("result_request"))
-    if asked > MANY_REQUESTS:
+    if (asked := len(part.of("result_request"))) > MANY_REQUESTS:
         return Finding(False, expected, f"asked for the result {asked} times")
+    if unreported := unreported_end(evidence):
+        outcome, where, others = unreported
+        return Finding(False, expected, f"{outcome.missing(where, others)} where {where.name}")
     said = after_result(part)
-    if not says_canceled(said, refused.said(), refused, aborted_run(evidence)):
-        if asked == 0:
-            return Finding(False, expected, "never asked for the result")
-        return Finding(False, expected, f"“{said[-1]}”" if said else "nothing was said after the result")
-    claim = false_claim(part, refused, aborted_run(evidence))
-    if claim:
-        words, ended = claim
-        return Finding(False, expected, f"“{words}” about a goal that {ended}")
-    if says_nothing_of_its_success(refused):
-        return Finding(False, expected, f"nothing about a goal that {HAS_SUCCEEDED}")
-    return Finding(True, expected, f"“{said[-1]}”")
+    return Finding(True, expected, f"“{said[-1]}”" if said else "it did")
 
 
 cancel = Draft(
@@ -157,13 +147,12 @@ EXERCISE = cancel.exercise(
         "Ask only **once**, even if more feedback arrives or the server refuses to cancel": "once late_feedback",
         "Send a goal of order 20": "goal",
         "Send the goal: call `send_goal`": "goal",
-        "If the goal was not accepted (`client.goal_handle.accepted`), raise a `RuntimeError` that says so.": "refused",
+        "raise a `RuntimeError` whose message contains `rejected`.": "refused",
         "There will be no result to wait for.": "refused",
         "Otherwise ask once for the result": "status",
         "While you wait, the client is spun": "cancel status",
         "report the status that you *really* got": "status",
         "Log or print the name of the final status": "status",
-        "The number of the final status is accepted as well as its name.": "status",
-        "other words about its end are accepted, too, if they are not false.": "status",
+        "The number of the final status is accepted as well as its name": "status",
     },
 )

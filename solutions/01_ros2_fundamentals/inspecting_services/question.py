@@ -305,16 +305,20 @@ def finds_another(seen: Evidence, _: Evidence) -> Finding:
 def says_that_there_is_none(seen: Evidence, _: Evidence) -> Finding:
     """Without such a service it ends by itself and says so."""
     part = seen.part(ABSENT)
-    expected = "says so and ends by itself"
+    expected = f"says {giving_up.NOT_AVAILABLE} and ends by itself"
     if not names_it(seen.part(LATE)) and not finds_another(seen, seen).passed:
         # What finds nothing anywhere has not shown that it looked.
         return Finding(False, expected, "found no service in the other runs")
     if part.ending and (wrong_ones := named_for_none(seen)):
         return Finding(False, expected, f"named {', '.join(wrong_ones)}")
-    other = seen.part(OTHER)
-    wrong = giving_up.objection(part, [other] if names_it(other) else [])
+    wrong = giving_up.objection(part, found_in(seen))
     it_did = "says again and again that it looks" if giving_up.goes_on_waiting(part) else "it did"
     return Finding(not wrong, expected, wrong or it_did)
+
+
+def found_in(seen: Evidence) -> list[Part]:
+    """The run with a service from the start, if it found that."""
+    return [other for other in [seen.part(OTHER)] if names_it(other)]
 
 
 @question.mistake(
@@ -405,14 +409,9 @@ question.knows(
 @question.mistake("silent_end", certain=True, late=True)
 def silent_end(seen: Evidence, _: Evidence) -> Advice | None:
     """Without such a service it ends, and says nothing of that."""
-    found = giving_up.hides_its_end(seen.part(ABSENT), says_that_there_is_none(seen, seen))
-    if not found:
+    if says_that_there_is_none(seen, seen).passed:
         return None
-    did = "end and do not say so" if found == giving_up.SILENT else f"return {found}, which looks like a name"
-    return Advice(
-        f"When no service has the type, you {did}.",
-        "Raise TimeoutError, with a few words on what was not found.",
-    )
+    return giving_up.silent_end(seen.part(ABSENT), found_in(seen), "service")
 
 
 question.knows(
@@ -430,9 +429,10 @@ EXERCISE = question.exercise(
     sample_arguments=(ADDER,),
     remarks=(giving_up.remark(ABSENT),),
     text={
+        "compare the whole type, package included": "other",
         "returns the name as soon as it sees a service of the type": "late other",
-        "After `patience_sec` seconds without such a service it raises `TimeoutError`.": "none",
-        "You may also raise another exception, or log that there is no such service and return `None`.": "none",
-        "it must say so and end within 12 seconds, or say at least every three seconds that it still looks.": "none",
+        "it raises `TimeoutError`, with a message that contains `not available`.": "none",
+        "you may also raise another exception, or log a line that contains `not available` and return `None`.": "none",
+        "it must say `not available` and end within 12 seconds, or say at least every three seconds": "none",
     },
 )

@@ -16,7 +16,7 @@ listener.asks("honest", 2, "Says only what it heard", says_nothing_else)
 EXERCISE = listener.exercise(
     limit=120.0,
     text={
-        "The listener subscribes to the topic.": "topic",
+        "The listener subscribes to the topic, with one subscription that lasts as long as the node.": "topic says",
         "Log every message exactly once, even if its text equals the previous one": "says honest",
         "Do not report a message that has not arrived.": "honest",
         "Logs every string that arrives on the topic chatter.": "says honest",

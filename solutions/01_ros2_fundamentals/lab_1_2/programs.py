@@ -17,7 +17,7 @@ EXERCISE = Programs(
         "Each program needs an entry point in `setup.py`. The executables are `talker` and `listener`.": "entry_points",
         "The entry point of Lab 1.1 stays in the list.": "entry_points",
         "Copy your class from step 1 to the place of the `TODO`.": "talker",
-        "TODO: copy your class ListenerNode to this place.": "listener",
+        "puts your newest `ListenerNode` in the place of the comment.": "listener",
         "To stop a program, press <kbd>Ctrl</kbd>+<kbd>C</kbd> in its terminal.": "ctrl_c",
         "A program gets its points only if its node does everything that the steps above ask for.": "talker listener",
     },

@@ -188,7 +188,7 @@ def counter_step(seen: Publisher, _: Publisher) -> Advice | None:
 EXERCISE = talker.exercise(
     text={
         "The topic of this lab is `chatter`, and its type is `std_msgs/msg/String`.": "topic type",
-        "The talker has to publish every half second.": "rate",
+        "The talker has to publish every half second, from the first message on.": "rate",
         "The method does three things: it makes a message, publishes it, and adds one to the count.": "text counter",
         'Says "Hello, world! N" on the topic chatter every 0.5 s; N counts up from 0.': "topic text rate counter",
     },

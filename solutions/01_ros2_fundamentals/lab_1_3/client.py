@@ -123,13 +123,15 @@ EXERCISE = client.exercise(
     remarks=(service_calls.no_limit,),
     sample_arguments=(1, 2),
     text={
-        "raise `TimeoutError` if it is not there in time.": "late limit",
-        "You may also raise another exception, or log that there is no service and return `None`.": "limit",
+        "Wait for the service for `patience_sec` seconds.": "late limit",
+        "raise `TimeoutError` with a message that contains `not available`.": "limit",
+        "you may also raise another exception, or log a line that contains `not available` and return `None`.": "limit",
         "Send the request, and spin the node until the answer has arrived": "call",
+        "Another node may ask your node something meanwhile, so wait until the future is done.": "call sum",
         "Log or print the sum that the server sent": "sum",
         "Return it, too": "sum",
         "returning the sum is enough for the judge, and logging it alone is not.": "sum",
         "A program has to log or print it.": "sum",
-        "it must say so and end within 12 seconds, or say at least every three seconds that it still waits.": "limit",
+        "it must say `not available` and end within 12 seconds, or say at least every three seconds": "limit",
     },
 )

@@ -27,8 +27,8 @@ EXERCISE = Programs(
     "Two programs of your package, a server and a client, that ros2 run starts.",
     text={
         "The executables have shorter names than the files: `add_server` and `add_client`.": "entry_points",
-        "Copy your class from step 2 into it:": "add_server",
-        "Copy your function from step 3:": "add_client",
+        "`%%program` copies your class from step 2 into it:": "add_server",
+        "`%%program` copies your function from step 3:": "add_client",
         "Then it runs `add_server`, calls it, and presses <kbd>Ctrl</kbd>+<kbd>C</kbd>.": "ctrl_c",
         "once there is none: the client then does what step 3 says.": "add_client ctrl_c",
         "if it still spins after its report, <kbd>Ctrl</kbd>+<kbd>C</kbd> has to end it.": "ctrl_c",

@@ -45,9 +45,6 @@ with every fifth or tenth number only."""
 THREADS = 4
 """Threads that spin a notebook's class: with one, no cancel is read while a goal is executed."""
 
-SLEEP_FACTOR = {Pace.FAST: 0.04, Pace.REAL_TIME: 1.0}
-"""The factor on what a notebook's server sleeps: it may pace its work as it likes, and nobody need wait."""
-
 SERVER_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
 """Seconds in which a server that is on the graph must be matched with the judge's client."""
 QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 8.0}
@@ -77,7 +74,7 @@ def run(bench: Bench, name: str, goals: Callable[[Bench, ActionCaller], bool]) -
     action, type_name = bench.reference.only("action_server")
     bench.part(name)
     caller = bench.call_action(action, type_name)
-    bench.start(threads=THREADS, sleep_factor=SLEEP_FACTOR[bench.pace])
+    bench.start(threads=THREADS)
     there = bench.await_endpoint("action_server", action)
     bench.release()
     there = there and caller.await_server(SERVER_LIMIT[bench.pace])

@@ -27,8 +27,8 @@ EXERCISE = Programs(
     "Two programs of your package, an action server and its client, that ros2 run starts.",
     text={
         "The executables are `fibonacci_server` and `fibonacci_client`.": "entry_points",
-        "Copy what you wrote in steps 2 to 4:": "fibonacci_server",
-        "Copy what you wrote in steps 5 and 6:": "fibonacci_client",
+        "`%%program` copies what you wrote in steps 2 to 4:": "fibonacci_server",
+        "`%%program` copies what you wrote in steps 5 and 6:": "fibonacci_client",
         "A program gets its points only if its node does everything that the steps above ask for.": (
             "fibonacci_server fibonacci_client"
         ),

@@ -207,19 +207,6 @@ def wrong_sequence(seen: Evidence, _: Evidence) -> Advice | None:
     )
 
 
-@server.mistake(
-    "feedback_missing",
-    before="cancel_not_accepted",
-    says="The goals succeed, but no feedback comes.",
-    next_step="In the loop of the execute callback, fill a Fibonacci.Feedback() and send it with publish_feedback(...) "
-    "of the goal handle.",
-)
-def feedback_missing(seen: Evidence, _: Evidence) -> bool:
-    """Goals succeed without feedback."""
-    good = [one for one in paced_goals(seen) if one.status == SUCCEEDED]
-    return bool(good) and not any(one.feedback for one in good)
-
-
 @server.mistake("wrong_feedback", before="cancel_not_accepted")
 def wrong_feedback(seen: Evidence, _: Evidence) -> Advice | None:
     """Feedback comes, and does not grow by one number. What a goal that hangs has sent says nothing about that."""
@@ -275,19 +262,6 @@ def worked_on(seen: Evidence, _: Evidence) -> Advice | None:
         f"{len(long.sequence)} numbers, and {long.told_before} had been found when the client asked to cancel it.",
         "Look at is_cancel_requested of the goal handle in each turn of the loop, leave the loop as soon as it is "
         "True, and append nothing after that.",
-    )
-
-
-@server.mistake("partial_result_missing", certain=True, late=True)
-def partial_result_missing(seen: Evidence, _: Evidence) -> Advice | None:
-    """Canceled, and the part that was computed does not come back."""
-    long = to_be_canceled(seen)
-    if long.status != CANCELED or criteria.is_the_part(seen, long):
-        return None
-    return Advice(
-        f"The canceled goal ended with {long.sequence or 'an empty result'}, although {long.told_before} numbers had "
-        "been found.",
-        "After canceled(), return a result whose sequence holds the numbers found so far.",
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from summary._night import before_the_lamp, commands, goals, lamps, near_messages, published, too_soon
+from summary._night import before_the_lamp, commands, goals, lamps, near_messages, published
 
 from autograder.kit.common_mistakes import STEP_MISSING
 from autograder.kit.rate import another_rate
@@ -34,21 +34,6 @@ MISTAKES: tuple[tuple[str, Recognise[Part], str, str, dict[str, Any]], ...] = (
         "Your node asked for the lamp before the round was over.",
         "Count the commands in the callback of the timer, and call the service there, when the count is twelve.",
         {},
-    ),
-    (
-        "lamp_switched_off",
-        lambda seen, _: lamps(seen) and not lamps(seen)[0],
-        "Your request says False, and that switches the lamp off.",
-        "Fields that are not set are False or 0: write SetBool.Request(data=True).",
-        {"certain": True},
-    ),
-    (
-        "lamp_not_awaited",
-        too_soon,
-        "Your node sent the goal before the lamp had answered.",
-        "Send the goal in a method of its own, and give that method to the add_done_callback(...) of the future that "
-        "call_async returns, without parentheses behind its name.",
-        {"certain": True},
     ),
     (
         "wrong_goal",
@@ -101,15 +86,6 @@ MISTAKES: tuple[tuple[str, Recognise[Part], str, str, dict[str, Any]], ...] = (
         "Your node drives, and no {} came after that.",
         STEP_MISSING,
         {"late": True},
-    ),
-    (
-        "await_in_same_group",
-        lambda seen, _: seen.of("response") and seen.of("unanswered") and not goals(seen),
-        "The lamp answered, and your node never takes the answer: the callback that awaits it occupies the callback "
-        "group that the answer needs.",
-        "Go on in a method that you give to the add_done_callback(...) of the future, or give the client a callback "
-        "group of its own: create_client(..., callback_group=ReentrantCallbackGroup()).",
-        {"before": "never_spun"},
     ),
 )
 """The arguments of ``Draft.knows``."""

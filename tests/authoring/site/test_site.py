@@ -58,6 +58,8 @@ def test_solutions_are_folded_or_absent(book: tuple[str, Path]) -> None:
     assert (SUMMARY in text) == (edition == SELF)
     assert ("create_timer(0.5, self.say_hello)" in text) == (edition == SELF)
     assert "TODO: make the publisher and the timer here" in text
+    films = [page.name for page in folder.rglob("*") if "lab.gif" in page.name]
+    assert bool(films) == (edition == SELF), "README's film types a solution"
 
 
 def test_no_output_shows_a_class_what_a_solution_has_written() -> None:

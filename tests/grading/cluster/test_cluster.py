@@ -20,9 +20,8 @@ from autograder import course
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.batch import grade
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.cluster import pool
-from autograder.grading.cluster.pool import NoWorkers, SchedulerGone
-from autograder.grading.running import sandboxing
+from autograder.grading.running import dispatcher, sandboxing
+from autograder.grading.running.dispatcher import NoWorkers, SchedulerGone
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -43,7 +42,7 @@ def cluster() -> Iterator[DaskCluster]:
 @pytest.fixture(autouse=True)
 def _unboxed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Boxes have tests of their own; here what a notebook does to the machine shows where it ran."""
-    monkeypatch.setattr(pool, "course_version", lambda: VERSION)
+    monkeypatch.setattr(dispatcher, "course_version", lambda: VERSION)
 
 
 @pytest.fixture
@@ -207,7 +206,7 @@ def test_workers_that_forge_are_turned_out_by_name_and_run_nothing_here(
         4,
     ]
     for name, words in {
-        "pickler": "its answer is none",
+        "pickler": "its answer is not an execution",
         "large": "its answer has 400000",
         "object": "what it says cannot be",
         "forger": "1000 of 10 points",
@@ -253,9 +252,9 @@ from rich.console import Console
 from autograder.grading.rebuilding import task_making
 from autograder.grading.running import sandboxing
 from autograder.grading.batch import grade
-from autograder.grading.cluster import pool
+from autograder.grading.running import dispatcher
 task_making.course_version = lambda: "test"
-pool.course_version = lambda: "test"
+dispatcher.course_version = lambda: "test"
 sandboxing.switch_off(Path(sys.argv[1]))
 grade(Path(sys.argv[1]), judge="fake_judge:FakeJudge", feedback=False, scheduler=sys.argv[2],
       console=Console(stderr=True, width=200))

@@ -16,11 +16,13 @@ from dask_cluster import VERSION, DaskCluster
 pytest.importorskip("distributed", reason="./course setup --with cluster installs it")
 
 from typing import TYPE_CHECKING, Any
+from unittest.mock import Mock
 
 from autograder.cli import cli
-from autograder.grading.cluster import dask_worker, pool, start_worker
+from autograder.grading.cluster import dask_worker, start_worker
 from autograder.grading.cluster.connection import connected
-from autograder.grading.cluster.pool import SchedulerGone
+from autograder.grading.running import dispatcher
+from autograder.grading.running.dispatcher import SchedulerGone
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -110,7 +112,7 @@ def certificates(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 def test_with_certificates_all_speak_tls_and_who_has_none_stays_outside(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(pool, "course_version", lambda: VERSION)
+    monkeypatch.setattr(dispatcher, "course_version", lambda: VERSION)
     options: dict[str, Any] = {"judge": "a:B", "boxed": False}
     with DaskCluster("tls") as cluster, cluster.worker("w"):
         assert cluster.address.startswith("tls://")
@@ -137,10 +139,25 @@ def test_its_folder_is_its_own_whatever_another_user_has_put_there(
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     guessed = tmp_path / f"autograder-{os.getuid()}-{os.getpid()}"
     guessed.mkdir(mode=0o777)
-    lanes = dask_worker._Lanes()
-    scratch = lanes._new("fake_judge:FakeJudge", boxed=False)._scratch
-    assert scratch.parent.parent == tmp_path
+    given: list[Path] = []
+
+    class Processes:
+        def __init__(self, scratch: Path) -> None:
+            given.append(scratch)
+
+        def execute(self, key: str, data: bytes) -> bytes:
+            return data
+
+        def stop(self) -> None: ...
+
+    monkeypatch.setattr(dask_worker, "_processes", None)
+    monkeypatch.setattr(dask_worker, "_scratch", None)
+    monkeypatch.setattr(dask_worker, "WorkerProcesses", Processes)
+    monkeypatch.setattr(dask_worker, "get_worker", Mock)
+    assert [dask_worker.execute(b"one"), dask_worker.execute(b"two")] == [b"one", b"two"]
+    (scratch,) = given
+    assert scratch.parent == tmp_path
     assert not scratch.is_relative_to(guessed)
-    assert scratch.parent.stat().st_mode & 0o777 == 0o700
-    lanes.stop()
+    assert scratch.stat().st_mode & 0o777 == 0o700
+    dask_worker._Watch().teardown(Mock())
     assert list(tmp_path.iterdir()) == [guessed]

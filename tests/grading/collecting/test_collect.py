@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gzip
 import io
 import os
 import struct
@@ -22,10 +21,13 @@ from click.testing import CliRunner
 from downloads import ROSTER, write_zip, zipped
 
 from autograder.cli import cli
+from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.timestamps import is_not_believed, read_timestamp
 from autograder.grading.collecting import archives
 from autograder.grading.collecting.collect import collect
+from autograder.grading.collecting.inbox import Inbox
 from autograder.grading.collecting.outcomes import CollectReport, State
+from autograder.grading.collecting.table import Table
 from autograder.grading.errors import GradingError
 from autograder.grading.table.roster import RosterError
 
@@ -51,13 +53,14 @@ def why(report: CollectReport) -> str:
     return "\n".join(f"{one.label}: {one.reason}" for one in report.having(State.NOT_PLACED))
 
 
-def kept_files(klass: TinyClass) -> list[Path]:
-    return list((klass.path / ".autograder" / "collected").rglob("*.kept/*"))
-
-
 def kept(klass: TinyClass) -> list[str]:
-    """The texts of all notebooks that were kept, as others count."""
-    return sorted(gzip.decompress(path.read_bytes()).decode() for path in kept_files(klass))
+    """The texts of all notebooks in the inbox that do not count."""
+    inbox = Inbox(klass.path / ".autograder")
+    lines = Table(ClassDirectory(klass.path)).lines()
+    earlier = {line["file"].rpartition(" ")[2] for line in lines if line["counts"] in ("earlier", "waits")}
+    arrivals = (one for delivery in inbox.deliveries.values() for one in delivery.arrivals)
+    contents = {one.content for one in arrivals if one.key in earlier}
+    return sorted(inbox.read(content).decode(errors="replace") for content in contents)
 
 
 def lies(klass: TinyClass, student: str) -> str:
@@ -236,7 +239,7 @@ def test_what_cannot_be_placed_is_listed_with_its_reason(klass: TinyClass, tmp_p
         "nobody in the class is called Guest User"
         in lines["m.zip/Guest User_2_assignsubmission_file_lab_1_2.ipynb"]
     )
-    assert "--assignment" in lines["m.zip/Ben Bär_3_assignsubmission_file_homework.ipynb"]
+    assert "write it under assignment" in lines["m.zip/Ben Bär_3_assignsubmission_file_homework.ipynb"]
     assert "does not say whose it is" in lines["m.zip/readme.ipynb"]
     assert not list((klass.path / "submitted").iterdir())
     again = collect(klass.path, [tmp_path / "m.zip"], assignment="lab_1_2")
@@ -269,8 +272,9 @@ def test_what_is_kept_is_not_larger_than_what_was_sent(klass: TinyClass, tmp_pat
     write_zip(tmp_path / "a.zip", {"Lab_ada_attempt_2025-10-03-14-00-00_work.zip": sent})
     report = collect(klass.path, [tmp_path / "a.zip"])
     assert len(report.having(State.EARLIER)) == 4
-    assert len(kept_files(klass)) == 4
-    assert sum(path.stat().st_size for path in kept_files(klass)) <= len(sent)
+    assert len(kept(klass)) == 4
+    inbox = klass.path / ".autograder" / "inbox"
+    assert sum(path.stat().st_size for path in inbox.glob("*.zip")) <= 3 * len(sent)
 
 
 def test_two_files_of_which_nothing_says_which_is_newer_are_both_listed(
@@ -298,7 +302,8 @@ def test_a_notebook_that_nobody_collected_is_not_overwritten(klass: TinyClass, t
         klass.path,
         [write_zip(tmp_path / "m.zip", {"Ada Lovelace_1_assignsubmission_file_lab_1_2.ipynb": work(klass)})],
     )
-    assert "which nobody collected" in why(report)
+    (other,) = report.having(State.EARLIER)
+    assert "was put there by hand and counts" in other.reason
     assert lies(klass, "ada") == mine
 
 
@@ -324,7 +329,9 @@ def test_a_file_without_a_place_takes_no_time_from_an_exchange(klass: TinyClass,
     there = klass.submit("ben").with_name("timestamp.txt")
     there.write_text("2025-10-03 14:00:00.000000 UTC")
     stranger = write_zip(tmp_path / "c.zip", {"nobody_999_9001_lab_1_2.ipynb": work(klass, 3)})
-    assert [one.state for one in collect(klass.path, [stranger], zone=UTC).outcomes] == [State.NOT_PLACED]
+    assert [one.state for one in collect(klass.path, [stranger], zone=ZoneInfo("UTC")).outcomes] == [
+        State.NOT_PLACED
+    ]
     assert read_timestamp(there.parent) == there.read_text()
     assert not is_not_believed(there.parent)
 
@@ -354,7 +361,7 @@ def test_names_that_lead_out_and_links_go_nowhere(klass: TinyClass, tmp_path: Pa
         "its name leads out of the archive"
     ) == 3
     assert "it is a link" in why(report)
-    assert outside(tmp_path) - before <= {"class/students.csv"}
+    assert outside(tmp_path) - before <= {"class/students.csv", "class/collected.csv"}
     folder = tmp_path / "Ada Lovelace_1_assignsubmission_file"
     folder.mkdir()
     (folder / "lab_1_2.ipynb").symlink_to("/etc/passwd")
@@ -454,11 +461,12 @@ def test_no_students_name_takes_the_place_of_anothers_record(tiny: TinyClass, tm
     """Without students.csv students have the names that they gave themselves: one is called as ada's record was."""
     for number in (1, 2):
         files = {f"{who} - lab_1_2.ipynb": work(tiny, number) for who in ("ada", "ada.json", "ada.kept")}
-        report = collect(tiny.path, [write_zip(tmp_path / f"{number}.zip", files)], form="google")
+        archive = write_zip(tmp_path / f"{number}.zip", files)
+        report = collect(tiny.path, [archive], form="google", handed_in=datetime(2025, 10, number))
         assert placed(report).keys() == {"ada", "ada.json", "ada.kept"}
         when = tmp_path / "times.csv"
         when.write_text(f"id,handed_in\nada,2025-10-0{number}T12:00Z\n")
-        collect(tiny.path, [], times=[when])
+        collect(tiny.path, [when])
 
 
 def with_two_ends(archive: bytes, form: str) -> bytes:

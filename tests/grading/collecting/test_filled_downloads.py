@@ -245,9 +245,7 @@ def test_folders_without_end_keep_nobodys_work_from_being_read_where_a_backup_ha
 def test_a_time_that_no_clock_shows_is_none(klass: TinyClass, tmp_path: Path, when: str) -> None:
     times = tmp_path / "times.csv"
     times.write_text(f"id,handed_in\nben,{when}\nzoe,2025-10-03T12:00Z\n")
-    report = collect(
-        klass.path, [in_moodle(klass, tmp_path / "m.zip", {"lab_1_2.ipynb": b"{}"})], times=[times]
-    )
+    report = collect(klass.path, [in_moodle(klass, tmp_path / "m.zip", {"lab_1_2.ipynb": b"{}"}), times])
     assert {one.student: one.when and one.when.year for one in report.having(State.PLACED)} == {
         "ben": None,
         "zoe": 2025,

@@ -128,7 +128,7 @@ def test_also_where_it_comes_in_a_download_of_its_own(klass: TinyClass, tmp_path
     assert (why(report), lies(klass, "ada")) == ("", work(klass, 3))
     (late,) = collect(klass.path, zips[2:]).outcomes
     assert (late.state, lies(klass, "ada")) == (State.EARLIER, work(klass, 3))
-    assert "the one that is there has answers, and this one is as it was handed out" in late.reason
+    assert "has answers and counts; this one is as it was handed out" in late.reason
     assert len(kept(klass)) == 2
 
 

@@ -8,10 +8,8 @@ import pytest
 from downloads import write_zip
 from test_collect import why, work
 
-from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.outcomes import CollectReport, State
-from autograder.grading.collecting.tidying import tidy
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -65,7 +63,9 @@ def test_of_another_assignment_it_is_refused(klass: TinyClass, tmp_path: Path) -
 def test_where_cells_say_nothing_the_instructor_does(klass: TinyClass, tmp_path: Path) -> None:
     nameless = work(klass).replace('"grade_id"', '"nobody"')
     report = gathered(klass, tmp_path, nameless, "problem1.ipynb")
-    assert "notebooks of ps1 and ps2 are called so, or have its cells): say --assignment NAME" in why(report)
+    assert "notebooks of ps1 and ps2 are called so, or have its cells): write it under assignment" in why(
+        report
+    )
     report = gathered(klass, tmp_path, nameless, "problem1.ipynb", "ps1")
     assert [one.assignment for one in report.having(State.PLACED)] == ["ps1"]
 
@@ -74,13 +74,4 @@ def test_of_an_assignment_of_several_notebooks_the_name_says_which(klass: TinyCl
     (klass.path / "source" / "ps1" / "problem2.ipynb").write_text("{}")
     nameless = work(klass).replace('"grade_id"', '"nobody"')
     report = gathered(klass, tmp_path, nameless, "homework.ipynb", "ps1")
-    assert "which notebook of ps1 it is (problem1, problem2): rename it to that one" in why(report)
-
-
-def test_one_folder_too_high_such_a_notebook_is_moved_nowhere(klass: TinyClass) -> None:
-    high = klass.path / "submitted" / "ada" / "problem1.ipynb"
-    high.parent.mkdir(parents=True)
-    high.write_text(of(klass, "ps1"))
-    (refused,) = tidy(ClassDirectory(klass.path)).refused
-    assert (refused.path, high.exists()) == (high, True)
-    assert "it lies one folder too high" in refused.reason
+    assert "which notebook of ps1 it is (problem1, problem2): write that one under notebook" in why(report)

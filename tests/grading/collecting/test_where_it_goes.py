@@ -4,42 +4,49 @@ from __future__ import annotations
 
 import io
 import random
+import shutil
 import zipfile
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zoneinfo import ZoneInfo
 
 import nbformat
 import pytest
 from click.testing import CliRunner
+from conftest import TinyClass
 from downloads import write_zip, zipped
 from test_collect import kept, lies, stamp, why, work
+from test_collected_table import edit
 from test_forms import add_assignment
 
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.collecting import outcomes, records, submitted_files
+from autograder.grading.collecting import apply, records, table
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.outcomes import CollectReport, State, WaitingList
-from autograder.grading.collecting.records import CollectedRecords
+from autograder.grading.collecting.outcomes import CollectReport, State
+from autograder.grading.collecting.table import Table
 from autograder.grading.exporting.export_files import export
 from autograder.grading.report_page.page import write_report
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
+    from collections.abc import Mapping, Sequence
 
-    from conftest import FakeEngine, TinyClass
+    from conftest import FakeEngine
 
 UTC = ZoneInfo("UTC")
 MOODLE = "{}_1_assignsubmission_file_{}"
 
 
 def gathered(
-    klass: TinyClass, folder: Path, files: Mapping[str, bytes | str], **options: Any
+    klass: TinyClass,
+    folder: Path,
+    files: Mapping[str, bytes | str],
+    lists: Sequence[Path] = (),
+    **options: Any,
 ) -> CollectReport:
-    """Collect a zip of these files."""
-    return collect(klass.path, [write_zip(folder / "c.zip", files)], zone=UTC, **options)
+    """Collect a zip of these files, with lists."""
+    return collect(klass.path, [write_zip(folder / "c.zip", files), *lists], zone=UTC, **options)
 
 
 def named(report: CollectReport, state: State) -> list[tuple[str, str]]:
@@ -140,16 +147,20 @@ def test_what_has_no_place_is_repeated_until_it_has_one(
     label = "c.zip/lovelaceada_101_9001_lab_1_2.rar"
     graded = klass.grade()
     assert graded.exit_code == 2
-    assert any(str(one.path) == label and "ada: it is an archive" in one.reason for one in graded.refused)
+    assert any(label in str(one.path) and "ada: it is an archive" in one.reason for one in graded.refused)
+    assert any("collected.csv, line 2, cell use" in one.reason for one in graded.refused)
     assert label in write_report(klass.path).read_text()
     assert label not in write_report(klass.path, names=False, to=tmp_path / "r.html").read_text()
     assert any(label in notice for notice in export(klass.path, "csv").notices)
     klass.submit("ada", 1, 1)
+    edit(klass, "rar", use="no")
+    assert any("it was edited since: type" in one.reason for one in klass.grade().refused)
+    collect(klass.path)
     assert klass.grade().exit_code == 0
     assert not any(label in notice for notice in export(klass.path, "csv").notices)
 
 
-def test_what_needs_no_place_is_settled_by_hand(
+def test_what_needs_no_place_is_left_out_by_a_cell(
     klass: TinyClass, fake_engine: FakeEngine, tmp_path: Path
 ) -> None:
     gathered(
@@ -159,9 +170,8 @@ def test_what_needs_no_place_is_settled_by_hand(
     )
     assert klass.grade().exit_code == 2
     assert klass.grade(students=["ben"]).exit_code == 2, "nobody knows whose it is: it may be hers"
-    command = ["collect", str(klass.path), "--settled"]
-    assert CliRunner().invoke(cli, [*command, "other.ipynb"]).exit_code == 2
-    assert CliRunner().invoke(cli, [*command, "c.zip/guest_999_9001_lab_1_2.ipynb"]).exit_code == 0
+    edit(klass, "guest", use="no")
+    assert CliRunner().invoke(cli, ["collect", str(klass.path)]).exit_code == 0
     assert klass.grade().exit_code == 0
 
 
@@ -179,7 +189,7 @@ def test_of_two_notebooks_the_one_with_the_exact_name_counts(klass: TinyClass, t
         assert (why(report), lies(klass, "ada")) == ("", work(klass, 3))
         assert named(report, State.EARLIER) == [(MOODLE.format("Ada Lovelace", name), "ada")]
         (earlier,) = report.having(State.EARLIER)
-        assert earlier.reason.endswith("to let it count, put it at submitted/ada/lab_1_2/lab_1_2.ipynb")
+        assert earlier.reason.endswith("to let it count, write yes under use")
     assert kept(klass) == [work(klass, 4)]
 
 
@@ -219,8 +229,8 @@ def test_the_cells_say_which_assignment_it_is(klass: TinyClass, tmp_path: Path) 
     gathered(klass, tmp_path, {ada: work(klass, 3)}, assignment="lab_1_2")
     for name in ("lab_1_3.ipynb", "lab_1_2.ipynb", "homework.ipynb"):
         report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", name): other}, assignment="lab_1_2")
-        assert report.exit_code == 2
-        assert "it is not for lab_1_2: it is the notebook of lab_1_3" in why(report)
+        (beside,) = report.having(State.BESIDE)
+        assert "it is not for lab_1_2: it is the notebook of lab_1_3" in beside.reason
         assert lies(klass, "ada") == work(klass, 3)
     report = gathered(klass, tmp_path, {ada: other})
     assert "its name says lab_1_2 and its cells are those of lab_1_3" in why(report)
@@ -240,7 +250,9 @@ def test_a_notebook_without_a_place_is_named_whatever_else_its_student_has_hande
         assert [one.assignment for one in report.having(State.PLACED)] in ([], ["lab_1_2"])
         (waits,) = report.having(State.NOT_PLACED)
         assert (report.exit_code, waits.label.endswith(f"work.zip/{name}")) == (2, True)
-        assert waits.label in {one.label for one in WaitingList(ClassDirectory(klass.path)).read()}
+        assert f"{waits.label} {waits.key}" in {
+            one.label for one in Table(ClassDirectory(klass.path)).waiting()
+        }
 
 
 def test_a_second_copy_is_beside_the_notebook_whose_cells_it_has(klass: TinyClass, tmp_path: Path) -> None:
@@ -318,35 +330,39 @@ def count(files: Mapping[str, bytes | str]) -> int:
     return total
 
 
+def outcome(klass: TinyClass) -> tuple[object, ...]:
+    """What is in ``submitted``, and the table without its number."""
+    folder = klass.path / "submitted"
+    there = {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    return there, Table(ClassDirectory(klass.path)).lines()
+
+
 @pytest.mark.parametrize("seed", range(12))
-def test_whatever_is_collected_each_file_has_one_outcome_and_nothing_older_replaces_anything(
+def test_whatever_is_collected_in_any_order_and_again_gives_the_same(
     klass: TinyClass, tmp_path: Path, seed: int
 ) -> None:
     chance = random.Random(seed)
-    downloads = [a_download(klass, chance) for _ in range(4)]
-    newest: dict[str, str] = {}
-    seen: set[str] = set()
-    for turn, place in enumerate([*range(4), *chance.sample(range(4), 4)]):
-        files = downloads[place]
-        report = collect(klass.path, [write_zip(tmp_path / f"{place}.zip", files)], zone=UTC)
-        assert len(report.outcomes) == count(files), (turn, report.outcomes)
-        for one in report.outcomes:
-            assert one.student or one.state == State.NOT_PLACED, one
-            assert one.reason or one.state in (State.PLACED, State.UNCHANGED), one
-            if one.state in (State.PLACED, State.UNCHANGED):
-                at = stamp(klass, one.student) if one.when else newest.get(one.student, "")
-                assert at >= newest.get(one.student, ""), (turn, one)
-                newest[one.student] = at
-            if one.state in (State.PLACED, State.UNCHANGED, State.EARLIER):
-                seen.add(one.student)
-    held = CollectedRecords(ClassDirectory(klass.path).state)
-    bytes_there = {path.read_text() for path in (klass.path / "submitted").rglob("*.ipynb")}
-    bytes_there |= set(kept(klass))
-    for student in seen:
-        history = held.get("lab_1_2", student)
-        assert history is not None
-        assert lies(klass, student) in bytes_there
-    assert all(waiting.reason for waiting in WaitingList(ClassDirectory(klass.path)).read())
+    zips = [write_zip(tmp_path / f"{number}.zip", a_download(klass, chance)) for number in range(4)]
+    written: dict[str, str] = {}
+    yes: set[str] = set()
+    found = []
+    for turn in range(3):
+        copy = TinyClass(Path(shutil.copytree(klass.path, tmp_path / f"class{turn}")))
+        for archive in chance.sample(zips, 4) + chance.sample(zips, turn):
+            report = collect(copy.path, [archive], zone=UTC)
+            for one in report.outcomes:
+                assert one.reason or one.state in (State.PLACED, State.UNCHANGED), one
+        for line in Table(ClassDirectory(copy.path)).lines() if turn == 0 else ():
+            if line["counts"] == "waits" and line["student"]:
+                # Of two attempts without a time, the first one counts until a person has said which.
+                said = "no" if line["student"] in yes else chance.choice(["yes", "no"])
+                yes |= {line["student"]} if said == "yes" else set()
+                written[line["file"].rpartition(" ")[2]] = said
+        for key, word in written.items():
+            edit(copy, key, use=word)
+        collect(copy.path)
+        found.append(outcome(copy))
+    assert found[0] == found[1] == found[2]
 
 
 class Killed(BaseException):
@@ -377,7 +393,7 @@ def test_killed_at_any_write_nothing_is_lost_and_nothing_is_there_twice(
         written(path, data)
 
     with monkeypatch.context() as patch:
-        for module in (submitted_files, records, outcomes):
+        for module in (apply, records, table):
             patch.setattr(module, "write_whole", write)
         try:
             gathered(klass, tmp_path, first)

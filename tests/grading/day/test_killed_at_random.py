@@ -5,7 +5,6 @@ Of a power cut the same holds as far as each step is on the disk before the next
 
 from __future__ import annotations
 
-import gzip
 import os
 import random
 import re
@@ -25,8 +24,9 @@ from test_collect import work
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.outcomes import WaitingList
+from autograder.grading.collecting.inbox import Inbox
 from autograder.grading.collecting.records import CollectedRecords
+from autograder.grading.collecting.table import Table
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
@@ -83,8 +83,8 @@ def collected(klass: Path) -> tuple[object, ...]:
             [(one.content, one.when) for one in history.now.values()],
             [(one.content, one.when) for one in history.before],
         )
-    kept = {path.name: path.read_bytes() for path in (directory.state / "collected").rglob("*.ipynb.gz")}
-    waiting = sorted(one.label for one in WaitingList(directory).read())
+    kept = sorted(Inbox(directory.state).deliveries)
+    waiting = sorted(one.label for one in Table(directory).waiting())
     return files_below(klass / "submitted"), histories, kept, waiting
 
 
@@ -126,8 +126,9 @@ def of_collect(tiny: TinyClass, folder: Path) -> Command:
         return lambda: place.stat().st_ino != before
 
     def check_half(klass: Path) -> None:
-        folder = klass / ".autograder" / "collected"
-        kept = {gzip.decompress(path.read_bytes()).decode() for path in folder.rglob("*.ipynb.gz")}
+        inbox = Inbox(klass / ".autograder")
+        contents = {one.content for of in inbox.deliveries.values() for one in of.arrivals}
+        kept = {inbox.read(content).decode() for content in contents}
         for one in STUDENTS:
             there = (klass / "submitted" / one / "lab_1_2" / "lab_1_2.ipynb").read_text()
             assert there in (texts[one, 3], texts[one, 4]), f"half of {one}'s is there"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import shutil
 import zipfile
 from typing import TYPE_CHECKING
@@ -406,3 +407,25 @@ def test_a_column_of_another_name_is_named(graded: TinyClass, tmp_path: Path) ->
     assert [row[-1] for row in lines[2:]] == ["18.5", ""]
     result = CliRunner().invoke(cli, [*command[:4], "--column", "lab_1_2=Lab 1.2"])
     assert (result.exit_code, "--column names a column of --into" in result.output) == (2, True)
+
+
+def test_a_person_or_a_program_reads_what_was_written_and_what_waits(
+    graded: TinyClass, tmp_path: Path
+) -> None:
+    collect(graded.path, [write_zip(tmp_path / "late.zip", {"guest.ipynb": "{}"})])
+    said = {}
+    for words in (("export", "--to", "csv"), ("report",)):
+        result = CliRunner().invoke(cli, [words[0], str(graded.path), *words[1:], "--json"])
+        assert result.exit_code == 0, result.output
+        said[words[0]] = json.loads(result.output)
+    cell = "(collected.csv, line 2, cell student)"
+    assert said["export"]["files"] == [
+        {"path": str(graded.path / "export" / "students.csv"), "purpose": "a line for each student"}
+    ]
+    assert any("guest.ipynb" in one and cell in one for one in said["export"]["notices"])
+    assert [one["reason"][-len(cell) :] for one in said["report"]["waiting"]] == [cell]
+    assert {one["student"] for one in said["report"]["submissions"]} >= {"ada", "ben"}
+    assert any("guest.ipynb" in str(one.path) and cell in one.reason for one in graded.grade().refused)
+    assert cell in (graded.path / "report.html").read_text()
+    result = CliRunner().invoke(cli, ["report", str(graded.path), "--json", "--without-names"])
+    assert "leave out --json" in result.output

@@ -214,3 +214,15 @@ def test_what_opens_at_a_click_keeps_its_mark() -> None:
     displays = re.findall(r"(?<![\w.-])summary\s*\{\s*display:\s*([\w-]+)", head)
     assert displays[-1:] == ["list-item"]
     assert "<summary>Yes</summary>" in body
+
+
+def test_a_page_begins_with_the_cards_and_folds_the_text_of_the_lab(pages: Pages) -> None:
+    page = pages.fresh(change_lock)
+    body = page[page.index("</table>") :]
+    parts = re.split(r"<details><summary>Text of the lab</summary>|</details>", body)
+    shown, folded = "".join(parts[::2]), "".join(parts[1::2])
+    assert "<p>card</p>" in parts[0]
+    assert "talk" in shown
+    assert "Given" not in shown
+    assert ("Given" in folded, "card" in folded, "talk" in folded) == (True, False, False)
+    assert len(parts) == 5, "the text before the answer, and the one behind it"

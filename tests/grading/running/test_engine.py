@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from autograder.boxes.execution import CellRun, Ended, Execution
-from autograder.grading.running import engine
+from autograder.boxes.execution import Cell, CellRun, Ended, Execution
+from autograder.grading.running import dispatcher, engine, this_machine
 from autograder.grading.task import Task
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
 
@@ -41,8 +41,8 @@ class WorkerProcesses:
     def execute(self, task: Task) -> Execution:
         with self._lock:
             self._running += 1
-            times = sum(student == task.student for student, _, _ in self.seen)
-            self.seen.append((task.student, task.limits.beside, self._running))
+            times = sum(student == task.notebook for student, _, _ in self.seen)
+            self.seen.append((task.notebook, task.limits.beside, self._running))
         self._together.wait()
         time.sleep(0.05)
         with self._lock:
@@ -57,11 +57,16 @@ class WorkerProcesses:
 @pytest.fixture
 def run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
     def made(
-        answer: Callable[[Task, int], Execution], students: str, workers: int | None = 3, together: int = 1
+        answer: Callable[[Task, int], Execution],
+        students: str,
+        workers: int | None = 3,
+        together: int = 1,
+        cells: int = 0,
     ) -> Any:
         processes = WorkerProcesses(answer, together)
-        monkeypatch.setattr(engine, "WorkerProcess", processes)
-        tasks = [Task(student, "lab", "lab", (), "0", "1") for student in students]
+        monkeypatch.setattr(this_machine, "WorkerProcess", processes)
+        # A worker is not told the name of the student: the notebook has it, too.
+        tasks = [Task(student, "lab", student, (Cell(""),) * cells, "0", "1") for student in students]
         done = list(engine.execute_all(tasks, tmp_path / "scratch" / "x", workers))
         return {d.task.student: d.execution for d in done}, processes.seen, done
 
@@ -70,7 +75,7 @@ def run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
 
 def test_trouble_is_tried_again_alone_at_the_end(run: Any) -> None:
     def short(task: Task, times: int) -> Execution:
-        return Execution((), trouble="no box" if task.student in "bd" and not times else "")
+        return Execution((), trouble="no box" if task.notebook in "bd" and not times else "")
 
     results, seen, done = run(short, "abcdef")
     assert len(done) == 6
@@ -87,7 +92,7 @@ def test_trouble_that_stays_is_told_after_the_second_time(run: Any) -> None:
 
 def test_who_crowded_out_gets_all_of_it_alone(run: Any) -> None:
     def large(task: Task, times: int) -> Execution:
-        return Execution((), crowded_out=task.student == "b" and task.limits.beside)
+        return Execution((), crowded_out=task.notebook == "b" and task.limits.beside)
 
     results, seen, done = run(large, "abc")
     assert not any(execution.crowded_out for execution in results.values())
@@ -101,13 +106,13 @@ def test_each_execution_has_all_of_the_processor_time(run: Any) -> None:
     used = {"a": 120.0, "b": 201.0}
 
     def busy(task: Task, times: int) -> Execution:
-        given[task.student].append(task.limits.cpu_seconds)
-        spent = Ended.OUT_OF_CPU if used[task.student] > task.limits.cpu_seconds else Ended.DONE
+        given[task.notebook].append(task.limits.cpu_seconds)
+        spent = Ended.OUT_OF_CPU if used[task.notebook] > task.limits.cpu_seconds else Ended.DONE
         return Execution(
-            (CellRun(spent),), crowded_out=task.limits.beside, cpu_seconds=min(used[task.student], 200.0)
+            (CellRun(spent),), crowded_out=task.limits.beside, cpu_seconds=min(used[task.notebook], 200.0)
         )
 
-    results, _, _ = run(busy, "ab")
+    results, _, _ = run(busy, "ab", cells=1)
     assert results["a"].cells[0].ended is Ended.DONE, (
         "it uses 120 s of its 200 s, and others crowded it before"
     )
@@ -119,8 +124,8 @@ def test_of_those_that_come_again_who_was_busiest_comes_last(run: Any) -> None:
     used = {"a": 90.0, "b": 2.0, "c": 30.0, "d": 60.0}
 
     def busy(task: Task, times: int) -> Execution:
-        trouble = "no box" if task.student == "b" and not times else ""
-        return Execution((), trouble=trouble, crowded_out=task.limits.beside, cpu_seconds=used[task.student])
+        trouble = "no box" if task.notebook == "b" and not times else ""
+        return Execution((), trouble=trouble, crowded_out=task.limits.beside, cpu_seconds=used[task.notebook])
 
     _, seen, _ = run(busy, "abcd")
     assert [student for student, _, _ in seen[4:]] == ["b", "c", "d", "a"]
@@ -142,3 +147,32 @@ def test_so_many_are_at_work_at_once_and_no_more(run: Any, monkeypatch: pytest.M
     monkeypatch.setattr(engine, "cores", lambda: 1)
     _, seen, _ = run(lambda task, times: Execution(()), "abcdefghijkl", None, together=4)
     assert max(together for _, _, together in seen) == 4
+
+
+def test_an_answer_that_is_not_possible_is_never_used(run: Any) -> None:
+    forged = Execution((CellRun(Ended.DONE), CellRun(Ended.DONE)))
+    results, seen, _ = run(lambda task, times: forged if task.notebook == "b" else Execution(()), "abc")
+    assert "is not possible: its answer has 2 cells, and the notebook has 0" in results["b"].trouble
+    assert not results["b"].cells
+    assert not results["a"].trouble + results["c"].trouble
+    assert [student for student, _, _ in seen].count("b") == dispatcher.ATTEMPTS
+
+
+def test_an_error_of_the_grader_is_trouble_of_one_task(run: Any) -> None:
+    def broken(task: Task, times: int) -> Execution:
+        if task.notebook == "a":
+            raise MemoryError
+        return Execution(())
+
+    results, _, _ = run(broken, "ab")
+    assert "MemoryError" in results["a"].trouble
+    assert not results["b"].trouble
+
+
+def test_an_error_while_a_task_is_prepared_reaches_the_caller(tmp_path: Path) -> None:
+    def tasks() -> Iterator[Task]:
+        raise LookupError("no such student")
+        yield
+
+    with pytest.raises(LookupError, match="no such student"):
+        list(engine.execute_all(tasks(), tmp_path, 2))

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.grading.exporting import lms_gradebooks, sheets
+from autograder.grading.collecting.records import CollectedRecords
+from autograder.grading.exporting import sheets
+from autograder.grading.exporting.layouts import gradebook
 from autograder.grading.report_page import statistics as figures
 from autograder.grading.reporting.rows import Row
 from autograder.grading.table.class_table import ClassTable
@@ -17,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 ASSIGNMENTS = ("lab_1", "lab_2")
+NO_RECORDS = CollectedRecords(Path("nowhere"))
 CLASS = [f"s{number}" for number in range(60)]
 
 
@@ -42,8 +46,8 @@ def table() -> ClassTable:
 @pytest.mark.parametrize(
     "use",
     [
-        lambda table: lms_gradebooks.gradescope(table, ASSIGNMENTS),
-        lambda table: lms_gradebooks.moodle_gradebook(table, ASSIGNMENTS),
+        lambda table: gradebook("gradescope", table, NO_RECORDS, ASSIGNMENTS),
+        lambda table: gradebook("moodle", table, NO_RECORDS, ASSIGNMENTS),
         lambda table: sheets.as_csv(table, ASSIGNMENTS),
         lambda table: [table.max_score(one) for _ in CLASS for one in ("", *ASSIGNMENTS)],
         lambda table: [table.assignments and table.students for _ in CLASS],

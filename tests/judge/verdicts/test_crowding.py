@@ -62,3 +62,13 @@ def test_a_long_check_ends_on_a_busy_machine_only(seconds: float, runnable: int,
         with pytest.raises(OutOfTime):
             hurry()
     hurry()  # what clears up afterwards is left alone
+
+
+def test_the_time_of_a_build_does_not_count() -> None:
+    times = iter([0.0, 0.0, 100.0, 101.0, 101.0 + ANSWER_WITHIN])
+    building = iter([True, False, False])
+    hurry = Hurry(lambda: 16, 2, lambda: next(times), lambda: next(building))
+    hurry()
+    hurry()
+    with pytest.raises(OutOfTime):
+        hurry()

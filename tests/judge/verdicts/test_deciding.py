@@ -32,6 +32,7 @@ def raises(_: Evidence) -> Finding:
 
 class Anybody:
     shares_participant = False
+    in_a_notebook = False
 
     """A subject that nothing is asked of."""
 

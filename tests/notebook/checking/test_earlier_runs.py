@@ -37,7 +37,7 @@ def add(*numbers: int, patience_sec: float = 5.0) -> int:
     client = node.create_client(AddTwoInts, "add_two_ints")
     try:
         if not client.wait_for_service(timeout_sec=patience_sec):
-            raise TimeoutError("nobody offers add_two_ints")
+            raise TimeoutError("add_two_ints is not available")
         total, *others = numbers
         with spinning(node):
             for number in others:

@@ -33,7 +33,7 @@ def adder(wait: Callable[[Any, float], bool], *, answer_within: float | None = N
         try:
             client = node.create_client(AddTwoInts, "add_two_ints")
             if not wait(client, patience_sec):
-                raise TimeoutError("nobody offers add_two_ints")
+                raise TimeoutError("add_two_ints is not available")
             future = client.call_async(AddTwoInts.Request(a=a, b=b))
             rclpy.spin_until_future_complete(node, future, timeout_sec=answer_within or patience_sec)
             if not future.done():

@@ -27,9 +27,9 @@ def test_finds_a_number_by_its_way_through_the_message() -> None:
     [
         (Twist(), "linear.w", "linear has no field w: it has x, y, z"),
         (Twist(), "linear", "name one of its fields (x, y, z)"),
-        (String(data="3.5"), "data", "data is a str, no number"),
+        (String(data="3.5"), "data", "data is a str, not a number"),
         (Float64MultiArray(), "data[0]", "data has 0 items: there is no [0]"),
-        (Float64(), "data[0]", "data is a float, no list: leave out [0]"),
+        (Float64(), "data[0]", "data is a float, not a list: leave out [0]"),
         (Twist(), "speed", "the message has no field speed: it has linear, angular"),
     ],
 )

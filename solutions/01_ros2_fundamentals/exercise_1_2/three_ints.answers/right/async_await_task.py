@@ -25,7 +25,7 @@ def main():
     executor.add_node(node)
     client = node.create_client(AddTwoInts, 'add_two_ints')
     if not client.wait_for_service(timeout_sec=5.0):
-        node.get_logger().error('service unavailable')
+        node.get_logger().error('service not available')
     else:
         executor.spin_until_future_complete(executor.create_task(add_three(node, client, **numbers)))
     rclpy.shutdown()

@@ -31,7 +31,7 @@ def main():
     rclpy.init()
     node = AwaitingClient(numbers)
     if not node.client.wait_for_service(timeout_sec=4.5):
-        print('waited 4.5 s in vain for add_two_ints', file=sys.stderr)
+        print('waited 4.5 s in vain: add_two_ints not available', file=sys.stderr)
         return
     while not node.finished:
         rclpy.spin_once(node)

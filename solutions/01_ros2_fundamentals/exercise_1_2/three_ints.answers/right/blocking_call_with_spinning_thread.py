@@ -18,7 +18,7 @@ def main():
     spinner.start()
     try:
         if not client.wait_for_service(timeout_sec=4.0):
-            print('no such service: add_two_ints')
+            print('service not available: add_two_ints')
             return 1
         first = client.call(AddTwoInts.Request(a=a, b=b))
         second = client.call(AddTwoInts.Request(a=first.sum, b=c))

@@ -26,7 +26,7 @@ class GroupedClient(Node):
             total = self.client.call(AddTwoInts.Request(a=total, b=c)).sum
             self.get_logger().info(f'{a=} {b=} {c=} {total=}')
         else:
-            self.get_logger().warning('no service, no sum')
+            self.get_logger().warning('service not available, no sum')
         self.done = True
 
 

@@ -18,7 +18,7 @@ class Adder:
         node = rclpy.create_node('adder')
         client = node.create_client(AddTwoInts, 'add_two_ints')
         if not client.wait_for_service(timeout_sec=patience_sec):
-            raise TimeoutError(f'no add_two_ints within {patience_sec} s')
+            raise TimeoutError(f'add_two_ints not available within {patience_sec} s')
         return cls(node, client)
 
     def add(self, a: int, b: int) -> int:

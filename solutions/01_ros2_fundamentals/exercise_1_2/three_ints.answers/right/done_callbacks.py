@@ -33,7 +33,7 @@ def main(args=None):
     rclpy.init(args=args)
     node = ChainedClient(*(int(s) for s in sys.argv[1:]))
     if not node.client.wait_for_service(timeout_sec=5):
-        node.get_logger().fatal('the service did not appear within 5 s')
+        node.get_logger().fatal('the service was not available within 5 s')
         return
     node.start()
     rclpy.spin_until_future_complete(node, node.finished)

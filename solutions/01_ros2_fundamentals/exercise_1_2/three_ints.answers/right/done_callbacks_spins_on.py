@@ -11,7 +11,7 @@ def main():
     node = rclpy.create_node('patient')
     client = node.create_client(AddTwoInts, 'add_two_ints')
     if not client.wait_for_service(5.0):
-        raise SystemExit('no add_two_ints service')
+        raise SystemExit('add_two_ints service not available')
 
     def first(future):
         request = AddTwoInts.Request(a=future.result().sum, b=c)

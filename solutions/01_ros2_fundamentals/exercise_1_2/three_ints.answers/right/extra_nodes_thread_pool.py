@@ -30,7 +30,7 @@ def main():
             executor.spin_once(timeout_sec=0.05)
         total = job.result()
     if total is None:
-        print('Nobody offers add_two_ints.')
+        print('add_two_ints: NOT AVAILABLE.')
     else:
         publisher.publish(Int64(data=total))
         reporter.get_logger().info(f'numbers: {numbers}')

@@ -7,7 +7,7 @@ rclpy.init()
 n = rclpy.create_node("n")
 adder = n.create_client(AddTwoInts, "add_two_ints")
 if not adder.wait_for_service(6):
-    sys.exit("timed out waiting for add_two_ints")
+    sys.exit("timed out: add_two_ints not available")
 
 total = int(sys.argv[1])
 for word in sys.argv[2:]:

@@ -1,4 +1,4 @@
-# Right: a dataclass tells both ends in one line: "Outcome(service=True, total=6)", or "Outcome(service=False, total=None)" where there is none after five seconds.
+# Right: a dataclass tells both ends in one line: "Outcome(service='found', total=6)", or "Outcome(service='not available', total=None)" where there is none after five seconds.
 import sys
 from dataclasses import dataclass
 
@@ -8,14 +8,15 @@ from my_robot_interfaces.srv import AddTwoInts
 
 @dataclass
 class Outcome:
-    service: bool = False
+    service: str = 'not available'
     total: int | None = None
 
 
 def add_three_ints(node, a, b, c, patience_sec=5.0):
     client = node.create_client(AddTwoInts, 'add_two_ints')
-    outcome = Outcome(service=client.wait_for_service(timeout_sec=patience_sec))
-    if outcome.service:
+    outcome = Outcome()
+    if client.wait_for_service(timeout_sec=patience_sec):
+        outcome.service = 'found'
         outcome.total = a
         for number in (b, c):
             future = client.call_async(AddTwoInts.Request(a=outcome.total, b=number))

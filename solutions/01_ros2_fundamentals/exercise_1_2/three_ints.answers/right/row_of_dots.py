@@ -8,7 +8,7 @@ rclpy.init()
 node = rclpy.create_node('bill')
 client = node.create_client(AddTwoInts, 'add_two_ints')
 if not client.wait_for_service(timeout_sec=5.0):
-    sys.exit('no service')
+    sys.exit('service not available')
 total, *rest = map(int, sys.argv[1:])
 for number in rest:
     future = client.call_async(AddTwoInts.Request(a=total, b=number))

@@ -31,7 +31,7 @@ def main():
         intentos -= 1
         print(f'⏳ el servicio no está, quedan {intentos} intentos')
         if intentos == 0:
-            print('❌ me rindo')
+            print('❌ me rindo: not available')
             return
     print('✅ La suma es', pedir(nodo, cliente, pedir(nodo, cliente, a, b), c))
 

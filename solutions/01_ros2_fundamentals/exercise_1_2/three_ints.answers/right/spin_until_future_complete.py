@@ -33,7 +33,7 @@ def main(args=None):
         total = client.add(client.add(a, b), c)
         client.get_logger().info(f'Final sum of {a}, {b}, and {c}: {total}')
     else:
-        client.get_logger().error('add_two_ints is not there, giving up')
+        client.get_logger().error('add_two_ints is not available, giving up')
     client.destroy_node()
     rclpy.shutdown()
 

@@ -22,7 +22,7 @@ class PollingClient(Node):
             self.poll.cancel()
             self.next_call()
         elif self.tries > self.TRIES:
-            self.get_logger().error('add_two_ints: nobody there')
+            self.get_logger().error('add_two_ints: not available')
             raise SystemExit(1)
 
     def next_call(self):

@@ -25,7 +25,7 @@ def main():
     rclpy.init()
     node = ThreeInts()
     if not node.cli.wait_for_service(timeout_sec=5.0):
-        sys.exit('add_two_ints is not there')
+        sys.exit('add_two_ints is not available')
     executor = MultiThreadedExecutor()
     executor.add_node(node)
     executor.spin()

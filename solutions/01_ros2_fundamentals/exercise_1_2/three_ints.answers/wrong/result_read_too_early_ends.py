@@ -20,7 +20,7 @@ def main():
     rclpy.init()
     node = ThreeInts()
     if not node.cli.wait_for_service(timeout_sec=5.0):
-        sys.exit('add_two_ints is not there')
+        sys.exit('add_two_ints is not available')
     node.ask(a, b, lambda first: node.ask(first, c, print))
     rclpy.spin_once(node, timeout_sec=0.0)
     rclpy.shutdown()

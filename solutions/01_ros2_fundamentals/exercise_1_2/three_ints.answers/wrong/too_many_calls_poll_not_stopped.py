@@ -19,7 +19,7 @@ class Polling(Node):
         if self.cli.service_is_ready():
             self.ask(self.numbers[0], self.numbers[1], self.numbers[2:])
         elif self.tries > 30:
-            sys.exit('add_two_ints is not there')
+            sys.exit('add_two_ints is not available')
 
     def ask(self, a, b, rest):
         future = self.cli.call_async(AddTwoInts.Request(a=a, b=b))

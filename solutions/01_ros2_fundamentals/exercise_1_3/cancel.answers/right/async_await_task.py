@@ -22,7 +22,7 @@ class AsyncClient(Node):
     async def run(self):
         goal = await self.client.send_goal_async(Fibonacci.Goal(order=20), feedback_callback=self.feedback)
         if not goal.accepted:
-            self.get_logger().error('the server does not want this goal')
+            self.get_logger().error('the server rejected this goal')
             return
         self.get_logger().info(f'that is enough: {await self.third}')
         await goal.cancel_goal_async()

@@ -47,7 +47,7 @@ def main(args=None):
     rclpy.init(args=args)
     node = CancelingClient()
     if not node.client.wait_for_server(timeout_sec=10.0):
-        node.get_logger().error('no action server')
+        node.get_logger().error('action server not available')
         return
     node.send_goal(20)
     rclpy.spin(node)

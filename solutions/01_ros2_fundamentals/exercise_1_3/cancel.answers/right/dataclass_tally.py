@@ -30,17 +30,17 @@ def main() -> None:
     node = rclpy.create_node('tally')
     client = ActionClient(node, Fibonacci, 'fibonacci')
     if not client.wait_for_server(timeout_sec=10.0):
-        raise SystemExit('fibonacci is not there')
+        raise SystemExit('fibonacci is not available')
     tally = Tally(options.after)
     sending = client.send_goal_async(Fibonacci.Goal(order=options.order), feedback_callback=tally)
     rclpy.spin_until_future_complete(node, sending)
     if not sending.result().accepted:
-        raise SystemExit('fibonacci does not take the goal')
+        raise SystemExit('fibonacci rejected the goal')
     result = sending.result().get_result_async()
     rclpy.spin_until_future_complete(node, tally.full)
     sending.result().cancel_goal_async()
     rclpy.spin_until_future_complete(node, result)
-    print(f'after {tally.count} feedbacks: {result.result().status}')
+    print(f'after {tally.count} feedbacks: status {result.result().status}')
 
 
 if __name__ == '__main__':

@@ -26,13 +26,13 @@ def main():
             enough.set()
 
     if not client.wait_for_server(timeout_sec=10.0):
-        raise SystemExit('no server for /fibonacci')
+        raise SystemExit('/fibonacci is not available')
     future = client.send_goal_async(Fibonacci.Goal(order=20), feedback_callback=feedback)
     future.add_done_callback(lambda _: accepted.set())
     accepted.wait()
     goal = future.result()
     if not goal.accepted:
-        raise SystemExit('the goal was refused')
+        raise SystemExit('the goal was rejected')
     enough.wait()
     goal.cancel_goal()
     print('status', goal.get_result().status)

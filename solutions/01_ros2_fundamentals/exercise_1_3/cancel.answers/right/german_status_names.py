@@ -30,7 +30,7 @@ class Abbrecher(Node):
     def antwort(self, zukunft):
         self.griff = zukunft.result()
         if not self.griff.accepted:
-            self.get_logger().error('🚫 Der Server nimmt das Ziel nicht an.')
+            self.get_logger().error('🚫 Der Server nimmt das Ziel nicht an: REJECTED.')
             self.fertig = True
             return
         self.griff.get_result_async().add_done_callback(self.ende)
@@ -51,7 +51,7 @@ def main():
     rclpy.init()
     knoten = Abbrecher()
     if not knoten.kunde.wait_for_server(timeout_sec=10):
-        print('Kein Server da.')
+        print('Kein Server da (not available).')
         return
     knoten.los()
     while not knoten.fertig:

@@ -33,7 +33,7 @@ class Worker(Node):
             time.sleep(0.002)
         goal = sending.result()
         if not goal.accepted:
-            self.get_logger().warning('no such luck: the goal was turned down')
+            self.get_logger().warning('no such luck: the goal was rejected')
             self.over = True
             return
         goal.cancel_goal()

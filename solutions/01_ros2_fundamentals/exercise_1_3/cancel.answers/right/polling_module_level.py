@@ -16,7 +16,7 @@ while not sent.done():
     rclpy.spin_once(node)
 
 handle = sent.result()
-assert handle.accepted, "the goal was refused"
+assert handle.accepted, "the goal was rejected"
 while len(feedbacks) < 5:
     rclpy.spin_once(node)
 canceling = handle.cancel_goal_async()

@@ -38,7 +38,7 @@ def main():
     rclpy.spin_until_future_complete(node, sending)
     node.goal = sending.result()
     if not node.goal.accepted:
-        raise RuntimeError('the goal was not accepted')
+        raise RuntimeError('the goal was not accepted (rejected)')
     node.goal.get_result_async().add_done_callback(node.finished)
     rclpy.spin(node)
 

@@ -20,7 +20,7 @@ class Watcher(Node):
     def on_answer(self, future):
         self.goal = future.result()
         if not self.goal.accepted:
-            self.get_logger().error('the goal was refused')
+            self.get_logger().error('the goal was rejected')
             raise SystemExit
 
     def on_feedback(self, message):
@@ -34,6 +34,8 @@ class Watcher(Node):
                 self.get_logger().info('the goal was canceled')
             elif line.status == GoalStatus.STATUS_SUCCEEDED:
                 self.get_logger().info('the goal succeeded after all')
+            elif line.status == GoalStatus.STATUS_ABORTED:
+                self.get_logger().info('the goal was aborted')
             else:
                 continue
             raise SystemExit
@@ -43,7 +45,7 @@ def main():
     rclpy.init()
     node = Watcher()
     if not node.client.wait_for_server(timeout_sec=5.0):
-        raise SystemExit('no action server')
+        raise SystemExit('action server not available')
     node.client.send_goal_async(Fibonacci.Goal(order=20), node.on_feedback).add_done_callback(node.on_answer)
     rclpy.spin(node)
 

@@ -25,7 +25,7 @@ def main(args=None):
     rclpy.spin_until_future_complete(node, sending)
     goal = sending.result()
     if not goal.accepted:
-        log.error('the server refused the goal')
+        log.error('the server rejected the goal')
         rclpy.shutdown()
         return
     while count < 3:

@@ -25,7 +25,7 @@ class ClientDiscret(Node):
         futur = self.client.send_goal_async(Fibonacci.Goal(order=20), feedback_callback=self.compter)
         rclpy.spin_until_future_complete(self, futur)
         if not futur.result().accepted:
-            return 'refusé'
+            return 'rejected'
         self.but = futur.result()
         resultat = self.but.get_result_async()
         rclpy.spin_until_future_complete(self, resultat)
@@ -36,7 +36,7 @@ def main():
     rclpy.init()
     noeud = ClientDiscret()
     if noeud.client.wait_for_server(timeout_sec=10.0):
-        print('Statut final :', noeud.envoyer())
+        print('Status final :', noeud.envoyer())
 
 
 if __name__ == '__main__':

@@ -45,7 +45,7 @@ def main():
     rclpy.init()
     node = CancelingClient()
     if not node.client.wait_for_server(timeout_sec=10.0):
-        raise SystemExit('the action server is not there')
+        raise SystemExit('the action server is not available')
     node.send_goal()
     rclpy.spin(node)
 

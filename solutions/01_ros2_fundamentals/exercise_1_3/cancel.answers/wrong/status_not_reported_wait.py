@@ -30,7 +30,7 @@ def main():
     rclpy.init()
     node = CancelingClient()
     if not node.client.wait_for_server(timeout_sec=10.0):
-        raise RuntimeError('no action server')
+        raise RuntimeError('action server not available')
     sending = node.client.send_goal_async(Fibonacci.Goal(order=20), feedback_callback=node.on_feedback)
     node.goal_handle = wait_for(node, sending, 5.0)
     if not node.goal_handle.accepted:

@@ -14,7 +14,7 @@ def find_service(type_name, patience_sec=5.0):
                 if type_name in types:
                     return name
             time.sleep(0.05)
-        raise TimeoutError(f'no service of type {type_name}')
+        raise TimeoutError(f'a service of type {type_name} is not available')
     finally:
         node.destroy_node()
 

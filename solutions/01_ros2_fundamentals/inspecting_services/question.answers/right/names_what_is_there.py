@@ -17,7 +17,7 @@ def find_service(type_name, patience_sec=5.0):
                     return name
             time.sleep(0.05)
         seen = ', '.join(name for name, _ in services if 'parameter' not in name)
-        raise TimeoutError(f'nobody serves {type_name}; I see only {seen}')
+        raise TimeoutError(f'{type_name} is not available; I see only {seen}')
     finally:
         node.destroy_node()
 

@@ -19,7 +19,7 @@ def main():
             break
         time.sleep(0.1)
     else:
-        print(f'There is no service of type {sys.argv[1]}')
+        print(f'Not available: a service of type {sys.argv[1]}')
     rclpy.shutdown()
 
 

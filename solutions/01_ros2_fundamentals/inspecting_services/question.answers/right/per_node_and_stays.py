@@ -26,7 +26,7 @@ def main():
         found = look(node, sys.argv[1])
         rclpy.spin_once(node, timeout_sec=0.05)
     if found is None:
-        sys.exit('none of that type')
+        sys.exit('none of that type: not available')
     print(found, flush=True)
     rclpy.spin(node)
 

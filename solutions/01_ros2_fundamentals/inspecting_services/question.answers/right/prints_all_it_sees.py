@@ -18,4 +18,4 @@ for _ in range(40):
         encontrado = encontrados[0]
         break
     time.sleep(0.1)
-print('El servicio es ' + encontrado if encontrado else 'No hay ninguno.')
+print('El servicio es ' + encontrado if encontrado else 'No hay ninguno: not available.')

@@ -16,7 +16,7 @@ def main():
             node.get_logger().warn(f'{list(matching)[0]} 🎉')
             break
         if time() - start > 4:
-            raise TimeoutError('nobody there')
+            raise TimeoutError('not available')
         sleep(0.2)
     rclpy.shutdown()
 

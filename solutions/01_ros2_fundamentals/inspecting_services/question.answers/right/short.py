@@ -13,4 +13,4 @@ while time.monotonic() < end:
             print(name)
             sys.exit()
     time.sleep(0.05)
-print('no service')
+print('service not available')

@@ -21,7 +21,7 @@ class Finder(Node):
                 self.done = True
                 return
         if self.ticks > 45:
-            self.get_logger().error('gave up')
+            self.get_logger().error('gave up: not available')
             self.done = True
 
 

@@ -21,7 +21,7 @@ def main():
         node = Node('adding')
         client = node.create_client(AddTwoInts, 'add_two_ints')
         if not client.wait_for_service(3.0):
-            raise TimeoutError('add_two_ints did not appear within 3 s')
+            raise TimeoutError('add_two_ints not available within 3 s')
         executor = SingleThreadedExecutor()
         executor.add_node(node)
         task = executor.create_task(add, client, given.a, given.b)

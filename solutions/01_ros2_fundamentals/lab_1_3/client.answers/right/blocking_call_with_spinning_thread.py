@@ -18,7 +18,7 @@ try:
         a, b = map(int, sys.argv[1:3])
         print('Summe:', client.call(AddTwoInts.Request(a=b, b=a)).sum)
     else:
-        print('Kein Dienst da, ich gebe auf.')
+        print('Kein Dienst da (not available), ich gebe auf.')
 finally:
     executor.shutdown()
     thread.join()

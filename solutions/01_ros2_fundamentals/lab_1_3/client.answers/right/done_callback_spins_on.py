@@ -20,7 +20,7 @@ class Client(Node):
             self.timer.cancel()
             self.client.call_async(self.numbers).add_done_callback(self.got_it)
         elif time.monotonic() > self.until:
-            self.get_logger().error('nobody serves add_two_ints')
+            self.get_logger().error('add_two_ints is not available')
             raise SystemExit(1)
 
     def got_it(self, future):

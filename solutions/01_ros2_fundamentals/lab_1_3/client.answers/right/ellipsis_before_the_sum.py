@@ -11,7 +11,7 @@ def main():
     node = Node('asking')
     client = node.create_client(AddTwoInts, 'add_two_ints')
     if not client.wait_for_service(timeout_sec=5.0):
-        node.get_logger().error('the service add_two_ints is not there')
+        node.get_logger().error('the service add_two_ints is not available')
         raise SystemExit(1)
     request = AddTwoInts.Request(a=int(sys.argv[1]), b=int(sys.argv[2]))
     print('asking for the sum...', end='', flush=True)

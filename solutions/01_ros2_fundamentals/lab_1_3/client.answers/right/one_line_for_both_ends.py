@@ -1,4 +1,4 @@
-# Right: one line tells both ends: "service found: True, sum: 12", or "service found: False, sum: None" where there is none after five seconds.
+# Right: one line tells both ends: "service found, sum: 12", or "service not available, sum: None" where there is none after five seconds.
 import sys
 from typing import NamedTuple
 
@@ -25,7 +25,7 @@ def main() -> None:
     rclpy.init()
     node = rclpy.create_node('add_two_ints_client')
     outcome = ask(node, a, b, patience_sec=5.0)
-    node.get_logger().info(f'service found: {outcome.found}, sum: {outcome.total}')
+    node.get_logger().info(f'service {"found" if outcome.found else "not available"}, sum: {outcome.total}')
     node.destroy_node()
     rclpy.shutdown()
 

@@ -25,7 +25,7 @@ def main():
     rclpy.init()
     node = TwoInts()
     if not node.cli.wait_for_service(timeout_sec=5.0):
-        raise RuntimeError('add_two_ints is not there')
+        raise RuntimeError('add_two_ints is not available')
     total = node.add(a, b)
     node.get_logger().info(f'Final sum: {total}')
 

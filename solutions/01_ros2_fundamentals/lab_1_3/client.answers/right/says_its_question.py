@@ -12,7 +12,7 @@ def main():
     client = node.create_client(AddTwoInts, 'add_two_ints')
     node.get_logger().info(f'I want to know what {a} + {b} is')
     if not client.wait_for_service(timeout_sec=5.0):
-        node.get_logger().error(f'nobody can add {a} and {b}: there is no service add_two_ints')
+        node.get_logger().error(f'cannot add {a} and {b}: the service add_two_ints is not available')
         rclpy.shutdown()
         sys.exit(1)
     future = client.call_async(AddTwoInts.Request(a=a, b=b))

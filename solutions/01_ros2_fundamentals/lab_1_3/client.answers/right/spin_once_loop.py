@@ -15,7 +15,7 @@ def main(a, b):
             break
         rclpy.spin_once(node, timeout_sec=0.1)
     else:
-        log.fatal('⏳ add_two_ints never came')
+        log.fatal('⏳ add_two_ints not available')
         return 1
     request = AddTwoInts.Request()
     request.a, request.b = a, b

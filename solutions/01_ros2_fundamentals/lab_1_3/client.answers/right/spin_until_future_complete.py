@@ -25,7 +25,7 @@ def main():
     rclpy.init()
     node = AddTwoIntsClient()
     if not node.cli.wait_for_service(timeout_sec=5.0):
-        sys.exit('add_two_ints is not there')
+        sys.exit('add_two_ints is not available')
     node.get_logger().info(f'{a} + {b} = {node.ask(a, b)}')
     node.destroy_node()
     rclpy.shutdown()

@@ -36,7 +36,7 @@ def main():
     until = time.monotonic() + 5
     while not node.fib.server_is_ready():
         if time.monotonic() > until:
-            node.get_logger().fatal('no server')
+            node.get_logger().fatal('server not available')
             return
         time.sleep(0.02)
     executor = SingleThreadedExecutor()

@@ -18,11 +18,11 @@ class Caller(Node):
 
     def run(self, order):
         if not self.client.wait_for_server(timeout_sec=5.0):
-            self.get_logger().error('nobody serves fibonacci')
+            self.get_logger().error('fibonacci is not available')
             return
         answer = self.client.send_goal(Fibonacci.Goal(order=order), feedback_callback=self.show)
         if answer.status == 0:
-            self.get_logger().error('the server did not take the goal')
+            self.get_logger().error('the server REJECTED the goal')
         elif answer.status == 4:
             self.get_logger().info(f'done: {answer.result.sequence.tolist()}')
         else:

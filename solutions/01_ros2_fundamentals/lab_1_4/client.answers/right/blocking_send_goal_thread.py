@@ -18,7 +18,7 @@ thread.start()
 
 def bestelle(ordnung):
     if not client.wait_for_server(timeout_sec=4.0):
-        return 'Niemand bietet fibonacci an.'
+        return 'Niemand bietet fibonacci an: not available.'
     handle = client.send_goal_async(
         Fibonacci.Goal(order=ordnung),
         feedback_callback=lambda m: print('bisher:', *m.feedback.partial_sequence),
@@ -28,11 +28,11 @@ def bestelle(ordnung):
     fertig.wait()
     handle = handle.result()
     if not handle.accepted:
-        return 'Der Auftrag wurde abgelehnt.'
+        return 'Der Auftrag wurde abgelehnt (rejected).'
     ende = handle.get_result()
     if ende.status == 4:
         return f'Fertig: {ende.result.sequence.tolist()}'
-    return f'Daraus wurde nichts, der Dienst hat aufgegeben.'
+    return f'Daraus wurde nichts, der Dienst hat aufgegeben (aborted).'
 
 
 print(bestelle(int(sys.argv[1])))

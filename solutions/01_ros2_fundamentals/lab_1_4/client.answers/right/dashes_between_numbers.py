@@ -18,7 +18,7 @@ def main():
     node = rclpy.create_node('dashes')
     client = ActionClient(node, Fibonacci, 'fibonacci')
     if not client.wait_for_server(timeout_sec=5.0):
-        sys.exit('no action server fibonacci')
+        sys.exit('no action server: fibonacci not available')
     sent = client.send_goal_async(
         Fibonacci.Goal(order=int(sys.argv[1])), lambda m: print('so far:', text(m.feedback.partial_sequence))
     )

@@ -15,14 +15,14 @@ class GoalFailed(RuntimeError):
 def fibonacci(node, order):
     client = ActionClient(node, Fibonacci, 'fibonacci')
     if not client.wait_for_server(timeout_sec=3.0):
-        raise TimeoutError('no server of fibonacci within 3 s')
+        raise TimeoutError('fibonacci not available within 3 s')
     log = node.get_logger()
     sending = client.send_goal_async(
         Fibonacci.Goal(order=order), lambda m: log.info(f'+ {m.feedback.partial_sequence[-1]}')
     )
     rclpy.spin_until_future_complete(node, sending)
     if not sending.result().accepted:
-        raise GoalFailed('not accepted')
+        raise GoalFailed('rejected: not accepted')
     waiting = sending.result().get_result_async()
     rclpy.spin_until_future_complete(node, waiting)
     if waiting.result().status != GoalStatus.STATUS_SUCCEEDED:

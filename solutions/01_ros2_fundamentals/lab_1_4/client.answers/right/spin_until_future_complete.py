@@ -23,7 +23,7 @@ class FibonacciClient(Node):
         rclpy.spin_until_future_complete(self, sending)
         goal_handle = sending.result()
         if not goal_handle.accepted:
-            self.get_logger().error('the goal was refused')
+            self.get_logger().error('the goal was rejected')
             return
         ending = goal_handle.get_result_async()
         rclpy.spin_until_future_complete(self, ending)
@@ -39,7 +39,7 @@ def main():
     rclpy.init()
     node = FibonacciClient()
     if not node.client.wait_for_server(timeout_sec=5.0):
-        sys.exit('there is no action server')
+        sys.exit('the action server is not available')
     node.run(order)
     node.destroy_node()
     rclpy.shutdown()

@@ -19,10 +19,10 @@ def main():
         if future.result().accepted:
             future.result().get_result_async().add_done_callback(done)
         else:
-            print('refused: order', sys.argv[1])
+            print('rejected: order', sys.argv[1])
 
     if not client.wait_for_server(timeout_sec=6.0):
-        print('no action server, giving up', file=sys.stderr)
+        print('action server not available, giving up', file=sys.stderr)
         return
     goal = Fibonacci.Goal()
     goal.order = int(sys.argv[1])

@@ -25,7 +25,7 @@ class Watcher(Node):
     def on_answer(self, future):
         self.goal = future.result()
         if not self.goal.accepted:
-            self.get_logger().error('refused')
+            self.get_logger().error('rejected')
             rclpy.shutdown()
 
     def on_feedback(self, message):
@@ -50,7 +50,7 @@ def main():
     rclpy.init()
     node = Watcher()
     if not node.client.wait_for_server(timeout_sec=5.0):
-        raise SystemExit('no action server')
+        raise SystemExit('action server not available')
     node.send(int(sys.argv[1]))
     rclpy.spin(node)
 

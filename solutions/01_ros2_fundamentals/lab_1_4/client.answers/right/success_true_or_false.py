@@ -22,7 +22,7 @@ class FibonacciClient(Node):
 
     def run(self, order):
         if not self.actions.wait_for_server(timeout_sec=5.0):
-            raise TimeoutError('no server for fibonacci')
+            raise TimeoutError('fibonacci is not available')
         goal_handle = self.wait(
             self.actions.send_goal_async(Fibonacci.Goal(order=order), feedback_callback=self.on_feedback)
         )
@@ -32,8 +32,7 @@ class FibonacciClient(Node):
         answer = self.wait(goal_handle.get_result_async())
         succeeded = answer.status == GoalStatus.STATUS_SUCCEEDED
         self.get_logger().info(f'goal succeeded: {succeeded}')
-        if succeeded:
-            print(*answer.result.sequence)
+        print(*answer.result.sequence if succeeded else ['status', answer.status])
 
 
 def main():

@@ -16,7 +16,7 @@ class FibonacciActionClient(Node):
     def send_goal(self, order):
         self.get_logger().info('Waiting for action server...')
         if not self._action_client.wait_for_server(timeout_sec=5.0):
-            raise TimeoutError('no action server')
+            raise TimeoutError('action server not available')
 
         goal_msg = Fibonacci.Goal()
         goal_msg.order = order

@@ -20,7 +20,7 @@ class FibonacciClient(Node):
         if not self.client.server_is_ready():
             self.patience -= 1
             if self.patience == 0:
-                raise SystemExit('there is no action server')
+                raise SystemExit('the action server is not available')
             return
         self.waiting.cancel()
         self.sending = self.client.send_goal_async(Fibonacci.Goal(order=self.order), feedback_callback=self.on_feedback)
@@ -31,7 +31,7 @@ class FibonacciClient(Node):
             return
         self.asking.cancel()
         if not self.sending.result().accepted:
-            raise SystemExit('the goal was refused')
+            raise SystemExit('the goal was rejected')
         self.ending = self.sending.result().get_result_async()
         self.ending.add_done_callback(self.on_result)
 

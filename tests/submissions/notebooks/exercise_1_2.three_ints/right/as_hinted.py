@@ -17,7 +17,7 @@ def add_three_ints(a: int, b: int, c: int, patience_sec: float = 5.0) -> int:
     try:
         client = node.create_client(AddTwoInts, "add_two_ints")
         if not client.wait_for_service(timeout_sec=patience_sec):
-            raise TimeoutError("add_two_ints is not there")
+            raise TimeoutError("add_two_ints is not available")
         total = ask(node, client, ask(node, client, a, b, patience_sec), c, patience_sec)
         node.get_logger().info(f"the sum is {total}")
         return total

@@ -12,7 +12,7 @@ def add_three_ints(a, b, c, patience_sec=5.0):
 
     try:
         if not dienst.wait_for_service(timeout_sec=patience_sec):
-            raise TimeoutError("Der Dienst add_two_ints ist nicht da.")
+            raise TimeoutError("Der Dienst add_two_ints ist nicht da (not available).")
         with spinning(knoten):
             summe = plus(c, plus(a, b))
         knoten.get_logger().warning(f"Summe: {summe}")

@@ -17,7 +17,7 @@ def add_three_ints(a, b, c, patience_sec=5.0):
     adder = Adder()
     try:
         if not adder.client.wait_for_service(patience_sec):
-            raise TimeoutError("waited in vain for add_two_ints")
+            raise TimeoutError("add_two_ints not available, waited in vain")
         with spinning(adder):
             total = adder.sum_of(adder.sum_of(a, b), c)
         adder.get_logger().info(f"The final sum is {total}.")

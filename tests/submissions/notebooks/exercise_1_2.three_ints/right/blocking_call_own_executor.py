@@ -14,7 +14,7 @@ def add_three_ints(a, b, c, patience_sec=5.0):
     thread = threading.Thread(target=executor.spin)
     try:
         if not client.wait_for_service(timeout_sec=patience_sec):
-            raise TimeoutError("the service add_two_ints has not come")
+            raise TimeoutError("the service add_two_ints was not available")
         thread.start()
         first = client.call(AddTwoInts.Request(a=a, b=b)).sum
         total = client.call(AddTwoInts.Request(a=first, b=c)).sum

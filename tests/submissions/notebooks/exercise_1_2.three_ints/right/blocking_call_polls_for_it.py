@@ -11,7 +11,7 @@ def add_three_ints(a, b, c, patience_sec=5.0):
     while not client.service_is_ready():
         if time.monotonic() > deadline:
             node.destroy_node()
-            raise TimeoutError(f"no add_two_ints within {patience_sec} s")
+            raise TimeoutError(f"add_two_ints not available within {patience_sec} s")
         time.sleep(0.1)
     with spinning(node):
         total = a

@@ -6,7 +6,7 @@ def add_three_ints(a, b, c, patience_sec=5.0):
     client = node.create_client(AddTwoInts, "/add_two_ints")
     if not client.wait_for_service(patience_sec):
         node.destroy_node()
-        raise TimeoutError(f"{client.srv_name}: nobody there")
+        raise TimeoutError(f"{client.srv_name}: not available")
     with spinning(node):
         first = client.call(AddTwoInts.Request(a=a, b=b))
         second = client.call(AddTwoInts.Request(a=c, b=first.sum))

@@ -12,7 +12,7 @@ class Adder:
         self.client = self.node.create_client(AddTwoInts, "add_two_ints")
         if not self.client.wait_for_service(timeout_sec=self.patience_sec):
             self.node.destroy_node()
-            raise TimeoutError("no service")
+            raise TimeoutError("service not available")
         return self
 
     def __exit__(self, *exc_info):

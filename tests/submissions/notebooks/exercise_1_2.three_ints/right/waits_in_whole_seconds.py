@@ -20,7 +20,7 @@ def add_three_ints(a: int, b: int, c: int, patience_sec: float = 5.0) -> int:
             if client.wait_for_service(timeout_sec=1.0):
                 break
         else:
-            raise TimeoutError("add_two_ints is not there")
+            raise TimeoutError("add_two_ints is not available")
         total = ask(node, client, ask(node, client, a, b, patience_sec), c, patience_sec)
         node.get_logger().info(f"the sum is {total}")
         return total

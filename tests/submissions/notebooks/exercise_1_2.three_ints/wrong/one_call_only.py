@@ -12,7 +12,7 @@ def add_three_ints(a, b, c, patience_sec=5.0):
     try:
         client = node.create_client(AddTwoInts, "add_two_ints")
         if not client.wait_for_service(timeout_sec=patience_sec):
-            raise TimeoutError("no service")
+            raise TimeoutError("service not available")
         return ask(node, client, a, b, patience_sec) + c
     finally:
         node.destroy_node()

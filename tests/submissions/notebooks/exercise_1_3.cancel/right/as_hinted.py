@@ -17,7 +17,7 @@ class CancelingClient(Node):
 # %% extra
 def send_goal(client, order):
     if not client.fibonacci.wait_for_server(timeout_sec=5.0):
-        raise TimeoutError("no server")
+        raise TimeoutError("action server not available")
     goal = Fibonacci.Goal()
     goal.order = order
     future = client.fibonacci.send_goal_async(goal, feedback_callback=client.on_feedback)
@@ -29,7 +29,7 @@ def run_client():
     try:
         send_goal(client, order=20)
         if not client.goal_handle.accepted:
-            raise RuntimeError("the goal was not accepted")
+            raise RuntimeError("the goal was rejected")
         answer = wait_for(client, client.goal_handle.get_result_async(), 30.0)
         client.get_logger().info(f"final status: {STATUS_NAMES[answer.status]}")
     finally:

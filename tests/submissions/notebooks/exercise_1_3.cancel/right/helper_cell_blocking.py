@@ -30,7 +30,7 @@ def run_client():
         sending.add_done_callback(lambda future: accepted.set())
         accepted.wait(timeout=10.0)
         if not sending.result().accepted:
-            raise RuntimeError("the server refuses the goal")
+            raise RuntimeError("the server rejected the goal")
         counter.reached.wait(timeout=30.0)
         sending.result().cancel_goal()
         status = sending.result().get_result().status

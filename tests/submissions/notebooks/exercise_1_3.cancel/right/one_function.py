@@ -13,7 +13,7 @@ def run_client():
         rclpy.spin_until_future_complete(node, sending)
         goal = sending.result()
         if not goal.accepted:
-            print("the goal was refused")
+            print("the goal was rejected")
             return None
         while len(feedbacks) < 5:
             rclpy.spin_once(node, timeout_sec=0.1)

@@ -14,7 +14,7 @@ class CancelingClient(Node):
 # %% extra
 def send_goal(client, order):
     if not client.fibonacci.wait_for_server(timeout_sec=5.0):
-        raise TimeoutError("no server")
+        raise TimeoutError("action server not available")
     future = client.fibonacci.send_goal_async(Fibonacci.Goal(order=order), feedback_callback=client.on_feedback)
     client.goal_handle = wait_for(client, future, 5.0)
 

@@ -8,7 +8,7 @@ rclpy.init()
 node = rclpy.create_node("odometer")
 client = node.create_client(AddTwoInts, "add_distances")
 if not client.wait_for_service(timeout_sec=5.0):
-    sys.exit("nobody adds distances here")
+    sys.exit("add_distances is not available")
 request = AddTwoInts.Request()
 request.a, request.b = int(sys.argv[1]), int(sys.argv[2])
 future = client.call_async(request)

@@ -14,7 +14,7 @@ def add_two_ints(a: int, b: int, patience_sec: float = 5.0) -> int:
     try:
         client = node.create_client(AddTwoInts, "add_two_ints")
         if not client.wait_for_service(timeout_sec=patience_sec):
-            raise TimeoutError(f"nobody offers add_two_ints after {patience_sec} s")
+            raise TimeoutError(f"the service add_two_ints is not available after {patience_sec} s")
         future = client.call_async(AddTwoInts.Request(a=a, b=b))
         rclpy.spin_until_future_complete(node, future, timeout_sec=patience_sec)
         if not future.done():

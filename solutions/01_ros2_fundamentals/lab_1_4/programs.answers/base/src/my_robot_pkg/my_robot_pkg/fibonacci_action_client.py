@@ -45,7 +45,7 @@ def send_goal(client: FibonacciClient, order: int, patience_sec: float) -> Any:
     Raises TimeoutError when there is no server, or no answer, within patience_sec seconds.
     """
     if not client.actions.wait_for_server(timeout_sec=patience_sec):
-        raise TimeoutError(f"nobody offers the action fibonacci after {patience_sec} s")
+        raise TimeoutError(f"the action fibonacci is not available after {patience_sec} s")
     goal = Fibonacci.Goal(order=order)
     future = client.actions.send_goal_async(goal, feedback_callback=client.on_feedback)
     return wait_for(client, future, patience_sec)

@@ -1,0 +1,217 @@
+"""Brings ``submitted`` to what was decided. Only what ``collect`` itself wrote there is ever replaced or removed."""
+
+from __future__ import annotations
+
+import hashlib
+from collections import defaultdict
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory
+from autograder.grading.classes.timestamps import TIMESTAMP, timestamp_text
+from autograder.grading.collecting.inbox import BEFORE, BY_HAND, Arrival, Delivery, Inbox
+from autograder.grading.collecting.outcomes import State
+from autograder.grading.collecting.records import Collected, CollectedRecords, History
+from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
+from autograder.regular_files import write_whole
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+    from pathlib import Path
+
+    from autograder.grading.collecting.decide import Decision, Place
+    from autograder.grading.collecting.proposals import Line
+
+
+class Submitted:
+    """The folder ``submitted`` of a class.
+
+    Args:
+        directory: The class, locked by this process.
+        inbox: The inbox of the class.
+    """
+
+    def __init__(self, directory: ClassDirectory, inbox: Inbox) -> None:
+        self._directory = directory
+        self._inbox = inbox
+        self._records = CollectedRecords(directory.state)
+
+    def path(self, place: Place) -> Path:
+        """Return the path of a notebook."""
+        student, assignment, notebook = place
+        return self._directory.path / "submitted" / student / assignment / f"{notebook}{SUFFIX}"
+
+    def content(self, place: Place) -> str:
+        """Return the hash of the bytes at a place; empty if there is no file that can be read."""
+        try:
+            data = _existing_file(self.path(place))
+        except UnreadableSubmission:
+            return ""
+        return hashlib.sha256(data).hexdigest() if data is not None else ""
+
+    def take_in(self) -> None:
+        """Put into the inbox what a person has put into ``submitted``, and what was collected before there was one.
+
+        Raises:
+            OSError: It could not be written.
+        """
+        known = {(one.form, file) for one in self._inbox.deliveries.values() for file in one.arrivals}
+        for submission in self._directory.submissions()[0]:
+            student, assignment = submission.student, submission.assignment
+            history = self._records.get(assignment, student) or History({})
+            found: list[tuple[str, str, bytes | None, Collected | None]] = []
+            for notebook in self._directory.notebooks(assignment):
+                place = (student, assignment, notebook)
+                content, ours = self.content(place), history.now.get(notebook)
+                is_ours = content in history.written(notebook)
+                if content and not (is_ours and content in self._inbox):
+                    facts = ours if ours and ours.content == content else None
+                    if ours and not facts and ours.content not in self._inbox:
+                        facts = Collected(notebook, content, when=ours.when)
+                    form = BEFORE if is_ours else BY_HAND
+                    found.append((notebook, form, read_bytes(self.path(place)), facts))
+            found += [
+                (one.notebook, BEFORE, self._records.kept(assignment, student, one.content), one)
+                for one in history.before
+                if one.content not in self._inbox
+            ]
+            for notebook, form, data, facts in found:
+                if data is None:
+                    continue
+                content = hashlib.sha256(data).hexdigest()
+                arrival = Arrival("submitted", (student, assignment, f"{notebook}{SUFFIX}"), content=content)
+                if (form, arrival) not in known:
+                    with self._inbox.receiving() as receiving:
+                        receiving.keep(data)
+                        receiving.delivery = Delivery((arrival,), form=form, known=facts)
+
+    def bring(
+        self, counts: Mapping[Place, Line], decisions: Iterable[Decision]
+    ) -> Iterator[tuple[Place, State, str]]:
+        """Put each notebook that counts at its place, and remove what no longer counts.
+
+        Returns:
+            The places with ``PLACED``, ``UNCHANGED``, ``EARLIER`` (removed) or ``NOT_PLACED``, and the reason.
+
+        Raises:
+            OSError: It could not be written.
+        """
+        before: dict[Place, list[Line]] = defaultdict(list)
+        refused: dict[Place, set[str]] = defaultdict(set)
+        for one in decisions:
+            place = (one.student, one.line.assignment, one.line.notebook)
+            if one.state == State.EARLIER and one.line.notebook:
+                before[place].append(one.line)
+            elif one.state == State.LEFT_OUT:
+                refused[place].add(one.line.content)
+        wanted: dict[tuple[str, str], dict[str, Line]] = defaultdict(dict)
+        for (student, assignment, notebook), line in counts.items():
+            wanted[student, assignment][notebook] = line
+        for key in sorted({*wanted, *self._records.all(), *(place[:2] for place in refused if all(place))}):
+            yield from self._bring(*key, wanted[key], before, refused)
+
+    def _bring(
+        self,
+        student: str,
+        assignment: str,
+        wanted: Mapping[str, Line],
+        before: Mapping[Place, list[Line]],
+        refused: Mapping[Place, set[str]],
+    ) -> Iterator[tuple[Place, State, str]]:
+        old = self._records.get(assignment, student) or History({})
+        now: dict[str, Collected] = {}
+        changes: list[tuple[Place, Line | None, str]] = []
+        names = {place[2] for place in refused if place[:2] == (student, assignment)}
+        for notebook in sorted({*wanted, *old.now, *names}):
+            place, line = (student, assignment, notebook), wanted.get(notebook)
+            try:
+                there = _existing_file(self.path(place))
+            except UnreadableSubmission as error:
+                now |= {notebook: old.now[notebook]} if notebook in old.now else {}
+                if line:
+                    yield place, State.NOT_PLACED, str(error)
+                continue
+            content = hashlib.sha256(there).hexdigest() if there is not None else ""
+            if line is None:
+                ours = old.written(notebook) | refused.get(place, set())
+                if content and content in self._inbox and content in ours:
+                    changes.append((place, None, content))
+                continue
+            known = old.now.get(notebook)
+            if not line.is_by_hand or line.when or line.use or known:
+                now[notebook] = _record(line)
+            if content == line.content:
+                yield place, State.UNCHANGED, ""
+            else:
+                changes.append((place, line, content))
+        earlier = tuple(
+            _record(line)
+            for notebook in now
+            for line in before[student, assignment, notebook]
+            if line.content != now[notebook].content
+        )
+        history = History(now, earlier)
+        # The record goes first: who is killed in between finds files there that `collect` knows as its own.
+        passing = {place[2]: content for place, _, content in changes if content}
+        if changes:
+            self._records.put(assignment, student, replace(history, replaced=passing))
+        for place, line, content in changes:
+            if line is None:
+                self.path(place).unlink()
+                yield place, State.EARLIER, ""
+            else:
+                write_whole(self.path(place), self._inbox.read(line.content))
+                yield place, State.PLACED, "replaced" if content else ""
+        if history != old and (now or old != History({})):
+            self._records.put(assignment, student, history)
+        if now or changes:
+            self._stamp(student, assignment, history)
+
+    def _stamp(self, student: str, assignment: str, history: History) -> None:
+        """Write the time of handing in as nbgrader reads it."""
+        stamp = self._directory.path / "submitted" / student / assignment / TIMESTAMP
+        text = f"{timestamp_text(history.when)}\n".encode() if history.when else b""
+        if text:
+            try:
+                if read_bytes(stamp) == text:
+                    return
+            except UnreadableSubmission:
+                pass
+            write_whole(stamp, text)
+        elif stamp.parent.is_dir():
+            stamp.unlink(missing_ok=True)
+            if not any(stamp.parent.iterdir()):
+                stamp.parent.rmdir()
+                if not any(stamp.parent.parent.iterdir()):
+                    stamp.parent.parent.rmdir()
+
+
+def _record(line: Line) -> Collected:
+    """What is written down of a notebook."""
+    return Collected(
+        line.notebook,
+        line.content,
+        when=line.when,
+        order=line.order,
+        late=line.late,
+        lms="" if line.is_by_hand else line.lms,
+        number=line.number,
+        name=line.name,
+        file=line.file,
+        by_hand=line.is_by_hand,
+    )
+
+
+def _existing_file(path: Path) -> bytes | None:
+    """The file at a notebook's place; None if there is none.
+
+    Raises:
+        UnreadableSubmission: Something else is there.
+    """
+    for place in (path.parent.parent, path.parent, path):
+        if place.is_symlink():
+            raise UnreadableSubmission(f"{place} is a link: remove it")
+    try:
+        return read_bytes(path) if path.exists() else None
+    except UnreadableSubmission as error:
+        raise UnreadableSubmission(f"something else is at {path}: {error}") from error

@@ -1,0 +1,107 @@
+"""Files in ``submitted`` that are not graded where they are: a browser's number is taken away, the rest is named."""
+
+from __future__ import annotations
+
+import contextlib
+import unicodedata
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, Refused
+from autograder.grading.collecting.forms import base_and_number
+from environment.installation import COMMAND
+
+if TYPE_CHECKING:
+    from collections.abc import Container, Iterator
+    from pathlib import Path
+
+
+def put_right(directory: ClassDirectory) -> Iterator[str]:
+    """Rename what no person would want to rename, and yield a sentence on each.
+
+    That is the folder of a student whose letters a Mac has stored decomposed, as both names look alike, and the only
+    notebook of a folder, if a browser has put a number behind its name.
+    """
+    for folder in _folders(directory.path / "submitted"):
+        composed = folder.with_name(unicodedata.normalize("NFC", folder.name))
+        if composed != folder and _rename(folder, composed):
+            yield f"the folder {composed.name} was renamed: its letters were in decomposed form"
+    for folder, places in _of_assignments(directory):
+        others = _work(folder, places)
+        for place in places:
+            is_it = len(places) == len(others) == 1 and others[0].suffix.lower() == SUFFIX
+            if is_it and base_and_number(others[0].stem)[0].casefold() == place.stem.casefold():
+                label = f"{folder.parent.name}/{folder.name}/{place.name}"
+                if _rename(others[0], place):
+                    yield f"{label} was called {others[0].name} and is graded"
+
+
+def beside_their_place(directory: ClassDirectory) -> tuple[list[Refused], list[str]]:
+    """Return what a person has to move, and sentences that are worth knowing; one for each folder."""
+    submitted = directory.path / "submitted"
+    refused = _refused(
+        submitted, f"put it into {submitted}/STUDENT/ASSIGNMENT, or hand it to `{COMMAND} collect`"
+    )
+    notices, alike = [], defaultdict(list)
+    for student in _folders(submitted):
+        alike[student.name.casefold()].append(student.name)
+        refused += _refused(student, f"move it into {student}/ASSIGNMENT, or remove it")
+    for folder, places in _of_assignments(directory):
+        others = _work(folder, places)
+        if missing := [place for place in places if not place.exists()]:
+            refused += _refused(folder, f"put the notebook that counts at {missing[0]}", places)
+        elif others:
+            label = f"{folder.parent.name}/{folder.name}/{others[0].name}"
+            more = f" and {len(others) - 1} more are" if others[1:] else " is"
+            notices.append(f"{label}{more} left out: the notebook in the same folder is graded")
+    notices += [
+        f"{' and '.join(names)} are two students, told apart by capitals alone"
+        for names in alike.values()
+        if names[1:]
+    ]
+    return refused, notices
+
+
+def _of_assignments(directory: ClassDirectory) -> Iterator[tuple[Path, list[Path]]]:
+    """The folders of work, with the places of the notebooks in each."""
+    notebooks = {name: directory.notebooks(name) for name in directory.assignments()}
+    for student in _folders(directory.path / "submitted"):
+        for folder in _folders(student):
+            if folder.name in notebooks:
+                yield folder, [folder / f"{name}{SUFFIX}" for name in notebooks[folder.name]]
+
+
+def _refused(folder: Path, what_to_do: str, places: Container[Path] = ()) -> list[Refused]:
+    """One line for all notebooks and archives in a folder, except those at their place."""
+    others = _work(folder, places)
+    more = f", nor are {len(others) - 1} more files here" if others[1:] else ""
+    return [Refused(others[0], f"it is not graded where it is{more}: {what_to_do}")] if others else []
+
+
+def _rename(entry: Path, place: Path) -> bool:
+    with contextlib.suppress(OSError):
+        if not place.exists() and not place.is_symlink():
+            entry.rename(place)
+            return True
+    return False
+
+
+def _work(folder: Path, places: Container[Path]) -> list[Path]:
+    return [
+        entry
+        for entry in _entries(folder)
+        if entry.suffix.lower() in (SUFFIX, ".zip")
+        and entry.is_file()
+        and not entry.is_symlink()
+        and entry not in places
+    ]
+
+
+def _folders(folder: Path) -> list[Path]:
+    return [entry for entry in _entries(folder) if entry.is_dir() and not entry.is_symlink()]
+
+
+def _entries(folder: Path) -> list[Path]:
+    with contextlib.suppress(OSError):
+        return sorted(entry for entry in folder.iterdir() if not entry.name.startswith("."))
+    return []

@@ -1,0 +1,188 @@
+"""The inbox of a class: every file that ``collect`` was given, by the hash of its bytes, and where it came from.
+
+One command is one delivery, and one file on the disk: a zip with the new bytes and a list of what came. It is written
+whole or not at all, and nothing in it ever changes. A delivery that comes again is the same file.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import secrets
+import zipfile
+from dataclasses import dataclass
+from datetime import datetime  # noqa: TC003  (msgspec reads the annotations)
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder.grading.collecting.records import Collected  # noqa: TC001
+from autograder.regular_files import keep_whole
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+FOLDER = "inbox"
+BY_HAND = "by hand"
+"""The form of files that a person has put into ``submitted``."""
+BEFORE = "collected before"
+"""The form of files that were collected when there was no inbox."""
+_LIST = "delivery.json"
+_KEY_LENGTH = 10
+
+
+@dataclass(frozen=True)
+class Arrival:
+    """A file that came.
+
+    Attributes:
+        source: The name of the zip that it came in; empty for a folder or a single file.
+        parts: The path in there. For a file in a student's archive, the path of that archive.
+        inner: The path in a student's archive: the student chose it.
+        content: The hash of the bytes; empty if they could not be read.
+        refused: Why the bytes could not be read; empty if they were.
+        levels: How many names at the top of the path may name a student.
+        is_own: Whether the instructor named this file or folder as the work of one student.
+        is_list: Whether it is a list of the system's, and no work.
+        is_archive: Whether it is a student's archive; the files in it have arrivals of their own.
+    """
+
+    source: str
+    parts: tuple[str, ...]
+    inner: tuple[str, ...] = ()
+    content: str = ""
+    refused: str = ""
+    levels: int = 1
+    is_own: bool = False
+    is_list: bool = False
+    is_archive: bool = False
+
+    @property
+    def name(self) -> str:
+        """The name of the file itself."""
+        return (self.source, *self.parts, *self.inner)[-1]
+
+    @property
+    def path(self) -> str:
+        """The path without the zip around it."""
+        return "/".join((*self.parts, *self.inner))
+
+    @property
+    def label(self) -> str:
+        """The name of the file in messages."""
+        return "/".join(part for part in (self.source, self.path) if part)
+
+    @property
+    def key(self) -> str:
+        """What identifies the file in the table: the same bytes under the same name, from whatever download."""
+        named = f"{self.content}\0{self.path or self.source}".encode("utf-8", "replace")
+        return f"#{hashlib.sha256(named).hexdigest()[:_KEY_LENGTH]}"
+
+
+@dataclass(frozen=True)
+class Delivery:
+    """The files of one command, with its options.
+
+    Attributes:
+        arrivals: The files.
+        form: The system that the instructor named, or :data:`BY_HAND`; empty if the names show it.
+        names: The pattern of ``--names``.
+        zone: The time zone of ``--timezone``; empty for that of the class.
+        assignment: The assignment of ``--assignment``.
+        handed_in: The time of ``--handed-in``.
+        known: What was written down of the only file when there was no inbox.
+    """
+
+    arrivals: tuple[Arrival, ...]
+    form: str = ""
+    names: str = ""
+    zone: str = ""
+    assignment: str = ""
+    handed_in: datetime | None = None
+    known: Collected | None = None
+
+    @property
+    def id(self) -> str:
+        """The same for the same files and options, in whatever order they were named."""
+        return hashlib.sha256(msgspec.json.encode(self)).hexdigest()[:16]
+
+
+class Inbox:
+    """The deliveries of a class.
+
+    Args:
+        state: The class's folder of the autograder's own files.
+    """
+
+    def __init__(self, state: Path) -> None:
+        self._folder = state / FOLDER
+        self._where: dict[str, Path] = {}
+        self._deliveries: dict[str, Delivery] = {}
+        for path in sorted(self._folder.glob("*.zip")):
+            with zipfile.ZipFile(path) as archive:
+                self._deliveries[path.stem] = msgspec.json.decode(archive.read(_LIST), type=Delivery)
+                self._where |= {name: path for name in archive.namelist() if name != _LIST}
+
+    @property
+    def deliveries(self) -> dict[str, Delivery]:
+        """All deliveries by their ids, in an order that does not depend on when they came."""
+        return dict(sorted(self._deliveries.items()))
+
+    def __contains__(self, content: str) -> bool:
+        return content in self._where
+
+    def read(self, content: str) -> bytes:
+        """Return the bytes of this hash.
+
+        Raises:
+            KeyError: The inbox does not have them.
+        """
+        with zipfile.ZipFile(self._where[content]) as archive:
+            return archive.read(content)
+
+    @contextlib.contextmanager
+    def receiving(self) -> Iterator[Receiving]:
+        """Take in a delivery: nothing is kept of it until the block has ended.
+
+        Raises:
+            OSError: It could not be written.
+        """
+        self._folder.mkdir(parents=True, exist_ok=True)
+        beside = self._folder / f".delivery.{secrets.randbelow(10**12)}.new"
+        try:
+            with zipfile.ZipFile(beside, "x", zipfile.ZIP_DEFLATED) as archive:
+                receiving = Receiving(self, archive)
+                yield receiving
+                delivery = receiving.delivery
+                archive.writestr(_LIST, msgspec.json.encode(delivery))
+            path = self._folder / f"{delivery.id}.zip"
+            if delivery.arrivals and not path.exists():
+                keep_whole(beside, path)
+                self._deliveries[delivery.id] = delivery
+                self._where |= dict.fromkeys(receiving.new, path)
+        finally:
+            beside.unlink(missing_ok=True)
+
+
+class Receiving:
+    """A delivery that is being taken in.
+
+    Attributes:
+        delivery: The files with their options; set before the delivery ends.
+        new: The hashes of the bytes that the inbox did not have.
+    """
+
+    def __init__(self, inbox: Inbox, archive: zipfile.ZipFile) -> None:
+        self._inbox = inbox
+        self._archive = archive
+        self.delivery = Delivery(())
+        self.new: set[str] = set()
+
+    def keep(self, data: bytes) -> str:
+        """Keep these bytes and return their hash."""
+        content = hashlib.sha256(data).hexdigest()
+        if content not in self._inbox and content not in self.new:
+            self.new.add(content)
+            self._archive.writestr(zipfile.ZipInfo(content), data, zipfile.ZIP_DEFLATED)
+        return content

@@ -1,0 +1,109 @@
+"""Names of an instructor's own: ``--names '{id}-{last}_{assignment}'`` says what stands where."""
+
+from __future__ import annotations
+
+import itertools
+import unicodedata
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.grading.collecting.forms import Found, base_and_number, read_time
+from autograder.grading.errors import GradingError
+from autograder.grading.table.roster import Identity
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterator, Sequence
+
+WORDS = ("id", "email", "login", "number", "name", "first", "last", "assignment", "time", "file", "any")
+_MOST_WAYS = 100
+"""Ways to divide a name that are looked at; a name of a system has a few."""
+_WORD = re2.compile(r"\{([^{}]*)\}")
+
+
+def check_names(pattern: str, columns: Collection[str]) -> None:
+    """Check a pattern of ``--names``.
+
+    Args:
+        pattern: The pattern.
+        columns: The columns of ``students.csv`` that the pattern may name, too.
+
+    Raises:
+        GradingError: The pattern has a word that is not known, a word twice, or none that names a student.
+    """
+    words = [word for word in _WORD.findall(pattern) if word != "any"]
+    says_who = set(words) & {*WORDS[:7], *columns}
+    if set(words) - {*WORDS, *columns} or len(set(words)) < len(words) or not says_who:
+        known = ", ".join(f"{{{word}}}" for word in (*WORDS, *columns))
+        raise GradingError(
+            f"--names {pattern!r} cannot be used. It takes each of {known} once, and one that says who it is: for "
+            "example '{id}-{last}_{assignment}'."
+        )
+
+
+def read_names(pattern: str) -> Callable[[Sequence[str]], Found | None]:
+    """Return a reader of paths for a pattern.
+
+    A pattern without a slash describes one name: a file without its suffix, or a folder around it. One with slashes
+    describes the end of a path. ``{any}`` stands for any text, and a word that is not of :data:`WORDS` for a column of
+    ``students.csv``.
+    """
+    words = _WORD.findall(pattern)
+    literals = [unicodedata.normalize("NFC", one).casefold() for one in _WORD.split(pattern)[::2]]
+    levels = pattern.count("/") + 1
+
+    def read(parts: Sequence[str]) -> Found | None:
+        for place in range(len(parts)):
+            names = list(parts[place : place + levels])
+            is_file = place + levels >= len(parts)
+            bare = names[-1].rpartition(".")[0] if is_file and "." in names[-1] else names[-1]
+            for last in dict.fromkeys((bare, names[-1])):
+                text = "/".join([*names[:-1], last])
+                ways = (
+                    list(itertools.islice(_ways(text, literals, words), _MOST_WAYS))
+                    if len(names) == levels
+                    else []
+                )
+                if ways:
+                    # ben_b_7 may be of ben or of ben_b: the class knows one of them, or it is not clear.
+                    found = [_found(way, parts[-1]) for way in ways]
+                    return replace(found[0], readings=tuple(dict.fromkeys(one.identity for one in found)))
+        return None
+
+    return read
+
+
+def _ways(text: str, literals: Sequence[str], words: Sequence[str]) -> Iterator[dict[str, str]]:
+    """All ways to divide a text into the words between these literals."""
+    folded, first = text.casefold(), literals[0]
+    if len(folded) != len(text) or not folded.startswith(first):
+        return
+    text, folded = text[len(first) :], folded[len(first) :]
+    if not words:
+        if not text:
+            yield {}
+        return
+    for end in range(words[0] != "any", len(text) + 1):
+        if "/" in text[:end]:
+            return
+        if folded.startswith(literals[1], end):
+            for way in _ways(text[end:], literals[1:], words[1:]):
+                yield {words[0]: text[:end], **way}
+
+
+def _found(said: dict[str, str], file: str) -> Found:
+    word = {name: value.strip() for name, value in said.items()}
+    login = word.get("id") or word.get("email") or word.get("login") or word.get("number") or ""
+    name = word.get("name") or f"{word.get('first', '')} {word.get('last', '')}".strip()
+    column = next((one for one in word if one not in WORDS), "")
+    number = word.get(column, "")
+    identity = Identity(column, number, login, name)
+    time = word.get("time", "")
+    return Found(
+        identity,
+        word.get("file") or file,
+        when=read_time(time),
+        time=time,
+        assignment=base_and_number(word.get("assignment", ""))[0],
+    )

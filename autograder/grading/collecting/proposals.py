@@ -1,0 +1,421 @@
+"""What the inbox and the class say of each file: its students, its notebook, its time; or why they do not say it."""
+
+from __future__ import annotations
+
+import functools
+from collections import defaultdict
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING
+from zoneinfo import ZoneInfo
+
+from autograder.grading.classes.class_directory import SUFFIX, reason_against_name
+from autograder.grading.collecting.assignment_of import AssignmentOf, NoTarget, is_notebook, stem_of
+from autograder.grading.collecting.inbox import BEFORE, BY_HAND
+from autograder.grading.collecting.lists import GRADESCOPE, LARGEST_OF_GRADESCOPE, Entry, read_list
+from autograder.grading.collecting.records import Collected, repository_in
+from autograder.grading.collecting.student_of import Owners, StudentOf
+from autograder.grading.table.roster import Identity, Roster, Student
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+    from datetime import tzinfo
+
+    from autograder.grading.classes.class_directory import ClassDirectory
+    from autograder.grading.collecting.inbox import Arrival, Delivery, Inbox
+    from autograder.grading.rebuilding.named_cells import Target
+
+PAGES = ("index.html", "grades.csv", GRADESCOPE)
+"""Files that a system itself adds to a download."""
+_ONE_NUMBER = ("canvas", "moodle", "brightspace")
+"""The systems that give a person one number in a download, and in which people may change their names."""
+_OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".tgz", ".tar", ".bz2", ".xz", ".zst")
+
+
+@dataclass(frozen=True)
+class Edit:
+    """What a person wrote in the cells of a line; an empty cell is no edit.
+
+    Attributes:
+        use: ``yes`` or ``no``.
+        student: Ids with semicolons between them.
+        assignment: The name of an assignment.
+        notebook: The name of a notebook of it.
+        handed_in: A time as :meth:`datetime.isoformat` writes it, in UTC.
+    """
+
+    use: str = ""
+    student: str = ""
+    assignment: str = ""
+    notebook: str = ""
+    handed_in: str = ""
+
+
+@dataclass(frozen=True)
+class Line:
+    """One file, as far as anything is known of it.
+
+    Attributes:
+        key: Its key in the table.
+        label: Its name in messages.
+        content: The hash of its bytes.
+        students: The ids of its students; empty if they are not known.
+        assignment: The name of its assignment; empty if it is not known. For other files, the one that its name means.
+        notebook: The name of its notebook; empty if it is not known, or if the file is not a notebook.
+        when: The time of handing in, in UTC.
+        order: Grows with later files of one student, if the system numbers files.
+        late: Whether the system marks it as late.
+        use: ``yes`` or ``no`` as a person wrote it.
+        reason: Why it cannot count, and what to do.
+        is_soft: Whether it needs nobody's attention once the notebook of its student counts.
+        what_to_do: What to do if that notebook does not come.
+        lms, number, name, file: The system, and what it calls the student and the file.
+        number_of_copy: The number that a browser has added to the name.
+        is_named: Whether the file is called as the notebook is.
+        is_sure: Whether a number of the system's names the student, and not a name that students may choose.
+        readings: How the name of the file names the student.
+        repository: The repository on GitHub that it came from.
+        came_in: The downloads that it came in.
+        unread_time: The time in the name, if nobody could read it.
+        rank: Less if the command named the system, more if it named the assignment: the line that is shown of several.
+    """
+
+    key: str
+    label: str
+    content: str = ""
+    students: tuple[str, ...] = ()
+    assignment: str = ""
+    notebook: str = ""
+    when: datetime | None = None
+    order: int = 0
+    late: bool = False
+    use: str = ""
+    reason: str = ""
+    is_soft: bool = False
+    what_to_do: str = ""
+    lms: str = ""
+    number: str = ""
+    name: str = ""
+    file: str = ""
+    number_of_copy: int = 0
+    is_named: bool = False
+    is_sure: bool = False
+    readings: tuple[Identity, ...] = ()
+    repository: str = ""
+    came_in: frozenset[str] = field(default_factory=frozenset)
+    unread_time: str = ""
+    rank: int = 0
+
+    @property
+    def is_by_hand(self) -> bool:
+        """Whether a person put it into ``submitted``."""
+        return self.lms == BY_HAND
+
+    @property
+    def is_by_name(self) -> bool:
+        """Whether only a name says whose it is, though the system has a number for each person."""
+        return self.lms in _ONE_NUMBER and not self.is_sure
+
+
+class Proposals:
+    """Reads the inbox with the eyes of a class.
+
+    Args:
+        directory: The class.
+        inbox: Its inbox.
+        roster: Its students.
+        edits: What a person wrote, by the key of the line.
+    """
+
+    def __init__(
+        self, directory: ClassDirectory, inbox: Inbox, roster: Roster, edits: Mapping[str, Edit]
+    ) -> None:
+        self._directory = directory
+        self._inbox = inbox
+        self._roster = roster
+        self._edits = edits
+        self._assignments = functools.cache(lambda asked: AssignmentOf(directory, asked))
+        self._names = frozenset(directory.assignments())
+        self._entries = entries_of(inbox)
+
+    def student_of(self, delivery: Delivery, id_: str = "") -> StudentOf:
+        """Who is who in a delivery.
+
+        Lists say of all deliveries who a number is. Their times are those of the files beside them: a later list may be
+        about a later file. A list that came alone is about all files.
+        """
+        alone = (
+            one for one, of in self._inbox.deliveries.items() if all(file.is_list for file in of.arrivals)
+        )
+        known = [entry for entries in self._entries.values() for entry in entries]
+        own = self._entries.get(id_, [])
+        others = [entry for one in alone if one != id_ for entry in self._entries[one]]
+        return StudentOf(
+            self._roster, self._assignments("").is_notebook, delivery.form, delivery.names, known, own, others
+        )
+
+    def lines(self) -> list[Line]:
+        """Return one line for each file, with what a person wrote in the place of what is proposed.
+
+        A file that was collected for two assignments has two.
+        """
+        found: dict[str, list[Line]] = defaultdict(list)
+        for id_, delivery in self._inbox.deliveries.items():
+            for line in self._of_delivery(id_, delivery):
+                found[line.key].append(line)
+        lines = []
+        for several in found.values():
+            targets: dict[tuple[str, str], list[Line]] = defaultdict(list)
+            for one in several:
+                if not one.reason:
+                    targets[one.assignment, one.notebook].append(one)
+            lines += [_merged(ones) for ones in targets.values()] or [_merged(several)]
+        return lines
+
+    def _of_delivery(self, id_: str, delivery: Delivery) -> Iterator[Line]:
+        student_of = self.student_of(delivery, id_)
+        zone = ZoneInfo(delivery.zone) if delivery.zone else self._directory.time_zone
+        reading = _Reading(self, student_of, delivery, id_, zone)
+        unopened = set()
+        for arrival in delivery.arrivals:
+            place = (arrival.source, arrival.parts)
+            edit = self._edits.get(arrival.key, Edit())
+            if arrival.is_archive:
+                is_open = edit.student or not student_of.reason_against(reading.owners(arrival))
+                if is_open:
+                    reading.given[place] = edit
+                    continue
+                unopened.add(place)
+            elif arrival.inner and place in unopened:
+                continue
+            yield reading.line(arrival, edit)
+
+    def data(self, content: str) -> bytes:
+        """The bytes of a file."""
+        return self._inbox.read(content)
+
+    def target(self, name: str, content: str, asked: str) -> tuple[Target, bool]:
+        """The notebook that a file is, and whether its name says so."""
+        return self._assignments(asked).target(name, self._inbox.read(content))
+
+    def named(self, name: str, asked: str) -> str:
+        """The assignment that a file's name means."""
+        return self._assignments(asked).named(name)
+
+    def notebooks(self, assignment: str) -> list[str]:
+        """The notebooks of an assignment; none if the class has no assignment of that name, which may be any text."""
+        return self._directory.notebooks(assignment) if assignment in self._names else []
+
+    def known(self, written: str) -> tuple[tuple[str, ...], str]:
+        """The ids of the students that a person wrote, or what is wrong with the cell."""
+        ids = []
+        for one in (part.strip() for part in written.replace(",", ";").split(";") if part.strip()):
+            found = self._roster.find(Identity(login=one, name=one)) or self._without_zeros(one)
+            if len(found) != 1 and self._roster.students:
+                return (), f"students.csv has no student {one}: correct the cell student"
+            id_ = found[0].id if found else one
+            if reason := reason_against_name(id_):
+                return (), f"{id_} cannot be a student's id: {reason}: correct the cell student"
+            ids.append(id_)
+        return tuple(ids), ""
+
+    def _without_zeros(self, written: str) -> tuple[Student, ...]:
+        """The student of a number whose zeros a spreadsheet has dropped."""
+        plain = written.removesuffix(",0").removesuffix(".0").lstrip("0")
+        alike = [one for one in self._roster.students.values() if one.id.lstrip("0") == plain]
+        return tuple(alike) if plain.isdecimal() and len(alike) == 1 else ()
+
+
+class _Reading:
+    """Reads the files of one delivery.
+
+    Attributes:
+        given: What a person wrote for a student's archive, which holds for the files in it.
+    """
+
+    def __init__(
+        self, proposals: Proposals, student_of: StudentOf, delivery: Delivery, id_: str, zone: tzinfo
+    ) -> None:
+        self._proposals = proposals
+        self._student_of = student_of
+        self._delivery = delivery
+        self._id = id_
+        self._zone = zone
+        self.given: dict[tuple[str, tuple[str, ...]], Edit] = {}
+
+    def owners(self, arrival: Arrival) -> Owners:
+        """The students that the name of a file names."""
+        return self._student_of.owners(arrival.parts, arrival.levels, is_alone=arrival.is_own)
+
+    def line(self, arrival: Arrival, edit: Edit) -> Line:
+        """The line of a file."""
+        rank = bool(self._delivery.assignment) - bool(self._delivery.form or self._delivery.names)
+        line = Line(arrival.key, arrival.label, arrival.content, use=edit.use, rank=rank)
+        if arrival.is_list:
+            return replace(line, reason="it was read as a list", is_soft=True, lms="list")
+        if self._delivery.form in (BY_HAND, BEFORE):
+            line = self._by_hand(line, arrival)
+        else:
+            line = self._collected(line, arrival, edit)
+        if edit.handed_in:
+            line = replace(line, when=datetime.fromisoformat(edit.handed_in))
+        return line
+
+    def _by_hand(self, line: Line, arrival: Arrival) -> Line:
+        """The line of a file from ``submitted``, with what was known of it when there was no inbox."""
+        student, assignment, name = arrival.parts
+        notebook = name.removesuffix(SUFFIX)
+        known = self._delivery.known or Collected(notebook, arrival.content)
+        return replace(
+            line,
+            students=(student,),
+            assignment=assignment,
+            notebook=notebook,
+            lms=BY_HAND if self._delivery.form == BY_HAND else known.lms,
+            number=known.number,
+            name=known.name,
+            file=known.file or arrival.path,
+            when=known.when,
+            order=known.order,
+            late=known.late,
+            is_sure=True,
+        )
+
+    def _collected(self, line: Line, arrival: Arrival, edit: Edit) -> Line:
+        owners, found = self.owners(arrival), None
+        given = self.given.get((arrival.source, arrival.parts), Edit())
+        written = edit.student or given.student
+        asked = edit.assignment or given.assignment or self._delivery.assignment
+        reason = self._student_of.reason_against(owners)
+        ids = () if reason else tuple(one.id for (one,) in owners.members)
+        if written:
+            ids, reason = self._proposals.known(written)
+        if (found := owners.found) is not None:
+            identity = found.identity
+            when = self._in_utc(found.when or self._student_of.time(identity))
+            line = replace(
+                line,
+                lms=identity.lms,
+                number=identity.number or (identity.login if identity.name else ""),
+                name=identity.name or identity.login,
+                file="/".join(arrival.parts),
+                when=when or self._delivery.handed_in,
+                unread_time=found.time if found.time and found.when is None else "",
+                order=found.order,
+                late=found.late,
+                is_sure=owners.is_sure or bool(written),
+                readings=found.readings[:1] or (identity,),
+                repository=repository_in(identity.lms, arrival.parts, identity.number or identity.name),
+            )
+            # What a name says of the assignment counts if the class has one of that name.
+            asked = asked or (found.assignment if self._proposals.notebooks(found.assignment) else "")
+        line = replace(line, students=ids, came_in=frozenset({f"{self._id}/{arrival.source}"}))
+        # In a student's own archive, the name says which notebook it is, though not whose.
+        own_name = found.file if found and not arrival.inner else arrival.name
+        named = self._proposals.named(own_name if owners.members else arrival.name, asked)
+        if arrival.refused:
+            is_work = arrival.name.lower().endswith((".ipynb", ".zip")) or not ids
+            return replace(line, assignment=named, reason=arrival.refused, is_soft=not is_work)
+        data = self._proposals.data(arrival.content)
+        if arrival.is_archive:
+            return replace(line, assignment=named, reason=reason)
+        if not is_notebook(arrival.name, data):
+            return self._no_notebook(line, arrival.name, named, is_inner=bool(arrival.inner))
+        if reason:
+            return replace(line, assignment=named, reason=reason)
+        return self._with_target(line, own_name, edit, asked)
+
+    def _with_target(self, line: Line, name: str, edit: Edit, asked: str) -> Line:
+        """The same line with the notebook that it is, or the reason why that is not clear."""
+        if edit.assignment or edit.notebook:
+            return self._as_written(line, name, edit, asked)
+        try:
+            (assignment, notebook), is_named = self._proposals.target(name, line.content, asked)
+        except NoTarget as error:
+            is_soft = error.is_left_out or bool(error.assignment)
+            named = error.assignment or self._proposals.named(name, asked)
+            return replace(line, assignment=named, reason=str(error), is_soft=is_soft)
+        return replace(
+            line,
+            assignment=assignment,
+            notebook=notebook,
+            is_named=is_named,
+            number_of_copy=stem_of(name)[1],
+        )
+
+    def _as_written(self, line: Line, name: str, edit: Edit, asked: str) -> Line:
+        """The same line with the notebook that a person wrote."""
+        several = self._proposals.notebooks(asked) if asked else []
+        stem = stem_of(name)[0]
+        notebook = (
+            edit.notebook or (stem if stem in several else "") or (several[0] if len(several) == 1 else "")
+        )
+        if notebook not in several:
+            known = ", ".join(several)
+            reason = (
+                f"write its notebook under notebook ({known})"
+                if several
+                else f"the class has no assignment {asked or 'here'}: correct the cell assignment"
+            )
+            return replace(line, assignment=asked if several else "", reason=reason)
+        return replace(line, assignment=asked, notebook=notebook, number_of_copy=stem_of(name)[1])
+
+    def _no_notebook(self, line: Line, name: str, named: str, *, is_inner: bool) -> Line:
+        """The line of a file that is no notebook: a picture, a page of the system, or the work in another form."""
+        if name in PAGES and not is_inner and not line.students:
+            return replace(line, reason="it is a page of the LMS", is_soft=True, lms="list")
+        student = line.students[0] if len(line.students) == 1 else "STUDENT"
+        line = replace(line, assignment=named)
+        if name.lower().endswith(_OTHER_ARCHIVES):
+            what = "it is an archive that is not opened here: unpack it into a folder named"
+            return replace(line, reason=f"{what} {student}, and collect that")
+        what_to_do = f"ask for the notebook, or put it into submitted/{student}/{named or 'ASSIGNMENT'}"
+        return replace(line, reason="it is no notebook", what_to_do=what_to_do, is_soft=True)
+
+    def _in_utc(self, when: datetime | None) -> datetime | None:
+        return in_utc(when, self._zone)
+
+
+def in_utc(when: datetime | None, zone: tzinfo) -> datetime | None:
+    """A time in UTC; None for one that no clock shows, such as a time of the year 1 or 9999."""
+    if when is None:
+        return None
+    try:
+        return (when if when.tzinfo else when.replace(tzinfo=zone)).astimezone(UTC)
+    except (OverflowError, ValueError):
+        return None
+
+
+def entries_of(inbox: Inbox) -> dict[str, list[Entry]]:
+    """The entries of all lists in the inbox, by the delivery that they came in."""
+    return {
+        id_: [
+            entry
+            for one in delivery.arrivals
+            if one.is_list
+            for entry in read_list(one.name, inbox.read(one.content)) or []
+        ]
+        for id_, delivery in inbox.deliveries.items()
+    }
+
+
+def _merged(several: Iterable[Line]) -> Line:
+    """One line of a file that came several times: what is known best of it, and its latest time."""
+    lines = sorted(several, key=lambda one: (bool(one.reason), one.is_soft, one.rank, one.label))
+    best = lines[0]
+    when = max((one.when for one in lines if one.when), default=None)
+    came_in = frozenset().union(*(one.came_in for one in lines))
+    return replace(best, when=when, came_in=came_in)
+
+
+def list_trouble(name: str, data: bytes) -> str:
+    """Why a list cannot be used; empty if it can."""
+    if name == GRADESCOPE and len(data) > LARGEST_OF_GRADESCOPE:
+        return f"Gradescope's list may have {LARGEST_OF_GRADESCOPE / 1e6:.0f} MB"
+    if read_list(name, data) is None:
+        return (
+            "it is none of the lists that are known: Moodle's grading worksheet, Canvas's gradebook or its "
+            "submissions, GitHub Classroom's grades, Gradescope's scores, or one with the columns id and handed_in. "
+            "A list of your students belongs into students.csv of the class"
+        )
+    return ""

@@ -1,0 +1,358 @@
+"""``collected.csv``: one line for each file, as ``collect`` has decided; what a person writes into it wins.
+
+A cell is a person's if it differs from the cell in the table that ``collect`` wrote. So a copy of each table is kept,
+and the table says which copy it is: one that somebody had open while others collected is compared with what it was.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections import defaultdict
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+import re2
+from babel.core import Locale, UnknownLocaleError, get_global
+
+from autograder.grading.collecting.forms import read_time
+from autograder.grading.collecting.inbox import FOLDER
+from autograder.grading.collecting.outcomes import State
+from autograder.grading.collecting.proposals import Edit, in_utc
+from autograder.grading.collecting.records import CollectedRecords
+from autograder.grading.reporting.spreadsheet import defused, original
+from autograder.regular_files import write_whole
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from autograder.grading.classes.class_directory import ClassDirectory
+    from autograder.grading.collecting.decide import Decision
+
+NAME = "collected.csv"
+COLUMNS = (
+    "use", "counts", "student", "assignment", "notebook", "handed_in", "system", "number", "name", "file", "reason",
+)  # fmt: skip
+EDITABLE = ("use", "student", "assignment", "notebook", "handed_in")
+WAITS = "waits"
+_WORDS = {
+    State.PLACED: "yes",
+    State.UNCHANGED: "the same",
+    State.EARLIER: "earlier",
+    State.BESIDE: "beside",
+    State.NOT_PLACED: WAITS,
+    State.LEFT_OUT: "no",
+}
+_FIRST = (WAITS, "yes")
+_YES = frozenset(["yes", "y", "ja", "j", "x", "1", "true", "wahr", "oui", "si", "sí"])
+_NO = frozenset(["no", "n", "nein", "0", "false", "falsch", "non"])
+_KEY = re2.compile(r"#[0-9a-f]{10}$")
+_STAMP = re2.compile(r"table (\d+)")
+# What a spreadsheet would take for a number, a date or a truth.
+_TURNS = re2.compile(r"(?i)^(?:[\d.,]|[a-zäéû]{3,9}[ .-]*\d+$|(?:true|false|wahr|falsch)$)")
+_IN_NUMBERS = re2.compile(
+    r"^(\d{1,4})([./-])(\d{1,2})[./-](\d{2,4})(?:[ T,]+(\d{1,2}):(\d\d)(?::(\d\d))?)?( ?[AaPp][Mm])?$"
+)
+
+
+@dataclass(frozen=True)
+class Waiting:
+    """A line that waits for a person.
+
+    Attributes:
+        label: The file, with the key of its line.
+        reason: Why it waits, and what to do.
+        student: The id of its student; empty if it is not known.
+        assignment: The name of its assignment; empty if it is not known.
+        line: The number of the line in the table.
+    """
+
+    label: str
+    reason: str
+    student: str
+    assignment: str
+    line: int
+
+    @property
+    def cell(self) -> str:
+        """The cell that a person edits; empty if the table has no such line."""
+        column = "student" if not self.student else "assignment" if not self.assignment else "use"
+        return f" ({NAME}, line {self.line}, cell {column})" if self.line else ""
+
+    @property
+    def sentence(self) -> str:
+        """Why the file waits, and which cell to edit."""
+        return f"{self.student}{': ' if self.student else ''}{self.reason}{self.cell}"
+
+
+class Table:
+    """The table of a class.
+
+    Args:
+        directory: The class.
+    """
+
+    def __init__(self, directory: ClassDirectory) -> None:
+        self.path = directory.path / NAME
+        self._copies = directory.state / FOLDER / "tables"
+        self._edits_file = directory.state / FOLDER / "edits.json"
+        self._records = CollectedRecords(directory.state)
+        self._zone = directory.time_zone
+        self._locale = _locale_of(self._zone.key)
+
+    def edits(self) -> dict[str, Edit]:
+        """What people have written, as far as ``collect`` has read it."""
+        try:
+            return msgspec.json.decode(self._edits_file.read_bytes(), type=dict[str, Edit])
+        except (OSError, msgspec.MsgspecError):
+            return {}
+
+    def put_edits(self, edits: Mapping[str, Edit]) -> None:
+        """Keep what people have written.
+
+        Raises:
+            OSError: It could not be written.
+        """
+        kept = {key: edit for key, edit in sorted(edits.items()) if edit != Edit()}
+        if kept != self.edits():
+            write_whole(self._edits_file, msgspec.json.encode(kept))
+
+    @property
+    def is_edited(self) -> bool:
+        """Whether somebody has changed the table since ``collect`` wrote it."""
+        try:
+            return self.path.read_bytes() != self._copy(self._newest).read_bytes()
+        except OSError:
+            return False
+
+    def read(self) -> tuple[dict[str, Edit], list[str]]:
+        """Return what people have written until now, and a sentence on each cell that is not clear."""
+        edits = self.edits()
+        try:
+            data = self.path.read_bytes()
+        except OSError:
+            missing = [f"there was no {NAME}: it is written again, with all that was edited before"]
+            return edits, missing if self._newest else []
+        rows, stamp = _rows(data)
+        if rows is None:
+            return edits, [
+                f"{NAME} has no line that names its columns, so nothing was read from it: it is written anew"
+            ]
+        before = {row["file"]: row for row in (_rows(self._read_copy(stamp))[0] or [])}
+        notes: list[str] = []
+        lines: dict[str, list[dict[str, str]]] = defaultdict(list)
+        for row in rows:
+            lines[row["file"]].append(row)
+        for key, several in lines.items():
+            if any(one != several[0] for one in several):
+                notes.append(
+                    f"{NAME} has {len(several)} lines of {key}, and they differ: no edit of these was read"
+                )
+            elif key not in before:
+                notes.append(
+                    f"{NAME} has a line of {key or 'no file'}, which is no file that was collected: it was left out"
+                )
+            else:
+                edits[key] = self._read_line(key, several[0], before[key], edits.get(key, Edit()), notes)
+        if gone := len(before.keys() - lines.keys()):
+            notes.append(f"{NAME} lacks {gone} lines: they are written again. To leave a file out, write no")
+        return edits, notes
+
+    def _read_line(
+        self, key: str, row: Mapping[str, str], before: Mapping[str, str], edit: Edit, notes: list[str]
+    ) -> Edit:
+        for column in EDITABLE:
+            written, was = row.get(column, "").strip(), before.get(column, "").strip()
+            if _is_same(written, was) or (
+                column == "handed_in" and written and self._time(written) == self._time(was)
+            ):
+                continue
+            value, trouble = self._value(column, written)
+            if trouble:
+                notes.append(f"{NAME}, the line of {key}: {trouble}")
+            else:
+                edit = replace(edit, **{column: value})
+        return edit
+
+    def _value(self, column: str, written: str) -> tuple[str, str]:
+        """The value of a cell, and what is wrong with it."""
+        if column == "use" and written:
+            word = written.casefold()
+            if word in _YES | _NO:
+                return ("yes" if word in _YES else "no"), ""
+            return "", f"{written!r} under use is neither yes nor no"
+        if column == "handed_in" and written:
+            when = self._time(written)
+            return (
+                (when, "")
+                if when
+                else ("", f"{written!r} under handed_in is not a time: write 2026-01-31 14:05")
+            )
+        return written, ""
+
+    def _time(self, written: str) -> str:
+        """A time as a person or a spreadsheet writes it, in UTC; empty if it is none."""
+        when = read_time(self._in_order(written))
+        found = in_utc(when, self._zone)
+        return found.isoformat() if found else ""
+
+    def _in_order(self, written: str) -> str:
+        """A date such as 31.01.2026 with the year in front; the country says what 3/4 means."""
+        match = _IN_NUMBERS.match(written.strip())
+        if match is None or len(match[1]) == 4:
+            return written
+        one, two, year = int(match[1]), int(match[3]), match[4]
+        is_month_first = match[2] == "/" and self._locale.date_formats["short"].pattern.upper().startswith(
+            "M"
+        )
+        month, day = (one, two) if is_month_first and one <= 12 else (two, one)
+        hour = int(match[5] or 0)
+        if match[8]:
+            hour = hour % 12 + (12 if "p" in match[8].lower() else 0)
+        year = year if len(year) == 4 else f"20{year}"
+        return f"{year}-{month:02}-{day:02} {hour:02}:{match[6] or '00'}:{match[7] or '00'}"
+
+    def write(self, decisions: Iterable[Decision], edits: Mapping[str, Edit]) -> None:
+        """Write the table if anything in it has changed.
+
+        Raises:
+            OSError: It could not be written.
+        """
+        lines = defaultdict(list)
+        for one in decisions:
+            lines[one.line.key].append(one)
+        rows = sorted(
+            (self._row(several, edits.get(key, Edit())) for key, several in lines.items()),
+            key=lambda row: (
+                _FIRST.index(row[1]) if row[1] in _FIRST else len(_FIRST), row[3], row[2], row[4], row[9],
+            ),
+        )  # fmt: skip
+        number = self._newest
+        if rows and (not self.path.exists() or self._text(number, rows) != self.path.read_bytes()):
+            data = self._text(number + 1, rows)
+            write_whole(self._copy(number + 1), data)
+            write_whole(self.path, data)
+
+    def _text(self, number: int, rows: Iterable[Sequence[str]]) -> bytes:
+        text = io.StringIO(newline="")
+        symbol = self._locale.number_symbols.get("latn", {}).get("decimal", ".")
+        writer = csv.writer(text, delimiter=";" if symbol == "," else ",", lineterminator="\r\n")
+        writer.writerow([*COLUMNS[:-1], f"{COLUMNS[-1]} (table {number})"])
+        writer.writerows(rows)
+        return text.getvalue().encode("utf-8-sig", "replace")
+
+    def _row(self, several: Sequence[Decision], edit: Edit) -> list[str]:
+        line = several[0].line
+        states = {one.state for one in several}
+        waits = [one for one in several if one.state == State.NOT_PLACED]
+        shown = (waits or several)[0]
+        state = State.PLACED if State.PLACED in states and not waits else shown.state
+        when = line.when.astimezone(self._zone).isoformat(" ", "seconds") if line.when else ""
+        cells: dict[str, Any] = {
+            "use": line.use,
+            "counts": _WORDS[state],
+            "student": "; ".join(line.students) or edit.student,
+            "assignment": "; ".join(sorted({one.line.assignment for one in several} - {""}))
+            or edit.assignment,
+            "notebook": line.notebook or edit.notebook,
+            "handed_in": f"{when[:19]} {when[19:]}" if when else "",
+            "system": line.lms,
+            "number": line.number,
+            "name": line.name,
+            "file": f"{line.label} {line.key}",
+            "reason": shown.reason,
+        }
+        return [_guarded(str(cells[name])) if name != "handed_in" else cells[name] for name in COLUMNS]
+
+    @property
+    def _newest(self) -> int:
+        return max(
+            (int(path.stem) for path in self._copies.glob("*.csv") if path.stem.isdecimal()), default=0
+        )
+
+    def _copy(self, number: int) -> Any:
+        return self._copies / f"{number}.csv"
+
+    def _read_copy(self, stamp: int) -> bytes:
+        path = self._copy(stamp)
+        path = path if path.exists() else self._copy(self._newest)
+        return path.read_bytes() if path.exists() else b""
+
+    def lines(self) -> list[dict[str, str]]:
+        """The lines by their columns, as ``collect`` wrote them last."""
+        return _rows(self._read_copy(self._newest), whole=True)[0] or []
+
+    def waiting(self) -> list[Waiting]:
+        """The lines that wait, as ``collect`` wrote them last, and what an older version noted as waiting."""
+        lines = self.lines()
+        named = {row["file"].rpartition(" ")[0] for row in lines}
+        again = "it was collected with a version that did not keep such files: collect it again"
+        return [
+            Waiting(row["file"], row["reason"], row["student"], row["assignment"], number)
+            for number, row in enumerate(lines, 2)
+            if row["counts"] == WAITS
+        ] + [Waiting(label, again, "", "", 0) for label in self._records.waiting() if label not in named]
+
+
+def _rows(data: bytes, *, whole: bool = False) -> tuple[list[dict[str, str]] | None, int]:
+    """The lines of a table by their columns, however a spreadsheet has saved it, and the number of the table.
+
+    In each line, ``file`` is the key alone unless the ``whole`` cell is asked for; None if no line names the columns.
+    """
+    text = _text_of(data)
+    first = text.partition("\n")[0]
+    delimiter = max(",;\t", key=first.count)
+    header, *lines = list(csv.reader(io.StringIO(text), delimiter=delimiter)) or [[]]
+    stamp = _STAMP.search(first)
+    columns = [name.partition(" (")[0].strip().lower() for name in header]
+    if not {"use", "file"} <= set(columns):
+        return None, 0
+    rows = []
+    for line in lines:
+        cells = [_unguarded(cell) for cell in line]
+        row = dict(zip(columns, cells, strict=False))
+        if not any(cells):
+            continue
+        key = _KEY.search(row.get("file", "").strip())
+        row = {**dict.fromkeys(COLUMNS, ""), **row}
+        rows.append(row if whole else {**row, "file": key[0] if key else row["file"]})
+    return rows, int(stamp[1]) if stamp else 0
+
+
+def _text_of(data: bytes) -> str:
+    """The text of a file that Excel or LibreOffice has saved in the letters of its system."""
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return data.decode("utf-16", "replace")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("cp1252", "replace")
+
+
+def _guarded(cell: str) -> str:
+    """A cell that no spreadsheet runs, or takes for a number or a date."""
+    safe = defused(cell)
+    return f"'{safe}" if safe == cell and _TURNS.match(cell) else safe
+
+
+def _unguarded(cell: str) -> str:
+    return cell[1:] if cell[:1] == "'" and _TURNS.match(cell[1:]) else original(cell)
+
+
+def _is_same(written: str, was: str) -> bool:
+    """True if a cell is as it was, but for the zeros that a spreadsheet drops in front of a number."""
+    if written.casefold() == was.casefold():
+        return True
+    return (
+        bool(written) and written.isdecimal() and was.isdecimal() and written.lstrip("0") == was.lstrip("0")
+    )
+
+
+def _locale_of(zone: str) -> Locale:
+    """The customs of the country of a time zone: which separator its spreadsheets expect, and the order of a date."""
+    territory = get_global("zone_territories").get(zone, "001")
+    try:
+        return Locale.parse(f"und_{territory}")
+    except (ValueError, UnknownLocaleError):
+        return Locale("en")

@@ -1,0 +1,102 @@
+"""Check the answers of workers, on this machine as on others, before anything of them is used.
+
+A worker executes students' programs, so one of them may have taken it over. An admitted answer has the form of an
+execution of the task that was asked for, points within the limits of its checks, and outputs without anything that a
+browser would run.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder.boxes.execution import Execution
+from autograder.boxes.outputs import Budget, OutputCollector
+from autograder.grading.running.orders import LARGEST_ANSWER, Offer
+from autograder.verdict import State
+
+if TYPE_CHECKING:
+    from autograder.boxes.execution import CellRun, Check
+    from autograder.boxes.limits import Limits
+    from autograder.grading.task import Task
+    from autograder.verdict import Verdict
+
+LARGEST_OFFER = 4_000
+_MOST_SLOTS = 1_000
+_LONGEST_WORDS = 1_000
+_CLOSING_LINE = 200
+"""Bytes that a sandbox itself adds to an output that it had to cut."""
+
+
+class Forged(ValueError):
+    """The answer of a worker is not possible; the message says why."""
+
+
+def admitted_offer(data: bytes) -> Offer:
+    """Return the offer of a worker, checked.
+
+    Raises:
+        Forged: The data is not a valid offer.
+    """
+    if len(data) > LARGEST_OFFER:
+        raise Forged(f"its offer has {len(data)} bytes")
+    try:
+        offer = msgspec.json.decode(data, type=Offer)
+    except msgspec.MsgspecError as error:
+        raise Forged(f"its offer is not valid: {error}") from error
+    if not 1 <= offer.slots <= _MOST_SLOTS:
+        raise Forged(f"it offers to execute {offer.slots} notebooks at once")
+    return offer
+
+
+def admitted(data: bytes, task: Task) -> Execution:
+    """Return the execution of a task from a worker's answer, checked, with harmless outputs.
+
+    Raises:
+        Forged: The data is not an execution, or not one of this task.
+    """
+    if len(data) > LARGEST_ANSWER:
+        raise Forged(f"its answer has {len(data)} bytes")
+    try:
+        execution = msgspec.json.decode(data, type=Execution)
+    except (msgspec.MsgspecError, RecursionError) as error:
+        raise Forged(f"its answer is not an execution: {error}") from error
+    if len(execution.cells) not in ({len(task.cells), 0} if execution.trouble else {len(task.cells)}):
+        raise Forged(f"its answer has {len(execution.cells)} cells, and the notebook has {len(task.cells)}")
+    checks = {index: cell.check for index, cell in enumerate(task.cells) if cell.check is not None}
+    if execution.verdicts.keys() != checks.keys():
+        raise Forged("its verdicts are not those of the notebook's checks")
+    if any(place not in range(len(task.cells)) for place in execution.as_typed):
+        raise Forged("its answer names a cell that does not exist")
+    for index, check in checks.items():
+        _look_at(execution.verdicts[index], check)
+    cells = _harmless(execution.cells, task.limits)
+    return replace(execution, cells=cells, trouble=printable(execution.trouble))
+
+
+def printable(text: str) -> str:
+    """Return a worker's text as one line of limited length, without control characters."""
+    return "".join(letter if letter.isprintable() else " " for letter in text[:_LONGEST_WORDS])
+
+
+def _look_at(verdict: Verdict, check: Check) -> None:
+    if verdict.exercise != check.exercise:
+        raise Forged(f"it judged {verdict.exercise!r:.60} instead of {check.exercise}")
+    if verdict.max_score != check.points or not 0 <= verdict.score <= check.points:
+        raise Forged(f"it gives {verdict.score:g} of {verdict.max_score:g} points for {check.exercise}")
+    if verdict.state is State.NOT_CHECKED and verdict.score:
+        raise Forged("it gives points for what could not be checked")
+
+
+def _harmless(cells: tuple[CellRun, ...], limits: Limits) -> tuple[CellRun, ...]:
+    """Return the cells with their outputs cut and cleaned again, as their sandbox should have done."""
+    budget = Budget(limits.notebook_output_bytes + _CLOSING_LINE * len(cells))
+    harmless = []
+    for cell in cells:
+        collector = OutputCollector(limits.cell_output_bytes + _CLOSING_LINE, budget)
+        for output in cell.outputs:
+            collector.handle(str(output.get("output_type")), output)
+        harmless.append(replace(cell, outputs=collector.outputs(), error=cell.error[:500]))
+    return tuple(harmless)

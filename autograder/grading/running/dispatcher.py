@@ -1,0 +1,409 @@
+"""Give tasks to workers, on this machine or of a cluster, and decide which tasks run again and which run alone.
+
+A worker is a machine with slots: this machine is one worker. A task runs again, alone, if its execution proves nothing:
+the grader had trouble, or other tasks may have used up what this one was short of. A task also runs again if its worker
+has ended. No answer is used before :func:`autograder.grading.running.admission.admitted` has checked it.
+"""
+
+from __future__ import annotations
+
+import bisect
+import itertools
+import operator
+import time
+from collections import deque
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Protocol
+
+import msgspec
+
+from autograder.grading.errors import GradingError
+from autograder.grading.rebuilding.course_version import course_version
+from autograder.grading.running.admission import Forged, admitted, admitted_offer, printable
+from autograder.grading.running.orders import (
+    ADDRESS,
+    Answered,
+    Asked,
+    Broken,
+    Drop,
+    Failed,
+    Give,
+    Joined,
+    Left,
+    News,
+    Order,
+    Unfit,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Generator, Iterable, Iterator
+
+    from autograder.boxes.execution import Execution
+    from autograder.grading.running.orders import Command
+    from autograder.grading.task import Task
+
+ATTEMPTS = 3
+"""Limit of the workers that a task may lose: it may be what ends them."""
+_RETURN_SECONDS = 60.0
+"""Seconds to wait for a worker if none is left: a worker that ended is often started again."""
+_EXTRA_SECONDS = 90.0
+"""Seconds after a task's own time limits at which its worker counts as lost."""
+_MOST_IN_FLIGHT = 2_000
+_MOST_TROUBLES = 3
+
+
+class NoWorkers(GradingError):
+    """No worker can execute anything."""
+
+
+class SchedulerGone(GradingError):
+    """The scheduler of the cluster cannot be reached."""
+
+
+@dataclass
+class _Worker:
+    """A worker that was accepted."""
+
+    name: str
+    slots: int
+    troubles: int = 0
+    """The number of successive notebooks with trouble."""
+    flights: set[int] = field(default_factory=set)
+
+
+@dataclass
+class _Job:
+    """A task to execute, how often that was tried, and on which workers."""
+
+    task: Task
+    attempts: int = 0
+    tried: set[str] = field(default_factory=set)
+    alone: bool = False
+    """True after an execution that proves nothing: its worker executes nothing else at the same time."""
+    cpu_seconds: float = 0.0
+    """The processor time of that execution, in seconds."""
+
+
+@dataclass(frozen=True)
+class _Flight:
+    job: _Job
+    worker: str
+    deadline: float
+
+
+@dataclass(frozen=True)
+class Done:
+    """A task that was executed, or could not be."""
+
+    task: Task
+    execution: Execution
+
+
+class Link(Protocol):
+    """The connection to the workers."""
+
+    def say(self, command: Command) -> None:
+        """Send a command. If the connection is broken, do nothing: :meth:`hear` returns ``Broken`` then."""
+
+    def hear(self, within: float | None) -> News | None:
+        """Return the next message; None if none came within this number of seconds (None: no limit)."""
+
+
+class Dispatcher:
+    """Gives the tasks of one batch to workers.
+
+    Args:
+        link: The connection to the workers.
+        address: The address of the cluster's scheduler, for messages; empty for this machine.
+        judge: The class of the judge, as ``module:class``.
+        boxed: True if tasks run in sandboxes; a worker without any is refused then.
+        tell: Called with a sentence for the instructor, such as which worker was refused and why.
+        return_seconds: Seconds to wait for a worker if none is left.
+    """
+
+    def __init__(
+        self,
+        link: Link,
+        address: str,
+        *,
+        judge: str,
+        boxed: bool,
+        tell: Callable[[str], None],
+        return_seconds: float = _RETURN_SECONDS,
+    ) -> None:
+        self._link, self._address = link, address
+        self._judge, self._boxed, self._tell = judge, boxed, tell
+        self._return_seconds = return_seconds
+        self._workers: dict[str, _Worker] = {}
+        self._refused: dict[str, str] = {}
+        self._new: deque[_Job] = deque()
+        self._again: list[_Job] = []
+        self._alone: list[_Job] = []
+        self._flights: dict[int, _Flight] = {}
+        self._done: list[Done] = []
+        self._number = 0
+
+    def await_workers(self) -> None:
+        """Wait until a worker is accepted, or until all workers have been asked.
+
+        Raises:
+            SchedulerGone: The scheduler cannot be reached.
+            NoWorkers: There is no worker, or none that can be given work.
+        """
+        while not self._workers:
+            news = self._link.hear(None)
+            if isinstance(news, Asked):
+                raise NoWorkers(self._nobody())
+            self._take_in(news)
+
+    def execute_all(
+        self, tasks: Iterable[Task], on_start: Callable[[Task], None] = lambda _: None
+    ) -> Generator[Done, None, None]:
+        """Execute tasks on the workers, and yield results as they are ready.
+
+        Args:
+            tasks: The tasks in the order in which they begin; taken one by one, when a worker is free.
+            on_start: Called when a task is given to a worker for the first time.
+
+        Raises:
+            SchedulerGone: The scheduler can no longer be reached.
+            NoWorkers: No worker is left, and none came back.
+        """
+        jobs = (_Job(task) for task in tasks)
+        alone_until: float | None = None
+        while True:
+            self._give_out(jobs, on_start)
+            if not (self._flights or self._again or self._new or self._alone):
+                return
+            if self._workers:
+                alone_until = None
+            elif alone_until is None:
+                alone_until = time.monotonic() + self._return_seconds
+            self._take_in(self._link.hear(self._seconds_to_wait(alone_until)))
+            now = time.monotonic()
+            if alone_until is not None and now >= alone_until and not self._workers:
+                raise NoWorkers(f"{self._nobody()} What was graded so far is kept.")
+            self._give_up_on_silent(now)
+            while self._done:
+                yield self._done.pop()
+
+    def _give_out(self, jobs: Iterator[_Job], on_start: Callable[[Task], None]) -> None:
+        """Fill every free slot. Nothing is queued on a worker, so little is lost with it."""
+        for address, worker in self._workers.items():
+            while len(worker.flights) < worker.slots and len(self._flights) < _MOST_IN_FLIGHT:
+                job = self._next_for(address, worker, jobs)
+                if job is None:
+                    break
+                if not (job.tried or job.alone):
+                    on_start(job.task)
+                self._send(job, address, worker)
+        self._look_ahead(jobs)
+
+    def _next_for(self, address: str, worker: _Worker, jobs: Iterator[_Job]) -> _Job | None:
+        """Return the next task of a worker: at most one that was lost before, and if possible not by this worker.
+
+        A lost task may be what ends workers, and no other lost task must be lost with it again. Tasks that run alone
+        come when there is nothing else for this worker, because it is empty then.
+        """
+        held = [self._flights[number].job for number in worker.flights]
+        if any(job.alone for job in held):
+            return None
+        if not any(job.attempts > 1 for job in held) and (job := self._taken_from(self._again, address)):
+            return job
+        self._look_ahead(jobs)
+        if self._new:
+            return self._new.popleft()
+        return None if held else self._taken_from(self._alone, address)
+
+    def _taken_from(self, waiting: list[_Job], address: str) -> _Job | None:
+        """Take the first task that this worker has not tried, or that all workers have tried."""
+        for job in waiting:
+            if address not in job.tried or job.tried >= self._workers.keys():
+                waiting.remove(job)
+                return job
+        return None
+
+    def _look_ahead(self, jobs: Iterator[_Job]) -> None:
+        """Take the next new task in advance, to know whether there is one."""
+        if not self._new:
+            self._new.extend(itertools.islice(jobs, 1))
+
+    def _send(self, job: _Job, address: str, worker: _Worker) -> None:
+        job.attempts += 1
+        job.tried.add(address)
+        self._number += 1
+        self._flights[self._number] = _Flight(job, address, time.monotonic() + _most_seconds(job.task))
+        worker.flights.add(self._number)
+        order = self._order(job.task.beside_others(worker.slots > 1 and not job.alone))
+        self._link.say(Give(self._number, address, order))
+
+    def _seconds_to_wait(self, alone_until: float | None) -> float | None:
+        deadlines = [flight.deadline for flight in self._flights.values()]
+        if alone_until is not None:
+            deadlines.append(alone_until)
+        return min(deadlines) - time.monotonic() if deadlines else None
+
+    def _order(self, task: Task) -> bytes:
+        # A worker does not need the name of the student.
+        nameless = msgspec.json.encode(replace(task, student=""))
+        return msgspec.json.encode(Order(msgspec.Raw(nameless), self._judge))
+
+    def _take_in(self, news: News | None) -> None:
+        match news:
+            case Joined(address, name, data):
+                self._consider(address, name, data)
+            case Unfit(address, name, reason):
+                self._refuse(address, name, _could_not_be_asked(reason))
+            case Left(address):
+                self._forget(address, "its worker ended while it ran this submission")
+            case Answered(number, data) if number in self._flights:
+                self._answered(number, data)
+            case Failed(number, reason, forged) if number in self._flights:
+                if forged:
+                    self._forged(number, reason)
+                else:
+                    self._lost(number, f"its worker could not run it: {reason}")
+            case Broken(reason):
+                raise SchedulerGone(
+                    f"The Dask scheduler at {self._address} cannot be reached ({reason}). "
+                    "Look whether it runs, and whether its address and its TLS settings are right. "
+                    "What was graded so far is kept."
+                )
+            case _:
+                pass  # this answer is no longer needed
+
+    def _consider(self, address: str, name: str, data: bytes) -> None:
+        try:
+            offer = admitted_offer(data)
+        except Forged as error:
+            self._refuse(address, name, f"{error}. Look at that machine")
+            return
+        if address != ADDRESS and offer.version != course_version():
+            self._refuse(
+                address,
+                name,
+                f"it has another version of the course ({offer.version:.16}, here it is {course_version()}). "
+                "Bring both to the same commit and start the worker again",
+            )
+        elif self._boxed and offer.obstacle:
+            self._refuse(address, name, f"it has no sandbox: {offer.obstacle[:500]}")
+        else:
+            self._workers[address] = _Worker(name, offer.slots)
+
+    def _refuse(self, address: str, name: str, reason: str) -> None:
+        called = printable(address if name == address else f"{name[:100]} ({address})")
+        reason = printable(reason)
+        self._refused[address] = f"{called}: {reason}"
+        self._tell(f"The worker {called} gets no work: {reason}.")
+
+    def _forget(self, address: str, reason: str) -> None:
+        self._refused.pop(address, None)
+        worker = self._workers.pop(address, None)
+        for number in sorted(worker.flights) if worker else ():
+            self._lost(number, reason)
+
+    def _answered(self, number: int, data: bytes) -> None:
+        flight = self._flights[number]
+        try:
+            execution = admitted(data, flight.job.task)
+        except Forged as error:
+            self._forged(number, str(error))
+            return
+        worker = self._workers[flight.worker]
+        self._land(number)
+        # If a task ran alone, the trouble may come from its notebook, and such tasks follow each other.
+        if not flight.job.alone:
+            worker.troubles = worker.troubles + 1 if execution.trouble else 0
+        if self._comes_again(flight.job, execution):
+            self._do_alone(flight, execution)
+        else:
+            self._done.append(Done(flight.job.task, execution))
+        if worker.troubles >= _MOST_TROUBLES and len(self._workers) > 1:
+            # Such as a full disk: the worker would end each notebook at once, and get the next ones.
+            self._turn_out(
+                flight.worker, f"it had trouble with {worker.troubles} notebooks: {execution.trouble}"
+            )
+
+    def _comes_again(self, job: _Job, execution: Execution) -> bool:
+        """Return True if the task must run again: its execution proves nothing, or other workers may do better."""
+        if not job.alone:
+            return execution.says_nothing
+        return bool(execution.trouble) and self._others_may_do(job)
+
+    def _do_alone(self, flight: _Flight, execution: Execution) -> None:
+        job = flight.job
+        if not execution.trouble:  # its worker did nothing wrong
+            job.attempts -= 1
+            job.tried.discard(flight.worker)
+        job.alone, job.cpu_seconds = True, execution.cpu_seconds
+        self._wait(job)
+
+    def _wait(self, job: _Job) -> None:
+        """Let a job wait for its next worker. Of jobs that run alone, the one with most processor time comes last."""
+        if job.alone:
+            bisect.insort(self._alone, job, key=operator.attrgetter("cpu_seconds"))
+        else:
+            self._again.append(job)
+
+    def _others_may_do(self, job: _Job) -> bool:
+        return job.attempts < ATTEMPTS and not job.tried >= self._workers.keys()
+
+    def _forged(self, number: int, reason: str) -> None:
+        address = self._flights[number].worker
+        if address == ADDRESS:
+            self._lost(number, f"the answer of its worker process is not possible: {reason}")
+            return
+        for held in self._workers[address].flights:
+            self._flights[held].job.attempts -= 1  # the fault of the worker, not of the notebook
+        self._turn_out(address, f"what it says cannot be: {reason}. Look at that machine")
+
+    def _turn_out(self, address: str, reason: str) -> None:
+        """Give an accepted worker no more work; other workers do its tasks."""
+        name = self._workers[address].name
+        self._forget(address, f"its worker was turned out: {reason}")
+        self._refuse(address, name, reason)
+
+    def _give_up_on_silent(self, now: float) -> None:
+        for number, flight in list(self._flights.items()):
+            if number in self._flights and flight.deadline <= now:
+                if flight.worker == ADDRESS:
+                    self._lost(number, "its worker process has not answered in time")
+                    continue
+                self._turn_out(flight.worker, "it has not answered in time. Start it again")
+
+    def _lost(self, number: int, reason: str) -> None:
+        job = self._land(number).job
+        self._link.say(Drop(number))
+        if job.attempts < ATTEMPTS:
+            self._wait(job)
+        else:
+            self._done.append(Done(job.task, job.task.in_trouble(reason)))
+
+    def _land(self, number: int) -> _Flight:
+        flight = self._flights.pop(number)
+        if flight.worker in self._workers:
+            self._workers[flight.worker].flights.discard(number)
+        return flight
+
+    def _nobody(self) -> str:
+        if not self._refused:
+            return (
+                f"The Dask scheduler at {self._address} has no workers. "
+                f"Start some: autograder worker {self._address}"
+            )
+        reasons = "\n".join(f"  {reason}" for reason in self._refused.values())
+        return f"No worker of the Dask scheduler at {self._address} can be given work:\n{reasons}"
+
+
+def _most_seconds(task: Task) -> float:
+    # A machine tries a task whose worker process ended once more.
+    return 2 * task.limits.longest + _EXTRA_SECONDS
+
+
+def _could_not_be_asked(reason: str) -> str:
+    if "No module named" in reason:
+        return (
+            f"it does not have the autograder ({reason}). Start it with `autograder worker`, "
+            "or with the Python of the course's .venv"
+        )
+    return f"it could not be asked what it offers ({reason})"

@@ -1,0 +1,148 @@
+"""Define the cell magic ``%%program``: like ``%%writefile``, and it copies definitions from the notebook into the file.
+
+A line such as ``# copied from this notebook: TalkerNode`` is replaced by the newest definition of each name in a cell
+that has run, with the imports and helpers that it uses. A student who changes the class copies nothing: both cells are
+run again.
+"""
+
+from __future__ import annotations
+
+import ast
+import re  # noqa: TID251  (a student's own cells, in the student's kernel)
+import shlex
+from pathlib import Path
+from typing import Any
+
+from autograder.notebook.cells.cell_output import notebook_shell
+
+_COPIED = re.compile(r"^# copied from this notebook: (?P<names>\w+(?:, \w+)*)$", re.MULTILINE)
+_IMPORTS = (ast.Import, ast.ImportFrom)
+
+
+class NotRunError(Exception):
+    """A name has no definition in a cell that has run."""
+
+    def _render_traceback_(self) -> list[str]:
+        """Return the message only, because a traceback would not help. IPython calls this."""
+        return [f"Nothing was written. {self}"]
+
+
+def program(line: str, cell: str) -> None:
+    """Write the cell to a file, with definitions from the notebook; IPython calls this for ``%%program PATH``.
+
+    Raises:
+        NotRunError: A cell with a needed definition has not run in this kernel.
+        OSError: The file cannot be written.
+    """
+    (name,) = shlex.split(line)
+    shell: Any = notebook_shell()
+    text = with_definitions(cell, [source for source in shell.user_ns.get("In", ()) if source])
+    path = Path(name).expanduser()
+    print("Overwriting" if path.exists() else "Writing", path)
+    path.write_text(text, encoding="utf-8")
+
+
+def with_definitions(text: str, cells: list[str]) -> str:
+    """Return the text of a program with the definitions that its comments name.
+
+    Args:
+        text: The text of the cell below the line of the magic.
+        cells: The cells that have run, the oldest first.
+
+    Raises:
+        NotRunError: A name is not defined in any of them.
+    """
+    there = _bound(_statements(_COPIED.sub("", text)))
+    imports: list[str] = []
+
+    def copied(comment: re.Match[str]) -> str:
+        found = [one for name in comment["names"].split(", ") for one in _definition(name, cells, there)]
+        imports.extend(source for node, source in found if isinstance(node, _IMPORTS))
+        return "\n\n\n".join(source for node, source in found if not isinstance(node, _IMPORTS))
+
+    text = _COPIED.sub(copied, text)
+    first = (
+        next((node.lineno for node in ast.parse(text).body if isinstance(node, _IMPORTS)), 1)
+        if imports
+        else 1
+    )
+    lines = text.split("\n")
+    return "\n".join([*lines[: first - 1], *imports, *lines[first - 1 :]])
+
+
+Statement = tuple[ast.stmt, str]
+"""A statement at the top level of a cell, and its text."""
+
+
+def _definition(name: str, cells: list[str], there: set[str]) -> list[Statement]:
+    """Return the newest definition of a name, after the statements that it needs; ``there`` grows by their names."""
+    for source in reversed(cells):
+        statements = _statements(source)
+        found = next(
+            (one for one in reversed(statements) if name in _names(one[0]) - _imported(one[0])), None
+        )
+        if found is not None:
+            break
+    else:
+        raise NotRunError(f"Run the cell that defines {name} first, then run this one again.")
+    there.add(name)
+    needed: list[Statement] = []
+    for used in sorted(_used(found[0]) - there):
+        own = next((one for one in reversed(statements) if used in _names(one[0])), None)
+        own = own or next(
+            (one for cell in reversed(cells) for one in _statements(cell) if used in _imported(one[0])), None
+        )
+        if own is None or used in there:
+            continue
+        there |= _names(own[0])
+        needed += [own] if isinstance(own[0], _IMPORTS) else _definition(used, [source], there)
+    return [*needed, found]
+
+
+def _statements(source: str) -> list[Statement]:
+    """Return the statements at the top level of a cell; none if it is not Python alone, such as a cell with a magic."""
+    try:
+        body = ast.parse(source).body
+    except (SyntaxError, ValueError):
+        return []
+    lines = source.split("\n")
+    return [(node, "\n".join(lines[_first_line(node) - 1 : node.end_lineno])) for node in body]
+
+
+def _first_line(node: ast.stmt) -> int:
+    decorators = getattr(node, "decorator_list", ())
+    return min([node.lineno, *(one.lineno for one in decorators)])
+
+
+def _bound(statements: list[Statement]) -> set[str]:
+    return {name for node, _ in statements for name in _names(node)}
+
+
+def _imported(node: ast.stmt) -> set[str]:
+    if not isinstance(node, _IMPORTS):
+        return set()
+    return {alias.asname or alias.name.partition(".")[0] for alias in node.names}
+
+
+def _names(node: ast.stmt) -> set[str]:
+    """Return the names that a statement defines: a class, a function, imports, or constants."""
+    if isinstance(node, (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
+        return {node.name}
+    if isinstance(node, ast.Assign):
+        return {target.id for target in node.targets if isinstance(target, ast.Name)}
+    if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+        return {node.target.id}
+    return _imported(node)
+
+
+def _used(node: ast.stmt) -> set[str]:
+    return {one.id for one in ast.walk(node) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Load)}
+
+
+def load_ipython_extension(shell: Any) -> None:
+    """Define the magic. A kernel of a class calls this, too: its shell is made after this module was imported."""
+    shell.register_magic_function(program, "cell", "program")
+
+
+if notebook_shell() is not None:
+    load_ipython_extension(notebook_shell())

@@ -1,0 +1,26 @@
+"""How this package came here, and so what its messages tell people to type: a wheel has no ``./course``.
+
+Only the standard library is used: this runs before anything is installed.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PACKAGE = "ros2-course-autograder"
+"""The name of the wheel."""
+IS_CLONE = (ROOT / "course").is_file()
+"""True in a clone and in what `hand-out` makes; False where the wheel was installed."""
+COMMAND = "./course" if IS_CLONE else "autograder"
+"""The program before each command that a message names."""
+
+
+def installing(extra: str, clone: str = "") -> str:
+    """Return the command that installs what an extra of the package needs.
+
+    Args:
+        extra: The name of the extra in pyproject.toml.
+        clone: The words behind ``./course setup`` in a clone, which leaves out only some extras.
+    """
+    return " ".join(f"./course setup {clone}".split()) if IS_CLONE else f"pip install '{PACKAGE}[{extra}]'"

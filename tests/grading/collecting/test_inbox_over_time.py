@@ -1,0 +1,343 @@
+"""What a term brings: groups, attempts, corrections by hand, a class of an older version, kills and full disks."""
+
+from __future__ import annotations
+
+import csv
+import errno
+import gzip
+import hashlib
+import io
+import json
+import os
+import random
+import shutil
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+import pytest
+from conftest import LISTENER, TALKER
+from downloads import ROSTER, write_zip
+from test_collect import lies, placed, stamp, why, work
+from test_collected_table import edit, read, save
+from test_where_it_goes import other_lab, outcome
+
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.collecting import apply, inbox, table
+from autograder.grading.collecting.collect import collect
+from autograder.grading.collecting.outcomes import State
+from autograder.grading.collecting.table import Table
+from autograder.grading.errors import ClassBusy, GradingError
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+    from conftest import FakeEngine, TinyClass
+
+DAY = "Lab_{}_attempt_2025-10-0{}-14-00-00_lab_1_2.ipynb"
+
+
+def blackboard(klass: TinyClass, folder: Path, **attempts: tuple[int, int]) -> Path:
+    """A download with one attempt of each student, of a day and with points."""
+    files = {DAY.format(student, day): work(klass, points) for student, (day, points) in attempts.items()}
+    return write_zip(folder / "blackboard.zip", files)
+
+
+def counting(klass: TinyClass) -> dict[str, str]:
+    return {line["file"].partition(" #")[0]: line["counts"] for line in read(klass)[1]}
+
+
+# -- the term
+# ----------------------------------------------------------------------------------------------------------
+
+
+def test_the_work_of_a_group_counts_for_all_until_one_of_them_hands_in_later(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    collect(klass.path, [write_zip(tmp_path / "group.zip", {"Group 7/lab_1_2.ipynb": work(klass, 3)})])
+    edit(klass, "Group 7", student="ada; ben", handed_in="2025-10-03 12:00")
+    assert placed(collect(klass.path)).keys() == {"ada", "ben"}
+    collect(klass.path, [blackboard(klass, tmp_path, ben=(4, 5))])
+    assert (lies(klass, "ada"), lies(klass, "ben")) == (work(klass, 3), work(klass, 5))
+    edit(klass, "Group 7", student="ada; eve")
+    collect(klass.path)
+    assert (lies(klass, "eve"), lies(klass, "ben")) == (work(klass, 3), work(klass, 5))
+
+
+def test_work_that_comes_after_grading_is_graded_again_and_the_first_one_is_kept(
+    klass: TinyClass, tmp_path: Path, fake_engine: FakeEngine
+) -> None:
+    for day, points in ((1, 3), (2, 8)):
+        collect(klass.path, [blackboard(klass, tmp_path, ada=(day, points), ben=(1, 4))])
+        klass.grade()
+        assert klass.scores("ada") == {TALKER: points, LISTENER: 10}
+    assert fake_engine.ran == ["ada", "ben", "ada"]
+    assert sorted(counting(klass).values()) == ["earlier", "yes", "yes"]
+    edit(klass, DAY.format("ada", 2), use="no")
+    collect(klass.path)
+    klass.grade()
+    assert klass.scores("ada")[TALKER] == 3
+
+
+def test_two_assignments_in_one_zip_go_to_their_places(klass: TinyClass, tmp_path: Path) -> None:
+    other = other_lab(klass)
+    files = {"ada/work.ipynb": work(klass, 3), "ada/lab_1_3.ipynb": other, "ben/x.ipynb": other}
+    report = collect(klass.path, [write_zip(tmp_path / "both.zip", files)])
+    assert not why(report)
+    found = {str(path.relative_to(klass.path)) for path in (klass.path / "submitted").rglob("*.ipynb")}
+    assert found == {
+        "submitted/ada/lab_1_2/lab_1_2.ipynb",
+        "submitted/ada/lab_1_3/lab_1_3.ipynb",
+        "submitted/ben/lab_1_3/lab_1_3.ipynb",
+    }
+
+
+def test_a_correction_by_hand_does_not_change_the_time_of_handing_in(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    collect(klass.path, [blackboard(klass, tmp_path, ada=(3, 1))])
+    before = stamp(klass, "ada")
+    klass.submit("ada", 9)
+    mine = lies(klass, "ada")
+    collect(klass.path)
+    assert (lies(klass, "ada"), stamp(klass, "ada")) == (mine, before)
+    edit(klass, "submitted/ada", handed_in="2025-10-02 08:00")
+    collect(klass.path)
+    assert stamp(klass, "ada")[:16] == "2025-10-02 08:00"
+
+
+def test_a_second_hand_in_by_the_exchange_counts_and_the_first_is_kept(klass: TinyClass) -> None:
+    texts = []
+    for points in (3, 5):
+        klass.submit("ben", points)
+        texts.append(lies(klass, "ben"))
+        collect(klass.path)
+    assert lies(klass, "ben") == texts[1]
+    assert sorted(line["counts"] for line in read(klass)[1]) == ["earlier", "yes"]
+
+
+def test_a_class_that_never_typed_collect_has_no_table(klass: TinyClass, fake_engine: FakeEngine) -> None:
+    klass.submit("ada", 4)
+    report = klass.grade()
+    assert (report.exit_code, klass.scores("ada")[TALKER]) == (0, 4)
+    assert not (klass.path / "collected.csv").exists()
+    assert not (klass.path / ".autograder" / "inbox").exists()
+
+
+# -- a class of an older version
+# ----------------------------------------------------------------------------------------------------------
+
+
+def entry(text: str, **facts: object) -> dict[str, object]:
+    """What that version wrote down of a notebook."""
+    content = hashlib.sha256(text.encode()).hexdigest()
+    about = {"source": "1.zip/x", "collected": "2025-11-27T13:39:28.850416Z", "when": None, "order": 0}
+    more = {"late": False, "lms": "", "number": "", "name": "", "file": "", "by_hand": False}
+    return {"notebook": "lab_1_2", "content": content, **about, **more, **facts}
+
+
+@pytest.fixture
+def older(klass: TinyClass) -> TinyClass:
+    """A class whose work was collected by the version before the inbox: files as that wrote them."""
+    state = klass.path / ".autograder" / "collected"
+    (state / "lab_1_2").mkdir(parents=True)
+    texts = {order: work(klass, order) for order in (1, 2)}
+    canvas = {"lms": "canvas", "number": "101", "name": "lovelaceada"}
+    attempts = [
+        entry(texts[order], **canvas, order=9000 + order, file=f"lovelaceada_101_900{order}_lab_1_2.ipynb")
+        for order in (1, 2)
+    ]
+    kept = state / "lab_1_2" / "ada.kept" / f"{str(attempts[0]['content'])[:16]}.ipynb.gz"
+    kept.parent.mkdir()
+    kept.write_bytes(gzip.compress(texts[1].encode()))
+    klass.hand_in("ada", texts[2])
+    klass.submit("ben", 5)
+    when = "2025-10-03T14:00:00Z"
+    by_hand = entry(lies(klass, "ben"), when=when, by_hand=True)
+    klass.hand_in("zoe", work(klass, 7))  # corrected by hand after it was collected
+    records = {
+        "ada": {"now": {"lab_1_2": attempts[1]}, "before": attempts[:1]},
+        "ben": {"now": {"lab_1_2": by_hand}, "before": []},
+        "zoe": {"now": {"lab_1_2": entry("what was collected", when=when)}, "before": []},
+    }
+    for student, record in records.items():
+        (state / "lab_1_2" / f"{student}.json").write_text(json.dumps(record))
+    waiting = {
+        "label": "1.zip/guest.rar",
+        "reason": "x",
+        "student": "",
+        "assignment": "",
+        "there": "",
+        "content": "",
+    }
+    (state / "not_placed.json").write_text(json.dumps([waiting]))
+    return klass
+
+
+def test_a_class_of_an_older_version_keeps_its_work_its_times_and_what_waits(
+    older: TinyClass, tmp_path: Path, fake_engine: FakeEngine
+) -> None:
+    refused = older.grade().refused
+    assert ["1.zip/guest.rar" in str(one.path) and "collect it again" in one.reason for one in refused] == [
+        True
+    ]
+    before = {student: lies(older, student) for student in ("ada", "ben", "zoe")}
+    older_one = write_zip(tmp_path / "old.zip", {"lovelaceada_101_9000_lab_1_2.ipynb": work(older, 6)})
+    collect(older.path, [older_one])
+    assert {student: lies(older, student) for student in before} == before
+    assert stamp(older, "ben") == stamp(older, "zoe") == "2025-10-03 14:00:00.000000 UTC"
+    assert counting(older)["submitted/ada/lab_1_2/lab_1_2.ipynb"] in ("yes", "earlier")
+    systems = [line["system"] for line in read(older)[1] if line["student"] == "ada"]
+    assert systems == ["canvas"] * 3, "the attempt that was kept packed has a line, too"
+    newer = write_zip(tmp_path / "new.zip", {"lovelaceada_101_9003_lab_1_2.ipynb": work(older, 8)})
+    collect(older.path, [newer])
+    assert lies(older, "ada") == work(older, 8)
+    assert [one.label for one in Table(ClassDirectory(older.path)).waiting()] == ["1.zip/guest.rar"]
+    collect(older.path, [write_zip(tmp_path / "1.zip", {"guest.rar": "Rar!"})])
+    (line,) = Table(ClassDirectory(older.path)).waiting()
+    assert (line.label[:17], line.line) == ("1.zip/guest.rar #", 2)
+
+
+# -- the table
+# ----------------------------------------------------------------------------------------------------------
+
+
+def test_a_table_that_was_lost_is_written_again_with_all_that_was_edited(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    collect(klass.path, [write_zip(tmp_path / "f.zip", {"mine.ipynb": work(klass, 3)})])
+    edit(klass, "mine", student="ada")
+    collect(klass.path)
+    (klass.path / "collected.csv").unlink()
+    report = collect(klass.path)
+    assert "it is written again" in " ".join(report.notes)
+    assert (lies(klass, "ada"), read(klass)[1][0]["student"]) == (work(klass, 3), "ada")
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+@pytest.mark.parametrize("letters", ["utf-8", "utf-8-sig", "utf-16"])
+def test_no_cell_runs_and_a_spreadsheet_changes_nothing_by_saving(
+    klass: TinyClass, tmp_path: Path, separator: str, letters: str
+) -> None:
+    names = [
+        "=HYPERLINK(1).ipynb",
+        "@SUM(A1).ipynb",
+        "+1-2.ipynb",
+        "-2+3.ipynb",
+        "\t=1.ipynb",
+        "März 3.ipynb",
+    ]
+    files = {f"007/{name}": work(klass, place) for place, name in enumerate(names)}
+    collect(klass.path, [write_zip(tmp_path / "f.zip", files)])
+    text = (klass.path / "collected.csv").read_text(encoding="utf-8-sig")
+    for line in csv.reader(io.StringIO(text)):
+        assert not [cell for cell in line if cell[:1] in tuple("=+-@\t\r")]
+    before = outcome(klass)
+    save(klass, *read(klass), separator, letters)
+    report = collect(klass.path)
+    assert report.notes == ()
+    assert outcome(klass) == before
+
+
+def test_a_cell_that_is_not_clear_changes_nothing_and_has_a_sentence(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    collect(klass.path, [blackboard(klass, tmp_path, ada=(3, 1))])
+    edit(klass, "ada", use="maybe", handed_in="soon")
+    said = " ".join(collect(klass.path).notes)
+    assert "'maybe' under use is neither yes nor no" in said
+    assert "'soon' under handed_in is not a time" in said
+    assert (lies(klass, "ada"), stamp(klass, "ada")[:10]) == (work(klass, 1), "2025-10-03")
+    edit(klass, "ada", student="nobody-at-all")
+    assert "students.csv has no student nobody-at-all" in why(collect(klass.path))
+
+
+# -- what may go wrong
+# ----------------------------------------------------------------------------------------------------------
+
+
+def test_two_instructors_at_once_are_told_so(klass: TinyClass, tmp_path: Path) -> None:
+    archive = blackboard(klass, tmp_path, ada=(3, 1))
+    with ClassDirectory(klass.path).lock(), pytest.raises(ClassBusy, match="is at work in"):
+        collect(klass.path, [archive])
+    assert placed(collect(klass.path, [archive])).keys() == {"ada"}
+
+
+@pytest.mark.parametrize(
+    ("module", "name"), [(inbox, "keep_whole"), (apply, "write_whole"), (table, "write_whole")]
+)
+def test_a_full_disk_has_a_sentence_and_the_same_command_goes_on(
+    klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, module: ModuleType, name: str
+) -> None:
+    archive = blackboard(klass, tmp_path, ada=(3, 1), ben=(3, 2))
+
+    def full(*_: object) -> NoReturn:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(module, name, full)
+        with pytest.raises(GradingError, match="is full"):
+            collect(klass.path, [archive])
+    assert not [*klass.path.rglob("*.new")]
+    assert collect(klass.path, [archive]).exit_code == 0
+    assert (lies(klass, "ada"), lies(klass, "ben")) == (work(klass, 1), work(klass, 2))
+
+
+def killed_at(klass: Path, archive: Path, moment: int) -> int:
+    """Collect in a child that ends without a word when it opens, renames or removes its file of this number.
+
+    Returns:
+        How many such moments came; the child ended at the last one if that is ``moment``.
+    """
+    read_end, write_end = os.pipe()
+    if (child := os.fork()) == 0:
+        came = 0
+
+        def watch(event: str, arguments: tuple[object, ...]) -> None:
+            nonlocal came
+            if event in ("open", "os.rename", "os.remove") and str(klass) in str(arguments[0]):
+                came += 1
+                if came == moment:
+                    os.write(write_end, str(came).encode())
+                    os._exit(9)
+
+        sys.addaudithook(watch)
+        try:
+            collect(klass, [archive])
+        finally:
+            os.write(write_end, str(came).encode())
+            os._exit(0)
+    os.close(write_end)
+    os.waitpid(child, 0)
+    with os.fdopen(read_end) as pipe:
+        return int(pipe.read())
+
+
+def test_killed_at_ten_random_moments_nothing_is_lost(klass: TinyClass, tmp_path: Path) -> None:
+    seed = random.SystemRandom().randrange(1 << 30)
+    print(f"seed {seed}")
+    collect(klass.path, [blackboard(klass, tmp_path, ada=(3, 1), ben=(3, 2))])
+    edit(klass, "ben", use="yes")
+    later = blackboard(klass, tmp_path, ada=(4, 3), ben=(4, 4), eve=(4, 5))
+
+    def fresh(name: str) -> TinyClass:
+        return type(klass)(Path(shutil.copytree(klass.path, tmp_path / name)))
+
+    whole = fresh("whole")
+    moments = killed_at(whole.path, later, 0)
+    assert moments > 20
+    for number, moment in enumerate(random.Random(seed).sample(range(1, moments + 1), 10)):
+        copy = fresh(f"copy{number}")
+        assert killed_at(copy.path, later, moment) == moment
+        assert lies(copy, "ben") == work(klass, 2)
+        report = collect(copy.path, [later])
+        assert not report.having(State.NOT_PLACED)
+        assert outcome(copy) == outcome(whole), f"killed at {moment}"
+        assert not [*copy.path.rglob("*.new")]
+
+
+def test_the_roster_decides_and_not_the_order_of_commands(klass: TinyClass, tmp_path: Path) -> None:
+    archive = write_zip(tmp_path / "f.zip", {"guest/lab_1_2.ipynb": work(klass, 3)})
+    assert "add a line to students.csv" in why(collect(klass.path, [archive]))
+    (klass.path / "students.csv").write_text(f"{ROSTER}guest,Guy,Est,,,\n", encoding="utf-8")
+    assert placed(collect(klass.path)).keys() == {"guest"}, "without the zip: it is in the inbox"

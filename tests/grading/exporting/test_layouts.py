@@ -1,0 +1,107 @@
+"""What came from Blackboard, Brightspace, Sakai or ILIAS goes back there: points and pages."""
+
+from __future__ import annotations
+
+import csv
+import io
+import zipfile
+from typing import TYPE_CHECKING
+
+import pytest
+from conftest import TALKER
+from downloads import ROSTER, write_zip
+from instructor import by_person
+from test_collect import work
+
+from autograder.grading.collecting.collect import collect
+from autograder.grading.exporting.export_files import export
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import FakeEngine, TinyClass
+
+FILES = {
+    "blackboard": "Lab_ada_attempt_2025-10-03-14-00-00_lab_1_2.ipynb",
+    "brightspace": "12345-67890 - Ada Lovelace - Oct 3, 2025 205 PM/lab_1_2.ipynb",
+    "sakai": "Lab 1.2/Lovelace, Ada(ada)/Submission attachment(s)/lab_1_2.ipynb",
+    "ilias": "Lab 1.2/Lovelace_Ada_ada_12345/lab_1_2.ipynb",
+}
+HEADS = {
+    "blackboard": (["Last Name", "First Name", "Username", "lab_1_2 [Total Pts: 20 Score]"], "Username"),
+    "brightspace": (["OrgDefinedId", "lab_1_2 Points Grade", "End-of-Line Indicator"], "OrgDefinedId"),
+    "sakai": (["Student ID", "Student Name", "lab_1_2 [20]"], "Student ID"),
+}
+PAGES = {
+    "brightspace": "12345-67890 - Ada Lovelace - Oct 3, 2025 205 PM/lab_1_2.html",
+    "sakai": "Lab 1.2/Lovelace, Ada(ada)/Feedback Attachment(s)/lab_1_2.html",
+    "ilias": "Lab 1.2/Lovelace_Ada_ada_12345/lab_1_2.html",
+}
+
+
+@pytest.fixture
+def graded(tiny: TinyClass, fake_engine: FakeEngine) -> TinyClass:
+    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
+    return tiny
+
+
+def collected(klass: TinyClass, folder: Path, lms: str) -> None:
+    form = "ilias" if lms == "ilias" else ""
+    report = collect(klass.path, [write_zip(folder / "c.zip", {FILES[lms]: work(klass, 4, 7)})], form=form)
+    assert [one.student for one in report.outcomes] == ["ada"]
+    klass.grade(feedback=True)
+    by_person(klass, "ada", TALKER, 4.5)
+
+
+@pytest.mark.parametrize("lms", FILES)
+def test_points_and_pages_go_back_to_where_they_came_from(
+    graded: TinyClass, tmp_path: Path, lms: str
+) -> None:
+    collected(graded, tmp_path, lms)
+    done = export(graded.path, lms)
+    names = {path.name for path, _ in done.files}
+    assert names == ({f"{lms}.csv"} if lms in HEADS else set()) | (
+        {f"feedback-{lms}-lab_1_2.zip"} if lms in PAGES else set()
+    )
+    if lms in HEADS:
+        head, who = HEADS[lms]
+        header, *rows = csv.reader(io.StringIO((graded.path / "export" / f"{lms}.csv").read_text("utf-8")))
+        assert header == head
+        found = [dict(zip(header, row, strict=True)) for row in rows]
+        points = {
+            row[who].removeprefix("#"): row[next(one for one in head if "lab_1_2" in one)] for row in found
+        }
+        assert (points["ada"], points["ben"], len(points)) == ("11.5", "", ROSTER.count("\n") - 1)
+    else:
+        assert "ILIAS takes no points" in " ".join(done.notices)
+    if lms in PAGES:
+        with zipfile.ZipFile(graded.path / "export" / f"feedback-{lms}-lab_1_2.zip") as archive:
+            assert archive.namelist() == [PAGES[lms]]
+
+
+LISTS = {
+    "moodle": (
+        'ID;"Vollständiger Name";E-Mail-Adresse;Bewertung;Bestwertung\n'
+        'Teilnehmer/in31;"Ada Lovelace";ada.love@uni.example;;"20,00"\n',
+        "Teilnehmer/in31;Ada Lovelace;ada.love@uni.example;11,5;20,00\n",
+    ),
+    "brightspace": (
+        "OrgDefinedId,Username,Last Name,First Name,lab_1_2 Points Grade <Numeric MaxPoints:20>,"
+        "End-of-Line Indicator\n#S101,#ada,Lovelace,Ada,,#\n#S9,#x,X,Y,3,#\n",
+        "#S101,#ada,Lovelace,Ada,11.5,#\n#S9,#x,X,Y,3,#\n",
+    ),
+    "blackboard": (
+        "Last Name,First Name,Username,lab_1_2 [Total Pts: 20 Score] |123\nLovelace,Ada,ada,\n",
+        "Lovelace,Ada,ada,11.5\n",
+    ),
+    "sakai": ('Student ID,Student Name,lab_1_2 [20]\nada,"Lovelace, Ada",\n', 'ada,"Lovelace, Ada",11.5\n'),
+}
+
+
+@pytest.mark.parametrize("lms", LISTS)
+def test_a_list_of_the_system_is_filled_in(graded: TinyClass, tmp_path: Path, lms: str) -> None:
+    collected(graded, tmp_path, "sakai")
+    given, wanted = LISTS[lms]
+    (tmp_path / "list.csv").write_text(given, encoding="utf-8")
+    export(graded.path, lms, into=tmp_path / "list.csv")
+    assert (graded.path / "export" / "list.csv").read_text("utf-8").partition("\n")[2] == wanted

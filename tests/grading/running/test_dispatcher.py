@@ -1,0 +1,310 @@
+"""Who gets a task, and what becomes of it when its worker is gone: with a client process that the test plays itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+import pytest
+from conftest import FakeEngine, TinyClass
+from fake_link import (
+    HERE,
+    FakeLink,
+    honest,
+    joined,
+    make_dispatcher,
+    students,
+    task_in,
+    tasks_of_six,
+    troubled,
+)
+
+from autograder.grading.classes.class_directory import ClassDirectory
+from autograder.grading.running import dispatcher as dispatcher_module
+from autograder.grading.running.dispatcher import ATTEMPTS, NoWorkers, SchedulerGone
+from autograder.grading.running.orders import (
+    Answered,
+    Asked,
+    Broken,
+    Failed,
+    Give,
+    Joined,
+    Left,
+    News,
+    Offer,
+    Unfit,
+)
+
+if TYPE_CHECKING:
+    from autograder.grading.running.dispatcher import Done
+    from autograder.grading.task import Task
+
+pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
+
+
+@pytest.fixture(autouse=True)
+def _version(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(dispatcher_module, "course_version", lambda: "here")
+
+
+@pytest.fixture
+def tasks(tiny: TinyClass) -> list[Task]:
+    return tasks_of_six(tiny)
+
+
+def test_every_task_is_executed_once_and_its_own_result_comes_back(tasks: list[Task]) -> None:
+    link = FakeLink(joined("a"), joined("b"), Asked())
+    dispatcher = make_dispatcher(link)
+    dispatcher.await_workers()
+    started: list[str] = []
+    done = list(dispatcher.execute_all(iter(tasks), lambda task: started.append(task.student)))
+    assert students(done) == started == [task.student for task in tasks]
+    assert len(link.given) == len(tasks)
+    assert link.most_in_flight <= 2 * HERE.slots
+    assert all(one.execution == FakeEngine().execute(one.task) for one in done)
+
+
+def test_no_more_tasks_are_made_than_are_in_flight(tasks: list[Task]) -> None:
+    made: list[str] = []
+
+    def one_by_one() -> Any:
+        for task in tasks:
+            made.append(task.student)
+            yield task
+
+    link = FakeLink(joined("a"), Asked())
+    dispatcher = make_dispatcher(link)
+    dispatcher.await_workers()
+    for number, _ in enumerate(dispatcher.execute_all(one_by_one())):
+        assert len(made) <= number + 1 + HERE.slots + 1
+    assert len(made) == len(tasks)
+
+
+def test_a_worker_learns_no_name_and_no_secret(tasks: list[Task], tiny: TinyClass) -> None:
+    link = FakeLink(joined("a"), Asked())
+    dispatcher = make_dispatcher(link)
+    dispatcher.await_workers()
+    list(dispatcher.execute_all(tasks))
+    secret = ClassDirectory(tiny.path).secret
+    for give in link.given:
+        assert b"student-" not in give.order
+        assert secret.hex().encode() not in give.order
+        assert str(tiny.path).encode() not in give.order
+        limits = replace(tasks[0].limits, beside=True)
+        assert task_in(give) == replace(tasks[0], student="", limits=limits)
+
+
+def test_a_worker_that_leaves_costs_only_its_tasks_again(tasks: list[Task]) -> None:
+    link = FakeLink(joined("a"), joined("b"), Asked())
+
+    def answer(give: Give, task: Task) -> News | None:
+        if give.worker == "b" and len(link.given) <= 4:
+            return Left("b") if give.number == 4 else None
+        return honest(give, task)
+
+    link.answer = answer
+    dispatcher = make_dispatcher(link)
+    dispatcher.await_workers()
+    done = list(dispatcher.execute_all(tasks))
+    assert students(done) == [task.student for task in tasks]
+    assert len(link.given) == len(tasks) + 2
+    assert {give.worker for give in link.given[4:]} == {"a"}
+
+
+def test_a_task_that_costs_worker_after_worker_is_given_up(tasks: list[Task]) -> None:
+    link = FakeLink(*(joined(name) for name in "abcdefgh"), Asked())
+    poison = tasks[0].seed + "!"
+    tasks[2] = replace(tasks[2], seed=poison)
+    link.answer = lambda give, task: Left(give.worker) if task.seed == poison else honest(give, task)
+    dispatcher = make_dispatcher(link)
+    dispatcher.await_workers()
+    for _ in "abcdefgh":
+        dispatcher._take_in(link.hear(None))
+    done = list(dispatcher.execute_all(tasks))
+    assert len(done) == len(tasks)
+    given_up = [one for one in done if one.execution.trouble]
+    assert [one.task.student for one in given_up] == [tasks[2].student]
+    assert given_up[0].execution.verdicts.keys() == FakeEngine().execute(tasks[0]).verdicts.keys()
+    assert sum(task_in(give).seed == poison for give in link.given) == ATTEMPTS
+
+
+def test_what_a_worker_could_not_run_is_run_by_another_one(tasks: list[Task]) -> None:
+    link = FakeLink(joined("a"), Asked())
+    link.answer = lambda give, task: (
+        Failed(give.number, "no room") if give.number == 1 else honest(give, task)
+    )
+    dispatcher = make_dispatcher(link)
+    dispatcher.await_workers()
+    assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
+
+
+def test_what_a_worker_cannot_run_does_not_come_back_to_it(tasks: list[Task]) -> None:
+    link = FakeLink(joined("full"), joined("good"), Asked())
+    link.answer = lambda give, task: (
+        Failed(give.number, "no room") if give.worker == "full" else honest(give, task)
+    )
+    dispatcher = make_dispatcher(link)
+    dispatcher.await_workers()
+    assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
+
+
+def test_a_worker_that_is_sick_does_not_swallow_the_class(tasks: list[Task]) -> None:
+    told: list[str] = []
+    link = FakeLink(joined("sick"), joined("good"), Asked())
+    link.answer = lambda give, task: (troubled if give.worker == "sick" else honest)(give, task)
+    dispatcher = make_dispatcher(link, told)
+    dispatcher.await_workers()
+    assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
+    assert "name-sick (sick) gets no work: it had trouble with 3 notebooks: no space left." in told[0]
+    assert sum(give.worker == "sick" for give in link.given) <= 2 * HERE.slots
+
+
+def test_trouble_that_is_the_notebooks_own_is_told_and_turns_nobody_out(tasks: list[Task]) -> None:
+    told: list[str] = []
+    link = FakeLink(joined("a"), Asked())
+    link.answer = troubled
+    dispatcher = make_dispatcher(link, told)
+    dispatcher.await_workers()
+    done = list(dispatcher.execute_all(tasks))
+    assert [one.execution.trouble for one in done] == ["no space left"] * len(tasks)
+    assert len(link.given) == 2 * len(tasks)
+    assert told == []
+
+
+def test_what_no_worker_can_run_is_given_up(tasks: list[Task]) -> None:
+    link = FakeLink(joined("a"), joined("b"), Asked())
+    link.answer = lambda give, task: Failed(give.number, "no room")
+    dispatcher = make_dispatcher(link)
+    dispatcher.await_workers()
+    done = list(dispatcher.execute_all(tasks))
+    assert len(done) == len(tasks)
+    assert {one.execution.trouble for one in done} == {"its worker could not run it: no room"}
+
+
+def test_a_worker_that_forges_is_turned_out_by_name(tasks: list[Task]) -> None:
+    link = FakeLink(joined("good"), joined("bad"), Asked())
+    told: list[str] = []
+    link.answer = lambda give, task: (
+        Answered(give.number, b"\x80\x04K\x01.") if give.worker == "bad" else honest(give, task)
+    )
+    dispatcher = make_dispatcher(link, told)
+    dispatcher.await_workers()
+    assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
+    assert len(told) == 1
+    assert "name-bad (bad) gets no work: what it says cannot be: its answer is not an execution" in told[0]
+    assert sum(give.worker == "bad" for give in link.given) <= HERE.slots
+
+
+def test_forgers_use_up_no_attempt_of_a_notebook(tasks: list[Task]) -> None:
+    names = [f"bad-{number}" for number in range(ATTEMPTS + 3)]
+    link = FakeLink(*(joined(name, Offer("here", 1, obstacle="")) for name in names), Asked())
+
+    def answer(give: Give, task: Task) -> News:
+        if len({given.worker for given in link.given}) == len(names):
+            link.news.append(joined("good"))
+        return honest(give, task) if give.worker == "good" else Failed(give.number, "no bytes", forged=True)
+
+    link.answer = answer
+    dispatcher = make_dispatcher(link)
+    dispatcher.await_workers()
+    started: list[str] = []
+    done = list(dispatcher.execute_all(tasks[:1], lambda task: started.append(task.student)))
+    assert students(done) == started == [tasks[0].student]
+    assert len(link.given) == len(names) + 1
+
+
+def test_a_worker_that_falls_silent_is_turned_out(tasks: list[Task], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(dispatcher_module, "_most_seconds", lambda _: 0.05)
+    link = FakeLink(joined("good"), joined("mute"), Asked())
+    told: list[str] = []
+    link.answer = lambda give, task: None if give.worker == "mute" else honest(give, task)
+    dispatcher = make_dispatcher(link, told)
+    dispatcher.await_workers()
+    assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
+    assert "name-mute (mute) gets no work: it has not answered in time. Start it again." in told[0]
+
+
+@pytest.mark.parametrize(
+    ("offer", "words"),
+    [
+        (Offer("other", 2, obstacle=""), "it has another version of the course (other, here it is here)"),
+        (
+            Offer("here", 2, obstacle="bubblewrap is missing"),
+            "no sandbox: bubblewrap is missing",
+        ),
+        (Offer("here", 0, obstacle=""), "it offers to execute 0 notebooks"),
+    ],
+)
+def test_a_worker_that_does_not_fit_is_refused_by_name_and_the_others_go_on(
+    tasks: list[Task], offer: Offer, words: str
+) -> None:
+    told: list[str] = []
+    link = FakeLink(joined("misfit", offer), joined("a"), Asked())
+    dispatcher = make_dispatcher(link, told)
+    dispatcher.await_workers()
+    assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
+    assert {give.worker for give in link.given} == {"a"}
+    assert "name-misfit (misfit) gets no work" in told[0]
+    assert words in told[0]
+
+
+def test_without_boxes_asked_for_a_worker_without_a_sandbox_will_do(tasks: list[Task]) -> None:
+    link = FakeLink(joined("a", Offer("here", 1, obstacle="none")), Asked())
+    dispatcher = make_dispatcher(link, boxed=False)
+    dispatcher.await_workers()
+    assert len(list(dispatcher.execute_all(tasks))) == len(tasks)
+
+
+def test_a_worker_cannot_write_on_the_terminal(tasks: list[Task]) -> None:
+    told: list[str] = []
+    offer = Offer("other\x1b[2J", 1, obstacle="")
+    link = FakeLink(Joined("a\x1b[31m", "b\nTotal: 100", msgspec.json.encode(offer)), Asked())
+    with pytest.raises(NoWorkers):
+        make_dispatcher(link, told).await_workers()
+    assert "another version" in told[0]
+    assert all(letter.isprintable() for letter in told[0])
+
+
+def test_a_worker_without_the_package_is_refused_with_what_to_do() -> None:
+    link = FakeLink(Unfit("tcp://w:1", "w", "ModuleNotFoundError: No module named 'autograder'"), Asked())
+    with pytest.raises(
+        NoWorkers, match=r"w \(tcp://w:1\): it does not have the autograder .* `autograder worker`"
+    ):
+        make_dispatcher(link).await_workers()
+
+
+def test_no_worker_at_all_says_how_to_start_one() -> None:
+    with pytest.raises(NoWorkers, match=r"has no workers.*autograder worker tcp://x:1"):
+        make_dispatcher(FakeLink(Asked())).await_workers()
+
+
+def test_no_scheduler_says_so() -> None:
+    with pytest.raises(SchedulerGone, match=r"tcp://x:1 cannot be reached \(refused\)"):
+        make_dispatcher(FakeLink(Broken("refused"))).await_workers()
+
+
+def test_a_worker_that_comes_later_gets_work_too(tasks: list[Task]) -> None:
+    link = FakeLink(joined("a", Offer("here", 1, obstacle="")), Asked(), joined("late"))
+    dispatcher = make_dispatcher(link)
+    dispatcher.await_workers()
+    assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
+    assert {give.worker for give in link.given} == {"a", "late"}
+
+
+def test_when_the_last_worker_is_gone_the_batch_waits_a_little_and_then_stops(tasks: list[Task]) -> None:
+    link = FakeLink(joined("a"), Asked())
+    link.answer = lambda give, task: honest(give, task) if give.number < 3 else Left("a")
+    dispatcher = make_dispatcher(link)
+    dispatcher.await_workers()
+    done: list[Done] = []
+    with pytest.raises(NoWorkers, match="What was graded so far is kept"):
+        done.extend(dispatcher.execute_all(tasks))
+    link = FakeLink(joined("a"), Asked())
+    link.answer = lambda give, task: honest(give, task) if give.number != 3 else Left("a")
+    dispatcher = make_dispatcher(link, return_seconds=30)
+    dispatcher.await_workers()
+    running = dispatcher.execute_all(tasks)
+    assert next(running)
+    link.news.append(joined("a again"))
+    assert len(list(running)) == len(tasks) - 1

@@ -1,0 +1,29 @@
+"""A notebook's path is being built until its report says that the build has ended."""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+import pytest
+
+from autograder.judge.bench.recorder import Recorder
+from autograder.judge.subjects.remote_subject import RemotePath
+from autograder.kit.workspace_report import WorkspaceReport, as_line
+from autograder.messages.checks import Output
+
+
+@pytest.mark.parametrize(
+    ("line", "building"),
+    [
+        (as_line(WorkspaceReport("found", built=False)), True),
+        ("built", True),
+        (as_line(WorkspaceReport("built", built=True)), False),
+        (as_line(WorkspaceReport("built", built=False, trouble="build")), False),
+    ],
+    ids=["the sources are found", "a word of a program", "built", "failed to build"],
+)
+def test_the_report_of_a_build_ends_it(line: str, building: bool) -> None:
+    path = RemotePath(cast("Any", None))
+    assert path.is_building
+    path._take_of_run(Output(1, line), Recorder())
+    assert path.is_building is building

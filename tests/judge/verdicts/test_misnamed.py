@@ -1,0 +1,142 @@
+"""A wrong name costs one criterion, and the others are judged under the name that the subject has chosen."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from autograder import exercises
+from autograder.judge.subjects.command import check_and_keep
+from autograder.judge.verdicts import keeping, reference
+from autograder.judge.verdicts.misnamed import misnamed
+from autograder.judge.verdicts.timeline import moments
+from autograder.judge.verdicts.trial import decide
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.verdict import Criterion, State, Verdict
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+STRING, OTHER = "std_msgs/msg/String", "std_msgs/msg/Int32"
+FAILED = Verdict(
+    "an.exercise",
+    "An exercise",
+    State.FAILED,
+    2.0,
+    10.0,
+    (
+        Criterion("spins", "Spins", 2, True, "", ""),
+        Criterion("topic", "Topic", 2, False, "", ""),
+        Criterion("text", "Text", 6, False, "", ""),
+    ),
+)
+
+
+@pytest.mark.parametrize(
+    ("asked", "runs", "real"),
+    [
+        pytest.param({"/chatter": STRING}, [{"/chater": STRING}], "/chater", id="one other"),
+        pytest.param(
+            {"/chatter": STRING}, [{}, {"/chater": STRING}], "/chater", id="one other, in a later run"
+        ),
+        pytest.param({"/chatter": STRING}, [{"/chatter": STRING}], "", id="the right name"),
+        pytest.param(
+            {"/chatter": STRING}, [{"/chatter": STRING, "/b": STRING}], "", id="the right name, and more"
+        ),
+        pytest.param({"/chatter": STRING}, [{"/a": STRING, "/b": STRING}], "", id="two others"),
+        pytest.param(
+            {"/chatter": STRING}, [{"/a": STRING}, {"/b": STRING}], "", id="another one in each run"
+        ),
+        pytest.param({"/chatter": STRING}, [{"/chater": OTHER}], "", id="another type"),
+        pytest.param({"/chatter": STRING}, [{}], "", id="none"),
+        pytest.param({"/a": STRING, "/b": STRING}, [{"/c": STRING}], "", id="it could be either of two"),
+        pytest.param(
+            {"/a": STRING, "/b": STRING}, [{"/a": STRING, "/c": STRING}], "/c", id="the other is right"
+        ),
+    ],
+)
+def test_a_name_is_wrong_if_exactly_one_endpoint_can_be_meant(
+    asked: dict[str, str], runs: list[dict[str, str]], real: str
+) -> None:
+    parts = [
+        Part(str(i), {}, [Event(0.1, "interface", "graph", {"publisher": run})]) for i, run in enumerate(runs)
+    ]
+    found = misnamed(Evidence(parts, Reference("an.exercise", {"publisher": asked})), FAILED)
+    assert [facts["real"] for facts in found.values()] == ([real] if real else [])
+    assert {facts["costs"] for facts in found.values()} <= {"topic"}, "the first that failed"
+
+
+TALKER = """
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import String
+class Talker(Node):
+    def __init__(self):
+        super().__init__("talker_node")
+        self.publisher = self.create_publisher(String, "{topic}", 10)
+        self.create_timer({period}, self.say)
+        self.count = 0
+    def say(self):
+        self.publisher.publish(String(data=f"Hello, world! {{self.count}}"))
+        self.count += 1
+rclpy.init()
+rclpy.spin(Talker())
+"""
+THREE = """
+import sys
+import rclpy
+from my_robot_interfaces.srv import AddTwoInts
+rclpy.init()
+node = rclpy.create_node("three_ints")
+client = node.create_client(AddTwoInts, "add_two_int")
+if not client.wait_for_service(timeout_sec=5.0):
+    sys.exit("service not available")
+def ask(a, b):
+    future = client.call_async(AddTwoInts.Request(a=a, b=b))
+    rclpy.spin_until_future_complete(node, future)
+    return future.result().sum
+a, b, c = map(int, sys.argv[1:4])
+print("Sum:", ask(ask(a, b), c))
+"""
+
+
+def checked(tmp_path: Path, exercise: str, program: str) -> tuple[Verdict, Evidence]:
+    file = tmp_path / "program.py"
+    file.write_text(program)
+    verdict, packed = check_and_keep(exercise, [sys.executable, str(file)], seed="a seed")
+    return verdict, keeping.evidence_of(keeping.unpack(packed), reference.load(exercise))
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("exercise", "program", "score", "lost", "diagnosis"),
+    [
+        ("lab_1_2.talker", TALKER.format(topic="chater", period=0.5), 8, {"topic"}, "topic_name"),
+        ("lab_1_2.talker", TALKER.format(topic="chater", period=2.0), 5, {"topic", "rate"}, None),
+        ("exercise_1_2.three_ints", THREE, 8, {"calls"}, "service_name"),
+    ],
+)
+def test_the_other_criteria_are_judged_under_the_subjects_name(
+    tmp_path: Path, exercise: str, program: str, score: float, lost: set[str], diagnosis: str | None
+) -> None:
+    verdict, evidence = checked(tmp_path, exercise, program)
+    assert {one.name for one in verdict.criteria if not one.passed} == lost
+    assert verdict.score == score
+    assert verdict.diagnosis
+    assert diagnosis in (verdict.diagnosis.key, None)
+    again: Any = decide(exercises.get(exercise), evidence, "a seed")
+    assert (again.score, again.criteria) == (verdict.score, verdict.criteria), (
+        "a verdict follows from the evidence"
+    )
+
+
+def test_the_timeline_has_the_subjects_name() -> None:
+    events = [
+        Event(0.0, "misnamed", "/chatter", {"real": "/chater", "costs": "topic"}),
+        Event(0.1, "message", "/chatter", {"fields": {"data": "Hello"}}),
+    ]
+    evidence = Evidence([Part("talking", {}, events)], Reference("an.exercise", {}))
+    assert [moment.lane for moment in moments(evidence)] == ["/chater"]

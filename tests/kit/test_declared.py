@@ -1,0 +1,164 @@
+"""Declared exercises judge by what is due after the inputs that were given."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.recipes.declared import NAN, SILENCE, SOME_TEXT, Machine, Relay
+from autograder.kit.rules import same
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.kit.model import Exercise
+
+INTERFACE = {
+    "publisher": {"/out": "x/msg/Y"},
+    "subscription": {"/in": "x/msg/Y"},
+    "service": {"/s": "x/srv/Y"},
+}
+
+
+def event(kind: str, fields: dict[str, Any], **more: Any) -> Event:
+    """One event on the wire."""
+    return Event(0.0, kind, "/any", {"fields": fields, **more})
+
+
+def passed(exercise: Exercise, seen: Sequence[Event], usual: Sequence[Event]) -> dict[str, bool]:
+    """Judge a run against the recorded one."""
+    evidence = Evidence([Part("run", {}, seen)], Reference(exercise.id, INTERFACE, [Part("run", {}, usual)]))
+    return {criterion.name: criterion.judge(evidence).passed for criterion in exercise.criteria}
+
+
+def diagnoses(exercise: Exercise, seen: Sequence[Event]) -> set[str]:
+    """Return the exercise's own mistakes that are recognised."""
+    evidence = Evidence([Part("run", {}, seen)], Reference(exercise.id, INTERFACE))
+    own = {"summed", "not_copied", "too_early", "stays_so", "told_too_often", "not_latched"}
+    return {one.key for one in exercise.mistakes if one.key in own and one.recognise(evidence)}
+
+
+def differences() -> Exercise:
+    """The difference of two numbers, from the second on; nested fields."""
+
+    def due(numbers: Sequence[float]) -> Any:
+        return numbers[-1] - numbers[-2] if len(numbers) > 1 else SILENCE
+
+    relay = Relay(
+        "a.b", "A", "B", field="pose.x", gives=lambda _: [1.0, 3.0, NAN], due=due, copies="header.stamp"
+    )
+    relay.answers("due", 5, "Answers")
+    relay.copies("stamp", 5, "Copies")
+    relay.wrong("summed", lambda n: n[-1] + n[-2] if len(n) > 1 else SILENCE, "It adds.", "Take away.")
+    relay.not_copied("not_copied", "No stamp.", "Copy it.")
+    relay.too_early("too_early", "Too early.", "Wait.")
+    return relay.exercise()
+
+
+def heard(kind: str, x: float, sec: int) -> Event:
+    """A message with nested fields."""
+    return event(kind, {"pose": {"x": x}, "header": {"stamp": {"sec": sec}}})
+
+
+SENT = [heard("sent", 1.0, 1), heard("sent", 3.0, 2), heard("sent", NAN, 3)]
+RIGHT = [SENT[0], SENT[1], heard("message", 2.0, 2), SENT[2], heard("message", NAN, 3)]
+
+
+@pytest.mark.parametrize(
+    ("seen", "expected", "told"),
+    [
+        (RIGHT, {"due": True, "stamp": True}, set()),
+        (RIGHT[:3], {"due": False, "stamp": False}, set()),
+        ([], {"due": False, "stamp": False}, set()),
+        (
+            [*SENT[:2], heard("message", 4.0, 2), SENT[2], heard("message", NAN, 3)],
+            {"due": False, "stamp": True},
+            {"summed"},
+        ),
+        (
+            [*SENT, heard("message", 2.0, 0), heard("message", NAN, 0)],
+            {"due": True, "stamp": False},
+            {"not_copied"},
+        ),
+        (
+            [SENT[0], heard("message", 1.0, 1), *RIGHT[1:]],
+            {"due": False, "stamp": True},
+            {"too_early"},
+        ),
+    ],
+)
+def test_a_relay_is_judged_by_what_is_due(
+    seen: Sequence[Event], expected: dict[str, bool], told: set[str]
+) -> None:
+    assert passed(differences(), seen, RIGHT) == expected
+    assert diagnoses(differences(), seen) == told
+
+
+def door() -> Exercise:
+    """A state that is refused where it is so already."""
+
+    def step(state: bool, asked: bool) -> tuple[bool, dict[str, Any]]:
+        return asked, {"success": True} if asked != state else {"success": False, "message": SOME_TEXT}
+
+    machine = Machine("a.b", "A", "B", state=False, step=step, asks=(True, True, False), late_after=2)
+    machine.replies("success", 4, "Success", "success")
+    machine.replies("refuses", 2, "Refuses", "message", lambda call: not call.changed)
+    machine.once_at_each_change("once", 2, "Once")
+    machine.late_joiner_gets_the_last("late", 2, "Late")
+    machine.wrong("stays_so", lambda _, asked: (asked, {"success": True}), "Always.", "Compare.")
+    machine.told_too_often("told_too_often", "Too often.", "Once.")
+    machine.not_latched("not_latched", "Not kept.", "Latch.")
+    return machine.exercise()
+
+
+def run(replies: Sequence[tuple[bool, str]], told: Sequence[tuple[int, int, bool]]) -> list[Event]:
+    """The calls with these replies, and messages: after which call, their number, and what they tell."""
+    events = []
+    for call, (asked, (success, message)) in enumerate(zip((True, True, False), replies, strict=False), 1):
+        events += [
+            event("asked", {"data": asked}),
+            event("answered", {"success": success, "message": message}),
+        ]
+        events += [event("message", {"data": state}, number=n) for after, n, state in told if after == call]
+    return events
+
+
+USUAL = run([(True, ""), (False, "so already"), (True, "")], [(2, 1, True), (3, 2, False)])
+
+
+@pytest.mark.parametrize(
+    ("seen", "failed", "told"),
+    [
+        (USUAL, set(), set()),
+        (USUAL[:5], {"success", "refuses", "once", "late"}, set()),
+        (
+            run([(True, ""), (True, ""), (True, "")], [(2, 1, True), (3, 2, False)]),
+            {"success", "refuses"},
+            {"stays_so"},
+        ),
+        (
+            run([(True, ""), (False, " "), (True, "")], [(2, 1, True), (3, 2, False)]),
+            {"refuses"},
+            set(),
+        ),
+        (
+            run([(True, ""), (False, "no"), (True, "")], [(2, 2, True), (3, 3, False)]),
+            {"once"},
+            {"told_too_often"},
+        ),
+        (run([(True, ""), (False, "no"), (True, "")], [(3, 2, False)]), {"late"}, set()),
+    ],
+)
+def test_a_machine_is_judged_by_its_steps(seen: Sequence[Event], failed: set[str], told: set[str]) -> None:
+    assert {name for name, holds in passed(door(), seen, USUAL).items() if not holds} == failed
+    assert diagnoses(door(), seen) == told
+
+
+def test_nan_is_nan_and_some_text_is_any_text_but_a_blank_one() -> None:
+    assert same([NAN, {"a": SOME_TEXT}], [NAN, {"a": "any"}])
+    assert not same(SOME_TEXT, " ")
+    assert not same(NAN, 1.0)
+    assert same(1.0, 1.05, 0.1)
+    assert not same(1.0, 1.05)

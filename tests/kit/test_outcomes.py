@@ -1,0 +1,77 @@
+"""The rule for an outcome: its word, in a line that no run says that ended otherwise. No ROS is started."""
+
+from __future__ import annotations
+
+import pytest
+
+from autograder.kit.evidence import Event, Part
+from autograder.kit.outcomes import Outcome, shape
+
+CANCELED = Outcome("canceled", "cancelled")
+REJECTED = Outcome("rejected")
+FRAME = 'Traceback (most recent call last):\n  File "/home/student/client.py", line 9, in main\n    '
+
+
+def run(*lines: str, returned: str | None = None, traceback: str = "") -> Part:
+    events = [Event(0.0, "output", "stdout", {"text": line}) for line in lines]
+    if returned is not None:
+        events.append(Event(0.1, "subject", "returned", {"value": returned}))
+    if traceback:
+        events.append(Event(0.1, "subject", "raised", {"traceback": FRAME + traceback}))
+    return Part("", {}, events)
+
+
+@pytest.mark.parametrize(
+    ("canceled", "otherwise", "reported"),
+    [
+        ("CANCELED", "SUCCEEDED", True),
+        ("the goal was cancelled", "the goal succeeded", True),
+        ("Endzustand: CANCELED", "Endzustand: SUCCEEDED", True),
+        ("status 5, [0, 1]", "status 4, [0, 1, 1]", True),
+        ("Goal finished with status: 5", "Goal finished with status: 4", True),
+        ("status=5 canceled=True", "status=4 canceled=False", True),
+        ("GoalStatus.STATUS_CANCELED", "GoalStatus.STATUS_SUCCEEDED", True),
+        ("[x] canceled [ ] succeeded", "[ ] canceled [x] succeeded", True),
+        ("canceled, and not succeeded", "succeeded, and not canceled", True),
+        ("canceled: True", "canceled: False", True),
+        ("5 0 1 1 2 3", "4 0 1 1 2 3", False),
+        ("der Auftrag wurde abgebrochen", "der Auftrag ist fertig", False),
+        ("the goal was canceled", "the goal was canceled", False),
+        ("canceled after 3 numbers", "canceled after 14 numbers", False),
+        ("canceled: [0, 1]", "canceled: []", False),
+        ("status 45", "status 4", False),
+        ("canceled 3f2b19c0a7", "Canceled 99ab01c2ff", False),
+    ],
+)
+def test_an_outcome_is_reported_by_its_word_in_a_line_of_its_own(
+    canceled: str, otherwise: str, reported: bool
+) -> None:
+    assert (CANCELED.missing(run(canceled), [run(otherwise)]) == "") is reported
+
+
+def test_what_is_returned_or_raised_on_purpose_is_said() -> None:
+    assert REJECTED.reported(run(returned="'rejected'"), []) == "'rejected'"
+    assert REJECTED.reported(run(traceback="raise RuntimeError(text)\nRuntimeError: rejected"), [])
+    assert not REJECTED.reported(run(traceback="print(names[text])\nKeyError: 'rejected'"), [])
+
+
+@pytest.mark.parametrize("value", ["None", "[]", "0", "''"])
+def test_a_value_without_the_word_says_nothing(value: str) -> None:
+    assert REJECTED.missing(run(returned=value), []) == "nothing was said of it"
+
+
+def test_the_diagnosis_quotes_what_was_said_and_the_word() -> None:
+    usual = run("hello", "done")
+    advice = REJECTED.advice(run("hello", "denied"), [usual], "The goal was rejected", "Say so.")
+    assert advice.text == (
+        "The goal was rejected, and your program said “denied”; the task asks for a line with the word `rejected`."
+    )
+    silent = REJECTED.advice(run(), [usual], "The goal was rejected", "Say so.")
+    assert "did not say so; the task asks" in silent.text
+    always = REJECTED.advice(run("rejected?"), [run("rejected?")], "The goal was rejected", "Say so.")
+    assert "also when it is not so" in always.text
+
+
+def test_a_number_behind_the_word_status_is_its_name() -> None:
+    assert shape("Status of the goal: 6 [1, 2]") == "status of the goal: aborted"
+    assert shape("6 numbers, status unknown") == "numbers status unknown"

@@ -1,0 +1,111 @@
+"""``%%program`` writes a file with the student's newest definitions."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from jupyter_client.manager import start_new_kernel
+
+from autograder.masters.code_cells import COPIED
+from autograder.notebook.cells.program_files import NotRunError, with_definitions
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+OLD = "class Talker(Node):\n    pass"
+NEW = "class Talker(Node):\n    TOPIC = 'chatter'"
+PROGRAM = f"import rclpy\nfrom rclpy.node import Node\n\n\n{COPIED}Talker\n\n\nrclpy.spin(Talker())\n"
+
+
+def test_the_newest_definition_takes_the_place_of_the_comment() -> None:
+    text = with_definitions(PROGRAM, ["", OLD, "Talker = None", NEW, "x = 1"])
+    assert text == PROGRAM.replace(f"{COPIED}Talker", NEW)
+
+
+@pytest.mark.parametrize(
+    ("cells", "has"),
+    [
+        pytest.param(
+            ["import math\nclass Talker(Node):\n    pi = math.pi"],
+            "import math\nimport rclpy",
+            id="an import",
+        ),
+        pytest.param(
+            ["import numpy as np", "class Talker(Node):\n    pi = np.pi"],
+            "import numpy as np\nimport rclpy",
+            id="an import of another cell",
+        ),
+        pytest.param(
+            ["PERIOD = 0.5\nclass Talker(Node):\n    period = PERIOD"],
+            "PERIOD = 0.5\n\n\nclass",
+            id="a constant",
+        ),
+        pytest.param(
+            ["def a():\n    return b()\ndef b():\n    return 1\nclass Talker(Node):\n    one = a()"],
+            "def b():\n    return 1\n\n\ndef a():\n    return b()\n\n\nclass",
+            id="helpers of helpers",
+        ),
+        pytest.param(["@final\nclass Talker(Node):\n    pass"], "@final\nclass Talker", id="a decorator"),
+        pytest.param(
+            ["class Talker(Node):\n    node = Node"],
+            "from rclpy.node import Node\n\n\nclass",
+            id="nothing twice",
+        ),
+        pytest.param(
+            ["def talk():\n    talk()\nclass Talker(Node):\n    t = talk"], "def talk", id="recursion"
+        ),
+        pytest.param([OLD, "class Talker(Node:"], OLD, id="a cell that is not Python"),
+        pytest.param([OLD, "%%writefile a.py\nclass Talker: ..."], OLD, id="a cell with a magic"),
+    ],
+)
+def test_what_the_definition_uses_comes_along(cells: list[str], has: str) -> None:
+    text = with_definitions(PROGRAM, cells)
+    assert has in text
+    ast.parse(text)
+    assert text.count("import Node") == 1
+
+
+@pytest.mark.parametrize("cells", [[], ["from there import Talker"], ["talker = 1"]])
+def test_a_definition_that_has_not_run_is_asked_for(cells: list[str]) -> None:
+    with pytest.raises(NotRunError, match="Run the cell that defines Talker first"):
+        with_definitions(PROGRAM, cells)
+
+
+def test_a_text_without_the_comment_is_written_as_it_is() -> None:
+    assert with_definitions("print('my own')\n", [NEW]) == "print('my own')\n"
+    assert with_definitions(PROGRAM.replace(f"{COPIED}Talker", OLD), [NEW]).count("chatter") == 0
+
+
+@pytest.fixture
+def kernel(tmp_path: Path) -> Iterator[Any]:
+    manager, client = start_new_kernel(kernel_name="python3", cwd=str(tmp_path))
+    yield client
+    client.stop_channels()
+    manager.shutdown_kernel(now=True)
+
+
+def run(client: Any, code: str) -> str:
+    words: list[str] = []
+    client.execute_interactive(
+        code,
+        timeout=60,
+        output_hook=lambda message: words.append(
+            message["content"].get("text") or "".join(message["content"].get("traceback", ()))
+        ),
+    )
+    return "".join(words)
+
+
+@pytest.mark.slow
+def test_a_student_runs_two_cells_and_copies_nothing(kernel: Any, tmp_path: Path) -> None:
+    run(kernel, "import autograder.notebook")
+    cell = f"%%program hello.py\n{COPIED}hello\nprint(hello())"
+    assert "Nothing was written. Run the cell that defines hello first" in run(kernel, cell)
+    assert not (tmp_path / "hello.py").exists()
+    for word, said in (("hello", "Writing"), ("good bye", "Overwriting")):
+        run(kernel, f"def hello():\n    return {word!r}")
+        assert said in run(kernel, cell)
+        assert run(kernel, "!python3 hello.py").strip() == word
