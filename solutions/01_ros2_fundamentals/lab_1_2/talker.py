@@ -146,10 +146,8 @@ def counter_start(seen: Publisher, expected: Publisher) -> Advice | None:
         return Advice(
             f"“{seen.texts[seen.greetings]}” was message {seen.greetings + seen.number_of_first} of your node: it "
             f"published {counted(seen.greetings + unheard, 'message')} more before it than it counted{what}.",
-            "An empty message was published before its field data was filled: fill it first, then publish it."
-            if "" in seen.texts[: seen.greetings]
-            else "Publish nothing before the first of these, in __init__ or later: a line such as “Talker started” "
-            "goes into the log.",
+            "Fill each message before you publish it, and publish nothing before the first of these: a line such as "
+            "“Talker started” goes into the log.",
         )
     first = seen.counters[0] if seen.first_number is None else seen.first_number
     return Advice(

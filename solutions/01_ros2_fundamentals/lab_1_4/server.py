@@ -176,7 +176,7 @@ server.knows(
         (
             one
             for one in canceled_later(seen.part(GOALS))
-            if one.cancel_accepted is False and one.status is None
+            if one.cancel_accepted is False and not one.cancelled_too_late and one.status is None
         ),
         None,
     ),
