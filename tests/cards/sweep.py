@@ -42,8 +42,6 @@ def objection(verdict: Verdict) -> str:
         return f"its card says that {held[0]!r} holds, beside: {words}"
     if _POINTS_AT.search(words) and not (place(verdict.detail) or "(line " in words):
         return f"its card points at a line and names none: {words}"
-    if "line that is yours" in words:
-        return f"its card names no fix for: {verdict.detail[-120:]}"
     if "program did nothing" in words and TRACEBACK in verdict.detail:
         return f"its card says of a program that raised that it did nothing: {words}"
     return _of_two_things(verdict, advice.text, missed)

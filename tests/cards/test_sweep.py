@@ -30,7 +30,6 @@ def card(text: str, *, seen: str = "2 messages", held: str = "Builds", detail: s
             "holds, beside",
         ),
         (card("That line has no colon."), "names none"),
-        (card("Correct the line that is yours.", detail=RAISED), "names no fix"),
         (card("It stopped with TypeError: no.", detail=RAISED), "of a TypeError"),
         (card("It stopped.", seen="the program did nothing", detail=RAISED), "that raised"),
         (card("It said “one text”.", seen="“another one” 2 times"), "its criteria “another one”"),

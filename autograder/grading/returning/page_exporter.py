@@ -120,6 +120,7 @@ class PageExporter(HTMLExporter):
         yield from filters()
         yield "without_scripts", without_scripts
         yield "with_summary", with_summary
+        yield "cards_first", cards_first
 
     def page(self, notebook: NotebookNode, names: Mapping[str, Any]) -> str:
         """Make the page of one notebook.
@@ -133,7 +134,7 @@ class PageExporter(HTMLExporter):
         self._set_filter("highlight_code", _highlighter(lexer))
         self._set_filter("part_of_page", functools.partial(self._part, lexer))
         resources = self._resources.copy()
-        resources["nbgrader"] = {**names, "folds": cards_first(notebook)}
+        resources["nbgrader"] = dict(names)
         rendered: str = self.template.render(nb=make_harmless(notebook), resources=resources)
         return _with_alternative_texts(rendered.lstrip("\r\n"))
 

@@ -214,5 +214,5 @@ def test_a_check_that_was_not_seen_to_its_end_earns_nothing_and_one_whose_time_w
 def test_a_judge_that_says_no_report_has_died(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     process = JudgeProcess(tmp_path / "judge", seed="a seed")
     monkeypatch.setattr(process, "_order", lambda _: b'{"verdict": 10}\n')
-    with pytest.raises(JudgeDied, match="else than a report"):
+    with pytest.raises(JudgeDied, match="is not a report"):
         process.close_report()
