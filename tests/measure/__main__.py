@@ -12,7 +12,7 @@ PROGRAMS = {
     "mutants": "count the mutants of right answers that are rejected",
     "soak": "judge the bank in random order under load, and name what changes",
     "steady_class": "grade a class thirty times, and name what changes",
-    "rates": "all of that, published in docs/fairness.md",
+    "rates": "all of that, published in docs/accuracy.md",
     "history": "name what the evidence of earlier days says otherwise of the bank; nothing is run",
     "compare": "name what two commits say otherwise of the bank",
     "built_ahead": "record the packages that the course's own notebooks build, so that classes find them built",

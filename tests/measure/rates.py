@@ -1,7 +1,7 @@
 """How often the judge is right and how often it says the same, measured and published.
 
 Judges the bank, a sample of mutants, the bank in a soak, and a class again and again; keeps the figures in
-``docs/fairness.json`` and puts them into ``docs/fairness.md``. Each part runs as the command that stands in its row.
+``docs/accuracy.json`` and puts them into ``docs/accuracy.md``. Each part runs as the command that stands in its row.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from autograder.authoring.answers import Answer
     from autograder.verdict import Verdict
 
-PAGE = course.root() / "docs" / "fairness.md"
+PAGE = course.root() / "docs" / "accuracy.md"
 RESULTS = PAGE.with_suffix(".json")
 BEGIN, END = "<!-- rates: written by tests.measure rates -->", "<!-- end of rates -->"
 
