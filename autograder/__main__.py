@@ -12,7 +12,7 @@ from pathlib import Path
 import re2
 
 from autograder import course
-from environment.installation import PACKAGE
+from environment.installation import COMMAND, PACKAGE
 from environment.python_child import SAFE_PATH
 
 TERMINATED = 143
@@ -28,7 +28,7 @@ def main() -> None:
 
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(TERMINATED))
     try:
-        cli()
+        cli(prog_name=COMMAND)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)

@@ -14,6 +14,7 @@ import pytest
 
 from autograder.authoring.answers import folder_of, named
 from autograder.boxes.sandbox import why_impossible
+from autograder.cli import GROUPS
 from autograder.cli.students import show
 from autograder.kit.recipes.sent_texts import AT_PACE
 from autograder.verdict import not_checked
@@ -32,6 +33,16 @@ def _run(*words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-m", "autograder", *words], capture_output=True, text=True, check=False, timeout=120
     )
+
+
+def test_the_help_lists_each_command_once_with_a_whole_sentence() -> None:
+    said = _run("--help").stdout
+    assert "..." not in said.partition("Options:")[2]
+    assert said.index("Students:") < said.index("Instructors, a class:") < said.index("Authors:")
+    listed = [line.split()[0] for line in said.split("Students:")[1].splitlines() if line[:3].strip()]
+    assert [name for name in listed if name[0].islower()] == [
+        str(command.name) for commands in GROUPS.values() for command in commands
+    ]
 
 
 def test_check_alone_lists_the_exercises() -> None:

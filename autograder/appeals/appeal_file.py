@@ -104,7 +104,7 @@ def read(path: Path) -> Appeal:
     try:
         return msgspec.convert(restored(content), type=Appeal)
     except (ValueError, TypeError, RecursionError) as error:
-        raise BadAppeal(f"{path} is not as an appeal file is: {error}") from error
+        raise BadAppeal(f"{path} is not a valid appeal file: {error}") from error
 
 
 def _lines(value: Any, indent: str, before: str = "", after: str = "") -> Iterator[str]:

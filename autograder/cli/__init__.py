@@ -11,10 +11,35 @@ from pathlib import Path
 import click
 
 from autograder import course
-from autograder.cli import appeals, authors, instructors, students
+from autograder.cli import appeals, authors, instructors, reports, students
+
+GROUPS = {
+    "Students": students.COMMANDS,
+    "Instructors, a class": instructors.COMMANDS,
+    "Instructors, its results": (*reports.COMMANDS, *appeals.COMMANDS),
+    "Authors": authors.COMMANDS,
+}
+"""The commands by the people who type them, in the order of the help."""
+IN_A_COURSE = {str(command.name) for command in (instructors.new_class, *authors.COMMANDS)}
+"""The commands that work on the course around the current folder, besides `check` of one's own program. Every other
+command for a class uses the course that `new-class` recorded: students' work could hold a course of their own."""
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+class _Groups(click.Group):
+    """A command whose help lists its subcommands by the people who type them."""
+
+    def format_commands(self, _ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        for title, commands in GROUPS.items():
+            with formatter.section(title):
+                formatter.write_dl(
+                    [
+                        (str(command.name), (command.help or "").split("\n\n")[0].replace("\n", " "))
+                        for command in commands
+                    ]
+                )
+
+
+@click.group(cls=_Groups, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="ros2-course-autograder", prog_name="autograder")
 @click.pass_context
 def cli(context: click.Context) -> None:
@@ -23,10 +48,6 @@ def cli(context: click.Context) -> None:
         course.use_the_one_around(Path.cwd())
 
 
-IN_A_COURSE = {str(command.name) for command in (instructors.new_class, *authors.COMMANDS)}
-"""The commands that work on the course around the current folder, besides `check` of one's own program. Every other
-command for a class uses the course that `new-class` recorded: students' work could hold a course of their own."""
-
-
-for command in (*students.COMMANDS, *authors.COMMANDS, *instructors.COMMANDS, *appeals.COMMANDS):
-    cli.add_command(command)
+for group in GROUPS.values():
+    for command in group:
+        cli.add_command(command)

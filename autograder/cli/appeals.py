@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from autograder.cards.readable import printable
-from autograder.cli.ending import fail, grading_errors
+from autograder.cli.results import as_json_option, fail, grading_errors, print_json
 from environment.installation import COMMAND
 
 if TYPE_CHECKING:
@@ -35,7 +35,8 @@ def _fail(message: str) -> NoReturn:
 @click.command()
 @click.argument("folder", type=click.Path(path_type=Path))
 @click.argument("student")
-def attempts(folder: Path, student: str) -> None:
+@as_json_option
+def attempts(folder: Path, student: str, as_json: bool) -> None:
     """List the results of each time that STUDENT was graded in the class FOLDER."""
     from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory
@@ -43,7 +44,10 @@ def attempts(folder: Path, student: str) -> None:
     with grading_errors(), ClassStore(ClassDirectory(folder)) as store:
         found = store.attempts(student)
     if not found:
-        fail(f"Nobody of the id {student!r} was graded here since attempts are noted.")
+        fail(f"No student with the id {student!r} was graded in this class.")
+    if as_json:
+        print_json({"student": student, "attempts": found})
+        return
     for attempt in found:
         click.echo(printable(attempt.line()))
 
@@ -85,14 +89,15 @@ def _shown(line: str) -> str:
 @click.option(
     "--bag", type=click.Path(path_type=Path), help="Also write the messages of topics, for ros2 bag play."
 )
-def replay(file: Path, mcap: Path | None, bag: Path | None) -> None:
+@as_json_option
+def replay(file: Path, mcap: Path | None, bag: Path | None, as_json: bool) -> None:
     """Judge the check in an appeal FILE again, from what was seen then and with the course as it is now.
 
     No code of the student is run, and no ROS node is started.
 
-    A file proves nothing by itself: anybody can write one. Have `appeal` write it from the class.
+    A file proves nothing by itself, because any person can write one. Have `appeal` write it from the class.
 
-    Exit code 0: the same verdict; 1: another one; 2: it cannot be judged again.
+    Exit code 0: the same verdict; 1: a different one; 2: it cannot be judged again.
     """
     from autograder.appeals import appeal_file, replaying
 
@@ -102,27 +107,30 @@ def replay(file: Path, mcap: Path | None, bag: Path | None) -> None:
                 check_name(path)
         appeal = appeal_file.read(file)
         if mcap is not None:
-            click.echo(save_messages(appeal.seen, mcap))
+            click.echo(save_messages(appeal.seen, mcap), err=as_json)
         if bag is not None:
-            click.echo(save_bag(appeal.seen, bag))
+            click.echo(save_bag(appeal.seen, bag), err=as_json)
         again = replaying.replay(appeal.seen)
         lines = list(_lines(appeal, again))
     except (appeal_file.BadAppeal, replaying.CannotReplay) as error:
         _fail(str(error))
     except Exception as error:  # the file may contain anything
         _fail(
-            f"{file} is not as an appeal file is ({type(error).__name__}: {error}). It was edited, or comes from "
-            "another version of the course: use that one."
+            f"{file} is not a valid appeal file ({type(error).__name__}: {error}). It was edited, or comes from "
+            "a different version of the course: use that version."
         )
-    for line in lines:
-        click.echo(_shown(line))
+    if as_json:
+        print_json({"student": appeal.student, "course": appeal.course, "replay": again})
+    else:
+        for line in lines:
+            click.echo(_shown(line))
     sys.exit(1 if again.differences else 0)
 
 
 def check_name(path: Path) -> None:
     """End with exit code 2 if the name of a file of messages does not end in .mcap."""
     if path.suffix != ".mcap":
-        _fail(f"messages are written into a file such as check.mcap: {path.name} has another ending")
+        _fail(f"the name of a file of messages ends in .mcap, such as check.mcap; {path.name} does not")
 
 
 def save_messages(seen: Kept, path: Path) -> str:
@@ -158,12 +166,12 @@ def _lines(appeal: Appeal, again: Replay) -> Iterator[str]:
     yield f"then: {_told(then)}"
     yield f"now:  {_told(again.now)}"
     if again.differences:
-        yield "another verdict:"
+        yield "a different verdict:"
         yield from (f"  {line}" for line in again.differences[:_MAX_LINES])
     else:
         yield "the same verdict, points and diagnosis"
     yield from (f"note: {note}" for note in again.notes[:_MAX_LINES])
-    yield f"note: the file proves nothing by itself, anybody can write one; `{COMMAND} appeal` writes it from the class"
+    yield f"note: a file proves nothing, any person can write one; `{COMMAND} appeal` writes it from the class"
 
 
 def _told(verdict: Verdict) -> str:

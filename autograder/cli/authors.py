@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from autograder.cli.ending import NO, fail
+from autograder.cli.results import NO, fail
 from environment.installation import COMMAND
 
 

@@ -1,4 +1,4 @@
-"""The commands of instructors: a class from handing out to returning."""
+"""The commands of instructors that make a class, collect submissions and grade them."""
 
 from __future__ import annotations
 
@@ -8,16 +8,14 @@ from zoneinfo import ZoneInfo
 
 import click
 
-from autograder.cards.readable import printable, printable_json
-from autograder.cli.ending import INTERRUPTED, fail, grading_errors
-from autograder.kit.in_words import counted
+from autograder.cli.results import INTERRUPTED, as_json_option, fail, grading_errors, print_json
 from environment.installation import COMMAND
 
-_class_folder = click.argument("folder", type=click.Path(path_type=Path))
-_only_assignments = click.option(
+class_folder = click.argument("folder", type=click.Path(path_type=Path))
+only_assignments = click.option(
     "--assignment", "assignments", multiple=True, help="Only this assignment; may be given several times."
 )
-_only_sections = click.option(
+only_sections = click.option(
     "--section",
     "sections",
     multiple=True,
@@ -35,7 +33,7 @@ def _known_zone(_context: click.Context, _option: click.Parameter, name: str) ->
 
 @click.command("hand-out")
 @click.argument("place", type=click.Path(path_type=Path))
-@_only_assignments
+@only_assignments
 @click.option("--zip", "as_zip", is_flag=True, help="Make PLACE a zip file.")
 @click.option(
     "--with-solutions",
@@ -59,8 +57,8 @@ def hand_out(place: Path, assignments: tuple[str, ...], as_zip: bool, with_solut
 
 
 @click.command("new-class")
-@_class_folder
-@_only_assignments
+@class_folder
+@only_assignments
 @click.option(
     "--timezone",
     default="",
@@ -79,8 +77,8 @@ def new_class(folder: Path, assignments: tuple[str, ...], timezone: ZoneInfo | N
 
 
 @click.command("renew-class")
-@_class_folder
-@_only_assignments
+@class_folder
+@only_assignments
 def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
     """Update the sources of the class FOLDER to the present course; the old ones are kept."""
     from autograder import course
@@ -91,21 +89,18 @@ def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
             click.echo(line)
 
 
-_as_json = click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
-
-
 @click.command()
-@_class_folder
+@class_folder
 @click.argument("files", nargs=-1, type=click.Path(path_type=Path))
 @click.option(
-    "--assignment", default="", help="What all of it is for; told from names and contents where not given."
+    "--assignment", default="", help="The assignment of all files. The default is what cells and names say."
 )
 @click.option(
     "--timezone",
     default="",
     callback=_known_zone,
     metavar="Europe/Berlin",
-    help="The time zone of times in names and lists; the time zone of the class by default.",
+    help="The time zone of times in names and lists. The default is the time zone of the class.",
 )
 @click.option(
     "--from",
@@ -114,22 +109,22 @@ _as_json = click.option("--json", "as_json", is_flag=True, help="Print the resul
         ["moodle", "canvas", "blackboard", "brightspace", "google", "github", "gradescope", "sakai", "ilias"]
     ),
     default=None,
-    help="Which system it is from, if names do not show it. Google's and ILIAS's names are read only with it.",
+    help="The system of the download, if names do not show it. Google Classroom and ILIAS need it.",
 )
 @click.option(
     "--names",
     default="",
     metavar="'{id}-{last}_{assignment}'",
-    help="What names say: id, email, login, number, name, first, last, assignment, time, file, any; or a column of "
-    "students.csv.",
+    help="The pattern of names, with id, email, login, number, name, first, last, assignment, time, file, any, or "
+    "a column of students.csv.",
 )
 @click.option(
     "--handed-in",
     default="",
     metavar="2026-01-31T12:00",
-    help="When that was, of which nothing else says it.",
+    help="The time of submissions whose time nothing else says.",
 )
-@_as_json
+@as_json_option
 def collect(
     folder: Path,
     files: tuple[Path, ...],
@@ -143,42 +138,40 @@ def collect(
     """Put FILES that an LMS let you download into the class directory FOLDER.
 
     FILES are zips, folders and notebooks of Moodle, Canvas, Blackboard, Brightspace, Gradescope, Google Classroom or
-    GitHub Classroom, and lists (.csv) that come with them. Whose they are says students.csv in FOLDER.
+    GitHub Classroom, and lists (.csv) that come with them. The file students.csv in FOLDER maps them to students.
 
-    Exit code 0: everything has its place; 2: the lines say what has not, and why.
+    Exit code 0: everything has its place; 2: the lines say which files wait, and why.
     """
-    import msgspec
-
     from autograder.grading.collecting import collect as collecting
     from autograder.grading.collecting.forms import read_time
     from autograder.grading.collecting.showing import show
 
     when = read_time(handed_in) if handed_in else None
     if handed_in and when is None:
-        fail(f"--handed-in {handed_in} is no time. One looks like 2026-01-31T12:00.")
+        fail(f"--handed-in {handed_in} is not a time. A time looks like 2026-01-31T12:00.")
     with grading_errors():
         report = collecting.collect(
             folder, files, assignment=assignment, zone=timezone, form=form or "", names=names, handed_in=when
         )
     if as_json:
-        click.echo(printable_json(msgspec.json.encode(report, enc_hook=str).decode()))
+        print_json(report)
     else:
         show(report)
     sys.exit(report.exit_code)
 
 
 @click.command()
-@_class_folder
-@_only_assignments
+@class_folder
+@only_assignments
 @click.option("--student", "students", multiple=True, help="Only this student; may be given several times.")
-@_only_sections
+@only_sections
 @click.option("--again", is_flag=True, help="Run unchanged submissions again.")
 @click.option(
     "--jobs",
     type=click.IntRange(min=1),
-    help="Notebooks at once; as many as processors and memory allow where not given.",
+    help="Notebooks at once. The default is as many as processors and memory allow.",
 )
-@_as_json
+@as_json_option
 @click.option(
     "--unsafe-no-sandbox",
     is_flag=True,
@@ -187,7 +180,7 @@ def collect(
 @click.option(
     "--scheduler",
     metavar="tcp://HOST:PORT",
-    help="Have the workers of this Dask scheduler run the submissions (see `autograder worker`).",
+    help=f"Have the workers of this Dask scheduler run the submissions (see `{COMMAND} worker`).",
 )
 @click.option(
     "--dry-run",
@@ -211,7 +204,7 @@ def grade(
     from autograder.grading.running import sandboxing
 
     if scheduler is not None and jobs is not None:
-        fail("--jobs is for this machine; each worker of a cluster has its own: autograder worker --jobs")
+        fail(f"--jobs is for this machine; each worker of a cluster has its own: {COMMAND} worker --jobs")
     if unsafe_no_sandbox:
         sandboxing.switch_off(folder)
     try:
@@ -234,161 +227,12 @@ def grade(
     if as_json:
         from autograder.grading.reporting.report import report_json
 
-        click.echo(printable_json(report_json(report).decode()))
+        print_json(report_json(report))
     else:
         from autograder.grading.reporting.report_table import show
 
         show(report)
     sys.exit(report.exit_code)
-
-
-@click.command()
-@_class_folder
-@click.option(
-    "--to",
-    type=click.Choice(
-        ["canvas", "moodle", "gradescope", "blackboard", "brightspace", "sakai", "ilias", "csv", "xlsx"]
-    ),
-    required=True,
-    help="Whose form.",
-)
-@_only_assignments
-@_only_sections
-@click.option(
-    "--into",
-    type=click.Path(path_type=Path),
-    help="Fill in this list, as the system of --to has exported it.",
-)
-@click.option(
-    "--column",
-    "columns",
-    multiple=True,
-    metavar="ASSIGNMENT=COLUMN",
-    help="What an assignment's column is called in --into; may be given several times.",
-)
-@click.option(
-    "--absent",
-    type=click.Choice(["blank", "zero"]),
-    default="blank",
-    help="The entry for students without a submission. The default is an empty cell.",
-)
-@click.option(
-    "--output", type=click.Path(path_type=Path), help="The folder to write to. The default is FOLDER/export."
-)
-@_as_json
-def export(
-    folder: Path,
-    to: str,
-    assignments: tuple[str, ...],
-    sections: tuple[str, ...],
-    into: Path | None,
-    columns: tuple[str, ...],
-    absent: str,
-    output: Path | None,
-    as_json: bool,
-) -> None:
-    """Write the points and the feedback (as a zip) in the format that an LMS imports."""
-    from autograder.grading.exporting.export_files import export as write_files
-
-    pairs = (one.partition("=") for one in columns)
-    named = {name.strip(): called.strip() for name, _, called in pairs}
-    if not all(named.values()):
-        fail('--column is an assignment and what its column is called: --column "ASSIGNMENT=COLUMN"')
-    with grading_errors():
-        done = write_files(
-            folder,
-            to,
-            assignments=assignments,
-            into=into,
-            folder=output,
-            absent_zero=absent == "zero",
-            columns=named,
-            sections=sections,
-        )
-    if as_json:
-        import msgspec
-
-        files = [{"path": str(file), "purpose": purpose} for file, purpose in done.files]
-        said = msgspec.json.encode({"files": files, "notices": done.notices})
-        click.echo(printable_json(said.decode()))
-        return
-    for file, purpose in done.files:
-        click.echo(f"{printable(str(file))}\n    {printable(purpose)}")
-    for notice in done.notices:
-        click.echo(f"note: {printable(notice)}")
-
-
-@click.command()
-@_class_folder
-@_only_sections
-@click.option("--without-names", is_flag=True, help="Call students by numbers, without links to their pages.")
-@click.option(
-    "--output", type=click.Path(path_type=Path), help="The page to write. The default is FOLDER/report.html."
-)
-@_as_json
-def report(
-    folder: Path, sections: tuple[str, ...], without_names: bool, output: Path | None, as_json: bool
-) -> None:
-    """Write one page about the class FOLDER: points, mistakes, exercises and each student's progress."""
-    from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.report_page.page import write_report
-    from autograder.grading.reporting.report import table_json
-    from autograder.grading.table.class_table import read_table
-
-    if as_json and without_names:
-        fail("--json has the ids of students: leave out --json or --without-names.")
-    with grading_errors():
-        page = write_report(folder, names=not without_names, to=output, sections=sections)
-        said = table_json(page, read_table(ClassDirectory(folder), sections)) if as_json else b""
-    click.echo(printable_json(said.decode()) if as_json else page)
-
-
-@click.command()
-@_class_folder
-@click.argument("assignment", required=False, default="")
-@click.option(
-    "--output", type=click.Path(path_type=Path), help="The page to write. The default is FOLDER/similar.html."
-)
-def similar(folder: Path, assignment: str, output: Path | None) -> None:
-    """Find pairs of submissions in the class FOLDER that are closer than the task explains.
-
-    A pair is a hint, not a proof. If ASSIGNMENT is named, only that one is compared.
-
-    Exit code 0: everything was compared; 2: the lines say what was not, and why.
-    """
-    from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.errors import clear_disk_errors
-    from autograder.grading.similarity.close_pairs import find_similar
-    from autograder.grading.similarity.similarity_page import write_page
-    from autograder.grading.similarity.similarity_text import show
-
-    with grading_errors():
-        directory = ClassDirectory(folder)
-        with clear_disk_errors(directory.path):
-            found = find_similar(directory, assignment)
-            page = write_page(found, output)
-    show(found, page)
-    sys.exit(found.exit_code)
-
-
-@click.command()
-@_class_folder
-@click.argument("before", required=False, default="")
-@click.argument("after", required=False, default="")
-def compare(folder: Path, before: str, after: str) -> None:
-    """Show whose points the last run of the class FOLDER has changed.
-
-    BEFORE and AFTER are runs, by the times in the first line that this prints.
-    """
-    from autograder.grading.class_store import ClassStore
-    from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.table import point_differences
-
-    with grading_errors(), ClassStore(ClassDirectory(folder)) as store:
-        old, new, found = point_differences.compare(store, before, after)
-    click.echo(f"{old} → {new}: {counted(len(found), 'difference')}")
-    for difference in found:
-        click.echo(printable(difference.line()))
 
 
 @click.command()
@@ -425,15 +269,11 @@ def demo(folder: Path) -> None:
 
 
 COMMANDS = (
+    demo,
     hand_out,
     new_class,
     renew_class,
     collect,
     grade,
-    export,
-    report,
-    similar,
-    compare,
     worker,
-    demo,
 )

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 import click
 
 from autograder.cli import appeals
-from autograder.cli.ending import CANNOT, NO, fail
+from autograder.cli.results import CANNOT, NO, as_json_option, fail, print_json
+from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -27,10 +28,19 @@ _notebooks = click.option(
 )
 
 
-@click.command()
+@click.command(
+    help=f"""Run any COMMAND as the subject of EXERCISE and print the verdict.
+
+    \b
+    {COMMAND} check                               lists the exercises
+    {COMMAND} check lab_1_2.talker -- python3 talker.py
+    {COMMAND} check lab_1_2.talker --box -- python3 another_students_talker.py
+
+    Exit code 0: passed; 1: not passed; 2: could not be checked."""
+)
 @click.argument("exercise", required=False)
 @click.argument("command", nargs=-1, type=click.UNPROCESSED)
-@click.option("--json", "as_json", is_flag=True, help="Print the verdict as one JSON object.")
+@as_json_option
 @click.option("--seed", help="The seed of the random inputs: the same seed gives the same inputs.")
 @click.option(
     "--box",
@@ -49,15 +59,7 @@ def check(
     boxed: bool,
     mcap: Path | None,
 ) -> None:
-    """Run any COMMAND as the subject of EXERCISE and print the verdict.
-
-    \b
-    autograder check                               lists the exercises
-    autograder check lab_1_2.talker -- python3 talker.py
-    autograder check lab_1_2.talker --box -- python3 talker_of_somebody_else.py
-
-    Exit code 0: passed; 1: not passed; 2: could not be checked.
-    """  # noqa: D301 (to click, the backspace keeps the lines below it apart)
+    """Run a command as the subject of an exercise and print the verdict."""
     from autograder import course, exercises
 
     if not boxed:  # the folder of a program in a sandbox belongs to a student
@@ -71,7 +73,7 @@ def check(
         fail(str(error))
     if not command:
         fail(
-            f"say which command to check, after two dashes: autograder check {exercise} -- python3 my_file.py"
+            f"say which command to check, after two dashes: {COMMAND} check {exercise} -- python3 my_file.py"
             + (f" (it is called with {wanted.arguments})" if wanted.arguments else "")
         )
     if mcap is not None:
@@ -132,10 +134,7 @@ def list_exercises() -> None:
 def show(verdict: Verdict, *, as_json: bool) -> None:
     """Print a verdict as a card or as JSON."""
     if as_json:
-        from autograder.cards.readable import printable_json
-        from autograder.verdict import to_json
-
-        click.echo(printable_json(to_json(verdict).decode()))
+        print_json(verdict)
         return
     from autograder.cards.text import card_text
 
@@ -160,7 +159,7 @@ def lab(folder: Path | None, arguments: tuple[str, ...]) -> None:
 
 
 @click.command()
-@click.option("--json", "as_json", is_flag=True, help="Print it as one JSON object.")
+@as_json_option
 @_notebooks
 def progress(as_json: bool, folder: Path | None) -> None:
     """Show which points you have reached, and where to go on. This is not a grade."""
@@ -210,7 +209,7 @@ def _notebooks_and_journal(root: Path, folder: Path | None) -> tuple[Path, Path 
 
 
 @click.command()
-@click.option("--json", "as_json", is_flag=True, help="Print the findings as JSON.")
+@as_json_option
 def doctor(as_json: bool) -> None:
     """Show what is installed, what is missing and how to get it."""
     from environment import doctor as probes

@@ -42,8 +42,15 @@ def test_the_same_verdict_ends_with_0(file: Path) -> None:
         "then: passed, 10 of 10 points",
         "now:  passed, 10 of 10 points",
         "the same verdict, points and diagnosis",
-        "note: the file proves nothing by itself, anybody can write one; `./course appeal` writes it from the class",
+        "note: a file proves nothing, any person can write one; `./course appeal` writes it from the class",
     ]
+
+
+def test_a_replay_as_json_has_both_verdicts(file: Path) -> None:
+    code, said = run("replay", file, "--json")
+    replay = json.loads(said)["replay"]
+    assert (code, replay["differences"]) == (0, [])
+    assert replay["then"]["score"] == replay["now"]["score"] == 10
 
 
 def test_an_edited_verdict_is_not_the_one_that_follows(file: Path) -> None:
@@ -52,7 +59,7 @@ def test_an_edited_verdict_is_not_the_one_that_follows(file: Path) -> None:
     assert code == 1
     assert "state: was failed, is passed" in said
     assert "points: was 3 of 10, is 10 of 10" in said
-    assert "proves nothing by itself" in said
+    assert "a file proves nothing" in said
 
 
 def test_edited_evidence_is_judged_as_what_it_says(file: Path) -> None:
@@ -161,7 +168,7 @@ def test_a_number_that_none_can_be_ends_with_2(
     edit(file, change)
     code, said = run("replay", file, *options, *(tmp_path / "check.mcap" for _ in options))
     assert code == 2
-    assert "is not as an appeal file is" in said
+    assert "is not a valid appeal file" in said
 
 
 @pytest.mark.parametrize("option", ["--mcap", "--bag"])
@@ -179,7 +186,7 @@ def test_messages_that_none_can_be_end_with_2(
     edit(file, change)
     code, said = run("replay", file, option, tmp_path / "check.mcap")
     assert code == 2
-    assert "is not as an appeal file is" in said
+    assert "is not a valid appeal file" in said
 
 
 def test_a_file_that_is_none_ends_with_2(tmp_path: Path) -> None:

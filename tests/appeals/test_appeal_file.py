@@ -70,7 +70,7 @@ def test_a_cut_file_says_what_to_do(file: Path) -> None:
         (b"[" * 100_000, "is no appeal file"),
         (b"[]", "is JSON, but not an appeal file"),
         (b'{"exercise": "lab_1_2.talker"}', "is JSON, but not an appeal file"),
-        (b'{"format": "ros2-course-appeal-1"}', "is not as an appeal file is"),
+        (b'{"format": "ros2-course-appeal-1"}', "is not a valid appeal file"),
         (b'{"format": "ros2-course-appeal-0"}', "not an appeal file of this version"),
     ],
 )

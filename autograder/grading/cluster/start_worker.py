@@ -19,6 +19,7 @@ from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.running.dispatcher import SchedulerGone
 from autograder.grading.running.orders import Offer
 from autograder.temporary_folders import HeldFolder
+from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -59,7 +60,7 @@ def start_worker(
     """
     address = address or os.environ.get("DASK_SCHEDULER_ADDRESS")
     if not address:
-        raise GradingError("Say where the scheduler is, for example: autograder worker tcp://host:8786")
+        raise GradingError(f"Name the scheduler, for example: {COMMAND} worker tcp://host:8786")
     check_address(address)
     name = name or os.environ.get("DASK_WORKER_NAME") or f"{os.uname().nodename}-{os.getpid()}"
     offered = offer(jobs or len(os.sched_getaffinity(0)))

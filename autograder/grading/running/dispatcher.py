@@ -34,6 +34,7 @@ from autograder.grading.running.orders import (
     Order,
     Unfit,
 )
+from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator
@@ -389,7 +390,7 @@ class Dispatcher:
         if not self._refused:
             return (
                 f"The Dask scheduler at {self._address} has no workers. "
-                f"Start some: autograder worker {self._address}"
+                f"Start some: {COMMAND} worker {self._address}"
             )
         reasons = "\n".join(f"  {reason}" for reason in self._refused.values())
         return f"No worker of the Dask scheduler at {self._address} can be given work:\n{reasons}"
@@ -403,7 +404,7 @@ def _most_seconds(task: Task) -> float:
 def _could_not_be_asked(reason: str) -> str:
     if "No module named" in reason:
         return (
-            f"it does not have the autograder ({reason}). Start it with `autograder worker`, "
+            f"it does not have the autograder ({reason}). Start it with `{COMMAND} worker`, "
             "or with the Python of the course's .venv"
         )
     return f"it could not be asked what it offers ({reason})"

@@ -1,8 +1,8 @@
-"""The close pairs in a terminal."""
+"""The close pairs for a terminal, and as data."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rich import box
 from rich.console import Console
@@ -46,6 +46,27 @@ def show(found: Similar, page: Path, console: Console | None = None) -> None:
     for trouble in found.troubles:
         line(trouble, "yellow")
     line(f"page       {page}")
+
+
+def similar_json(found: Similar, page: Path) -> dict[str, Any]:
+    """Return the result of a search, and the path of its page, for ``--json``."""
+    pairs = [
+        {
+            "students": pair.students,
+            "place": pair.place,
+            "shared_words": pair.shared,
+            "own_words": (pair.one.length, pair.other.length),
+        }
+        for pair in found.pairs
+    ]
+    return {
+        "compared": found.compared,
+        "pairs": pairs,
+        "more": found.more,
+        "notes": found.notes,
+        "troubles": found.troubles,
+        "page": str(page),
+    }
 
 
 def _table(found: Similar) -> Table:

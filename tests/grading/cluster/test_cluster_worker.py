@@ -42,7 +42,7 @@ def test_without_an_address_it_says_how_to_give_one(monkeypatch: pytest.MonkeyPa
     monkeypatch.delenv("DASK_SCHEDULER_ADDRESS", raising=False)
     done = CliRunner().invoke(cli, ["worker"])
     assert done.exit_code == 2
-    assert "autograder worker tcp://host:8786" in done.output
+    assert "./course worker tcp://host:8786" in done.output
 
 
 @pytest.mark.parametrize(
@@ -80,7 +80,7 @@ def test_what_is_no_address_or_belongs_to_this_machine_is_refused_by_grade(tiny:
     assert "is no address of a Dask scheduler" in done.output
     done = CliRunner().invoke(cli, ["grade", str(tiny.path), "--scheduler", "tcp://x:1", "--jobs", "2"])
     assert done.exit_code == 2
-    assert "autograder worker --jobs" in done.output
+    assert "./course worker --jobs" in done.output
 
 
 def test_it_says_what_it_offers_and_ends_when_it_is_told(tmp_path_factory: pytest.TempPathFactory) -> None:

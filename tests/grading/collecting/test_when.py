@@ -60,7 +60,7 @@ def test_handed_in_says_it_of_what_nothing_else_does(klass: TinyClass, tmp_path:
     assert stamp(klass, "ada") == "2025-10-03 14:05:00.000000 UTC"
     archive = str(tmp_path / "c.zip")
     said = CliRunner().invoke(cli, ["collect", str(klass.path), archive, "--handed-in", "noon"])
-    assert (said.exit_code, "--handed-in noon is no time" in said.output) == (2, True)
+    assert (said.exit_code, "--handed-in noon is not a time" in said.output) == (2, True)
 
 
 def test_what_came_without_a_time_does_not_replace_what_has_one(klass: TinyClass, tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING
 
 import pytest
@@ -40,6 +41,8 @@ def test_each_time_is_noted_with_what_came_of_it(tiny: TinyClass, fake_engine: F
     assert len(said) == 3
     assert "11/20  lab_1_2.talker 4 (wrong_text), lab_1_2.listener 7 (wrong_text)" in said[0]
     assert "17/20" in said[2]
+    data = json.loads(CliRunner().invoke(cli, ["attempts", str(tiny.path), "ada", "--json"]).output)
+    assert [sum(row["score"] for row in one["rows"]) for one in data["attempts"]] == [11, 11, 17]
 
 
 def test_a_dry_run_is_no_attempt(tiny: TinyClass, fake_engine: FakeEngine) -> None:
@@ -47,4 +50,4 @@ def test_a_dry_run_is_no_attempt(tiny: TinyClass, fake_engine: FakeEngine) -> No
     tiny.grade(dry_run=True)
     said = CliRunner().invoke(cli, ["attempts", str(tiny.path), "ada"])
     assert (said.exit_code, attempts(tiny, "ada")) == (2, [])
-    assert "Nobody of the id 'ada' was graded here" in said.output
+    assert "No student with the id 'ada' was graded in this class" in said.output

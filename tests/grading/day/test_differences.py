@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING
 
 from click.testing import CliRunner
@@ -123,6 +124,8 @@ def test_two_runs_can_be_compared_at_any_time(tiny: TinyClass, fake_engine: Fake
     assert len(names) == 3, "a run that changes nothing is not kept"
     whole = CliRunner().invoke(cli, ["compare", str(tiny.path), names[0], names[-1]]).output
     assert "ada  lab_1_2.talker  4 → 10 (wrong_text → no mistake)" in whole
+    data = json.loads(CliRunner().invoke(cli, ["compare", str(tiny.path), "--json"]).output)
+    assert [(one["before"], one["after"]) for one in data["differences"]] == [(7, 9)]
     assert CliRunner().invoke(cli, ["compare", str(tiny.path), "yesterday"]).exit_code == 2
 
 

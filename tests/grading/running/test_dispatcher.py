@@ -269,13 +269,13 @@ def test_a_worker_cannot_write_on_the_terminal(tasks: list[Task]) -> None:
 def test_a_worker_without_the_package_is_refused_with_what_to_do() -> None:
     link = FakeLink(Unfit("tcp://w:1", "w", "ModuleNotFoundError: No module named 'autograder'"), Asked())
     with pytest.raises(
-        NoWorkers, match=r"w \(tcp://w:1\): it does not have the autograder .* `autograder worker`"
+        NoWorkers, match=r"w \(tcp://w:1\): it does not have the autograder .* `\./course worker`"
     ):
         make_dispatcher(link).await_workers()
 
 
 def test_no_worker_at_all_says_how_to_start_one() -> None:
-    with pytest.raises(NoWorkers, match=r"has no workers.*autograder worker tcp://x:1"):
+    with pytest.raises(NoWorkers, match=r"has no workers.*course worker tcp://x:1"):
         make_dispatcher(FakeLink(Asked())).await_workers()
 
 

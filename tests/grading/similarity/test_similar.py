@@ -132,6 +132,8 @@ def test_the_command_prints_a_table_a_hint_and_the_page(class_: TinyClass, tmp_p
     assert " % " in line
     assert "hint, not a proof" in output
     assert str(class_.path / "similar.html") in output
+    (pair,) = json.loads(run(class_, "--json")[1])["pairs"]
+    assert (pair["students"], pair["shared_words"] > 0) == (["ada", "eve"], True)
     code, output = run(class_, "lab_1_2", "--output", str(tmp_path / "there" / "page.html"))
     assert code == 0
     assert (tmp_path / "there" / "page.html").is_file()

@@ -1,10 +1,10 @@
-"""End a command: with an exit code, and with a clear line if it could not be done."""
+"""Print the result of a command as JSON, and end a command that cannot be done with a clear line."""
 
 from __future__ import annotations
 
 import sys
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
@@ -15,6 +15,17 @@ NO = 1
 CANNOT = 2
 INTERRUPTED = 130
 """A shell's exit code for a program that Ctrl-C ended: 128 and the signal's number."""
+as_json_option = click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
+
+
+def print_json(value: Any) -> None:
+    """Print a value, or bytes of JSON, as one line of JSON without characters that change a terminal."""
+    import msgspec
+
+    from autograder.cards.readable import printable_json
+
+    data = value if isinstance(value, bytes) else msgspec.json.encode(value, enc_hook=str)
+    click.echo(printable_json(data.decode()))
 
 
 def fail(message: str) -> NoReturn:
