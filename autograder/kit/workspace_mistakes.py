@@ -25,6 +25,17 @@ def seen_of_build(report: WorkspaceReport) -> str:
     return report.line or report.trouble.replace("_", " ")
 
 
+def changed_since_build(evidence: Evidence) -> str:
+    """The remark on a workspace in which the student has changed sources since the last `colcon build`."""
+    report = build_report(evidence.main)
+    if report is None or not report.changed:
+        return ""
+    return (
+        f"Changed since the last `colcon build`: {report.changed}. This check has built the sources as they are now; "
+        "`ros2 run` starts the older build until you run `colcon build` again."
+    )
+
+
 def _trouble(evidence: Evidence, *kinds: str) -> WorkspaceReport | None:
     """The report of the build, where the trouble is of one of these kinds."""
     report = build_report(evidence.main)

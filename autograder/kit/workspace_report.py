@@ -88,6 +88,7 @@ class WorkspaceReport:
         packages: The packages of the workspace, those that the exercise needs first.
         missing: Of what the exercise asks for (a program, an interface), what is not there after the build.
         complete: Whether nothing of the packages that the exercise needs was left out.
+        changed: The sources, in words, that the student has changed since the last `colcon build`; empty in a class.
     """
 
     phase: str
@@ -99,6 +100,7 @@ class WorkspaceReport:
     packages: Sequence[PackageReport] = field(default=())
     missing: str = ""
     complete: bool = True
+    changed: str = ""
 
 
 def as_line(report: WorkspaceReport, others: Sequence[PackageReport] = ()) -> str:
@@ -116,6 +118,7 @@ def as_line(report: WorkspaceReport, others: Sequence[PackageReport] = ()) -> st
             report,
             log=report.log[-limit:],
             line=report.line[:limit],
+            changed=report.changed[:limit],
             complete=report.complete and _written(replace(report, packages=needed)) == whole,
         )
         for beside in (others, named, named[:_FEW], ()):

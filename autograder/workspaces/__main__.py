@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 from autograder import exercises
 from autograder.kit.runners import Launches, RunsPrograms
 from autograder.process_trees import die_with_parent
-from autograder.workspaces.own_builds import OwnBuilds
+from autograder.workspaces.own_builds import StudentsBuilds
 from autograder.workspaces.packages import workspace_of
 from autograder.workspaces.plans import alone, plan_for, ros2
 from autograder.workspaces.preparing import Preparation
@@ -45,7 +45,7 @@ def main(arguments: Sequence[str]) -> int:
     if exercise.runner is None or (len(arguments) > 2) != isinstance(exercise.runner, RunsPrograms):
         print(f"{exercise.id} takes no path: give it the class or function, or a command", file=sys.stderr)
         return 2
-    here = Preparation(OwnBuilds(), tell)
+    here = Preparation(StudentsBuilds(), tell)
     prepared = here.workspace(plan_for(exercise.runner, arguments[2:]), Path(arguments[1]))
     if prepared is not None:
         os.execvpe(prepared.command[0], list(prepared.command), prepared.environment)
@@ -53,7 +53,7 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def _launch(rest: Sequence[str]) -> int:
-    here = Preparation(OwnBuilds(), tell)
+    here = Preparation(StudentsBuilds(), tell)
     if rest[0] == "--":
         prepared = here.launch(alone(rest) or rest[1:], None, None)
     elif not (file := Path(rest[0])).is_file():

@@ -38,6 +38,7 @@ class Build:
         workspace: Its folder.
         ok: Whether every package was built.
         install: Where the packages are installed; empty where it failed.
+        chosen: The packages of ``install`` that belong to the build; empty where all do.
         packages: The packages of the workspace, as their files describe them.
         unusable: What is wrong with those that cannot be used.
         seconds: Wall time that it took.
@@ -47,11 +48,13 @@ class Build:
         package: The package that failed, else empty.
         line: The one line that matters of a failure.
         log: The log of a failure.
+        changed: The sources, in words, that the student has changed since the last `colcon build`.
     """
 
     workspace: Path
     ok: bool
     install: Path | None = None
+    chosen: tuple[str, ...] = ()
     packages: tuple[Package, ...] = ()
     unusable: tuple[str, ...] = ()
     seconds: float = 0.0
@@ -60,11 +63,13 @@ class Build:
     package: str = ""
     line: str = ""
     log: str = field(default="", repr=False)
+    changed: str = ""
 
     @property
     def prefixes(self) -> list[Path]:
         """One folder for each installed package."""
-        return package_prefixes(self.install) if self.install else []
+        found = package_prefixes(self.install) if self.install else []
+        return [prefix for prefix in found if not self.chosen or prefix.name in self.chosen]
 
     def programs(self, package: str) -> tuple[str, ...]:
         """The names of the programs that ``ros2 run`` finds of an installed package; empty where it is none."""

@@ -40,8 +40,28 @@ def package_prefixes(install: Path) -> list[Path]:
     return sorted(folder for folder in install.iterdir() if (folder / "share").is_dir())
 
 
+def is_isolated(install: Path) -> bool:
+    """Return True if an install folder has a prefix for each package, as colcon makes it without `--merge-install`."""
+    layout = install / _LAYOUT
+    return layout.is_file() and layout.read_text(encoding="utf-8").strip() == "isolated"
+
+
 def python_folders(prefix: Path) -> list[Path]:
     """The folders of a prefix that Python imports from."""
+    return [*_libraries(prefix), *filter(None, [linked_build(prefix)])]
+
+
+def linked_build(prefix: Path) -> Path | None:
+    """Return the build folder that Python imports a package from; None unless `--symlink-install` installed it.
+
+    The link in the prefix only says that there is one. Where it leads is worked out: a prefix may be a submission's.
+    """
+    build = prefix.parent.parent / BESIDE[0] / prefix.name
+    linked = any(any(folder.glob("*.egg-link")) for folder in _libraries(prefix))
+    return build if linked and build.is_dir() else None
+
+
+def _libraries(prefix: Path) -> list[Path]:
     # Debian's Python installs into dist-packages where it is told a prefix of its own.
     candidates = [prefix / LIBRARY, prefix / "local" / LIBRARY.replace("site-", "dist-")]
     return [folder for folder in candidates if folder.is_dir()]
@@ -163,8 +183,7 @@ def place(made: Build) -> Path:
     if made.install is None:
         raise ValueError("a build that failed has nothing to place")
     target = made.workspace / "install"
-    layout = target / _LAYOUT
-    if layout.is_file() and layout.read_text(encoding="utf-8").strip() != "isolated":
+    if (target / _LAYOUT).is_file() and not is_isolated(target):
         raise CannotPlace(f"{target} was built with --merge-install: delete it, and build again")
     try:
         target.mkdir(exist_ok=True)

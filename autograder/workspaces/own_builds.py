@@ -17,12 +17,13 @@ from autograder.messages.lines import Hangup, Lines, NotUnderstood
 from autograder.workspaces import artefacts, cache
 from autograder.workspaces.builds import Builds, BuildTookTooLong
 from autograder.workspaces.install_folder import rename_paths
+from autograder.workspaces.own_install import changed_since, is_current
 from autograder.workspaces.packages import WORKSPACE
 from autograder.workspaces.plain_jobs import PlainJobs
 from autograder.workspaces.sources import BadSources, collect_workspace
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Sequence
     from pathlib import Path
 
     from autograder.workspaces.colcon import Build, Targets
@@ -63,6 +64,23 @@ class OwnBuilds(Builds):
         socket = os.environ.get(GRADERS)
         asked = _ask(socket, found, order.packages, entry.folder / "install") if socket else None
         return asked or super()._make(found, order, entry)
+
+
+class StudentsBuilds(OwnBuilds):
+    """For a student's own check: what the student has built, if that is what the sources say now; else a new build.
+
+    A check of changed sources builds them, as a class does: what is handed in are the sources, and what is right in
+    them must not fail because the student has not built it yet. The card then names what was changed.
+    """
+
+    def _find_or_make(self, found: Build, chosen: Sequence[Package], order: BuildOrder) -> Build:
+        if order.name != WORKSPACE:
+            return super()._find_or_make(found, chosen, order)
+        if is_current(found.workspace, chosen):
+            names = tuple(package.name for package in chosen)
+            return replace(found, ok=True, install=found.workspace / "install", chosen=names, reused=True)
+        made = super()._find_or_make(found, chosen, order)
+        return replace(made, changed=changed_since(found.workspace, chosen))
 
 
 def _ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) -> Build | None:

@@ -47,6 +47,7 @@ def report_line(phase: str, made: Build, plan: Plan | None = None, missing: str 
             packages=packages,
             missing=missing,
             complete=complete,
+            changed=made.changed,
         ),
         others,
     )

@@ -17,6 +17,7 @@ from autograder.judge.verdicts.misnamed import misnamed
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.in_words import of_its_kind, shortened
 from autograder.kit.model import Advice, Exercise, Finding, Mistake, Pace
+from autograder.kit.workspace_mistakes import changed_since_build
 from autograder.verdict import Criterion, Diagnosis, State, Verdict
 
 if TYPE_CHECKING:
@@ -218,6 +219,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
     passed = all(criterion.passed for criterion in criteria)
     diagnosis, traceback = (None, "") if passed else diagnose(exercise, evidence)
     told = (diagnosis.text if diagnosis else "", *(one.seen for one in criteria if not one.passed))
+    remarks = (*exercise.remarks, *([changed_since_build] if exercise.runner else []))
     return Verdict(
         exercise=exercise.id,
         title=exercise.title,
@@ -226,7 +228,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
         max_score=float(exercise.points),
         criteria=criteria,
         diagnosis=diagnosis,
-        remarks=tuple(_cut(text) for remark in exercise.remarks if (text := remark(evidence))),
+        remarks=tuple(_cut(text) for remark in remarks if (text := remark(evidence))),
         timeline=timeline.moments(evidence, " ".join(told), missed=not passed),
         seed=seed,
         detail=traceback[-MAX_DETAIL:],

@@ -1,0 +1,144 @@
+"""The student's own build of a workspace: whether `install` is what `src` says now, and what was changed since.
+
+Decided by the time at which a file's content or name last changed (``st_ctime``), against the beginning of the
+package's last `colcon build`: both are on one file system and so on one clock, nobody can set that time, and it also
+holds for files whose effect on a build cannot be found again in `install`, such as setup.py. A newer file with the
+bytes that are installed is no change: a cell that writes a program again does that.
+
+`colcon` never takes away what an earlier build has installed. So an install that holds a module or a program of which
+the sources know nothing is not used: a class, which builds from the sources alone, would not have it either.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.workspaces.install_folder import (
+    entry_points,
+    is_isolated,
+    linked_build,
+    programs,
+    python_folders,
+)
+from autograder.workspaces.packages import DEFINITIONS
+from autograder.workspaces.room import Room
+from autograder.workspaces.sources import is_source
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+    from pathlib import Path
+
+    from autograder.workspaces.packages import Package
+
+_MOST_NAMED = 3
+"""Changed files that are named."""
+_BEGAN = "colcon_command_prefix_*.sh"
+"""colcon writes this file into a package's build folder when it begins to build the package."""
+_RESULT = "colcon_build.rc"
+"""colcon writes the exit code of a package's build into this file."""
+_OPTIMIZED = re2.compile(r"(?m)^CMAKE_BUILD_TYPE:\w+=(?:Release|RelWithDebInfo|MinSizeRel)$")
+"""In CMakeCache.txt where NDEBUG is defined. Without it a value of the wrong type ends the process, as it does not in
+a class (:func:`autograder.workspaces.colcon.command`)."""
+
+
+def is_current(workspace: Path, packages: Sequence[Package]) -> bool:
+    """Return True if the student's last `colcon build` of each package succeeded, and holds what is in `src` now."""
+    return is_isolated(workspace / "install") and all(
+        _succeeded(workspace, package)
+        and not any(_changed(workspace, package))
+        and not any(_left_over(workspace, package))
+        for package in packages
+    )
+
+
+def changed_since(workspace: Path, packages: Iterable[Package]) -> str:
+    """Return the sources that were changed since the last `colcon build`, in words; empty if there are none.
+
+    A package that was never built has none.
+    """
+    names = [
+        f"`{file.relative_to(package.folder.parent)}`"
+        for package in packages
+        for file in _changed(workspace, package)
+    ]
+    more = [f"{len(names) - _MOST_NAMED} more"] if len(names) > _MOST_NAMED else []
+    *others, last = [*names[:_MOST_NAMED], *more] or [""]
+    return f"{', '.join(others)} and {last}" if others else last
+
+
+def _succeeded(workspace: Path, package: Package) -> bool:
+    build, prefix = _folders(workspace, package)
+    if _text(build / _RESULT).strip() != "0" or not python_folders(prefix):
+        return False
+    if package.build_type == "ament_python":
+        named = {entry.split(" = ")[0] for entry in entry_points(prefix, Room(sys.maxsize))}
+        return named == set(programs(prefix))
+    return bool(_OPTIMIZED.search(_text(build / "CMakeCache.txt")))
+
+
+def _changed(workspace: Path, package: Package) -> Iterator[Path]:
+    """The sources of a package that were changed since its last build began."""
+    build, prefix = _folders(workspace, package)
+    began = max((file.stat().st_mtime_ns for file in build.glob(_BEGAN)), default=None)
+    if began is None or not prefix.is_dir():
+        return
+    linked = _linked(prefix)
+    for file in _sources(package):
+        if file.stat().st_ctime_ns < began or any(file.is_relative_to(folder) for folder in linked):
+            continue
+        if not any(_is_copy(copy, file, package.folder) for copy in prefix.rglob("*")):
+            yield file
+
+
+def _left_over(workspace: Path, package: Package) -> Iterator[Path]:
+    """What is installed of a package, modules or definitions, and is not in the sources in just this form."""
+    _, prefix = _folders(workspace, package)
+    linked = _linked(prefix)
+    # The links of a workspace that was copied lead to the first one.
+    yield from (folder for folder in linked if not folder.is_relative_to(package.folder))
+    modules = [] if linked else [(f, m) for f in python_folders(prefix) for m in f.rglob("*.py")]
+    shared = prefix / "share" / package.name
+    definitions = [(shared, file) for file in shared.rglob("*") if file.suffix in DEFINITIONS]
+    sources = list(_sources(package))
+    for folder, file in [*(modules if package.build_type == "ament_python" else ()), *definitions]:
+        if not any(_is_copy(source, file, folder) for source in sources):
+            yield file
+
+
+def _linked(prefix: Path) -> list[Path]:
+    """The folders of modules that `--symlink-install` has linked: what is in these is what runs."""
+    build = linked_build(prefix)
+    return (
+        [entry.resolve() for entry in build.iterdir() if entry.is_symlink() and entry.is_dir()]
+        if build
+        else []
+    )
+
+
+def _folders(workspace: Path, package: Package) -> tuple[Path, Path]:
+    """The folders into which colcon has built and installed a package."""
+    return workspace / "build" / package.name, workspace / "install" / package.name
+
+
+def _sources(package: Package) -> Iterator[Path]:
+    """The files of a package that a class would take: links are not among them."""
+    for file in sorted(package.folder.rglob("*")):
+        if (
+            is_source(file.relative_to(package.folder).as_posix())
+            and file.is_file()
+            and not file.is_symlink()
+        ):
+            yield file
+
+
+def _is_copy(copy: Path, file: Path, folder: Path) -> bool:
+    """Return True if a file has the bytes of another one, and the path that this has in a folder."""
+    inside = file.relative_to(folder).parts
+    return copy.parts[-len(inside) :] == inside and copy.is_file() and copy.read_bytes() == file.read_bytes()
+
+
+def _text(file: Path) -> str:
+    return file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""

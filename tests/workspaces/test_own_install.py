@@ -1,0 +1,157 @@
+"""A student's own build: used for a check if it holds what the sources say, else built and the change named."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from autograder.workspaces.colcon import look
+from autograder.workspaces.own_builds import OwnBuilds, StudentsBuilds
+from autograder.workspaces.own_install import is_current
+from autograder.workspaces.plain_jobs import PlainJobs
+from environment.python_child import python_child
+
+sys.path.insert(0, str(Path(__file__).parent))
+from made_workspaces import python_package
+from test_colcon import run_program
+
+SAYS = "hello from the workspace\n"
+
+
+def colcon_build(workspace: Path, *options: str) -> None:
+    """Build as a student does in a terminal."""
+    command = python_child("-m", "colcon", "build", *options).command
+    subprocess.run(command, cwd=workspace, env=os.environ, check=True, capture_output=True)
+
+
+def module_of(workspace: Path) -> Path:
+    return workspace / "src" / "tiny_pkg" / "tiny_pkg" / "hello.py"
+
+
+def change(file: Path, old: str = "hello from", new: str = "good evening from") -> None:
+    file.write_text(file.read_text().replace(old, new))
+
+
+@pytest.fixture
+def nothing_is_built(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A build for a check ends the test."""
+
+    def refuse(*_: object) -> None:
+        pytest.fail("it was built once more")
+
+    monkeypatch.setattr(PlainJobs, "build", refuse)
+
+
+@pytest.mark.parametrize("options", [(), ("--symlink-install",)], ids=["copied", "linked"])
+def test_what_the_student_has_built_is_used(
+    workspace: Path, options: tuple[str, ...], request: pytest.FixtureRequest
+) -> None:
+    colcon_build(workspace, *options)
+    request.getfixturevalue("nothing_is_built")
+    made = StudentsBuilds().build(look(workspace), None)
+    assert (made.ok, made.install, made.changed) == (True, workspace / "install", "")
+    assert made.programs("tiny_pkg") == ("hello",)
+    assert run_program(made) == SAYS
+
+
+def test_only_the_packages_that_the_exercise_needs_are_in_it(workspace: Path) -> None:
+    python_package(workspace / "src", "other_pkg")
+    colcon_build(workspace)
+    made = StudentsBuilds().build(look(workspace), lambda _: ["tiny_pkg"])
+    assert made.install == workspace / "install"
+    assert [prefix.name for prefix in made.prefixes] == ["tiny_pkg"]
+
+
+def test_a_change_since_then_is_built_for_the_check_and_named(workspace: Path) -> None:
+    colcon_build(workspace)
+    change(module_of(workspace))
+    made = StudentsBuilds().build(look(workspace), None)
+    assert made.install != workspace / "install"
+    assert made.changed == "`tiny_pkg/tiny_pkg/hello.py`"
+    assert run_program(made) == "good evening from the workspace\n"
+    colcon_build(workspace)
+    assert StudentsBuilds().build(look(workspace), None).changed == ""
+
+
+def test_the_change_is_named_even_if_it_cannot_be_built(workspace: Path) -> None:
+    colcon_build(workspace)
+    change(workspace / "src" / "tiny_pkg" / "setup.py", "version='0.0.0',", "version='0.0.0'")
+    made = StudentsBuilds().build(look(workspace), None)
+    assert (made.trouble, made.changed) == ("build", "`tiny_pkg/setup.py`")
+
+
+def test_a_cell_that_writes_the_same_file_again_changes_nothing(
+    workspace: Path, request: pytest.FixtureRequest
+) -> None:
+    colcon_build(workspace)
+    module_of(workspace).write_text(module_of(workspace).read_text())
+    request.getfixturevalue("nothing_is_built")
+    assert StudentsBuilds().build(look(workspace), None).install == workspace / "install"
+
+
+def test_a_file_that_is_put_there_with_an_old_date_is_a_change(workspace: Path, tmp_path: Path) -> None:
+    old = tmp_path / "older.py"
+    old.write_text("def main():\n    print('older')\n")
+    os.utime(old, (1_000_000_000, 1_000_000_000))
+    colcon_build(workspace)
+    old.replace(module_of(workspace))
+    made = StudentsBuilds().build(look(workspace), None)
+    assert made.changed == "`tiny_pkg/tiny_pkg/hello.py`"
+    assert run_program(made) == "older\n"
+
+
+def test_links_show_a_changed_module_without_a_build(workspace: Path, request: pytest.FixtureRequest) -> None:
+    colcon_build(workspace, "--symlink-install")
+    change(module_of(workspace))
+    request.getfixturevalue("nothing_is_built")
+    made = StudentsBuilds().build(look(workspace), None)
+    assert made.changed == ""
+    assert run_program(made) == "good evening from the workspace\n"
+
+
+def test_links_of_a_copied_workspace_lead_elsewhere(workspace: Path, tmp_path: Path) -> None:
+    colcon_build(workspace, "--symlink-install")
+    copied = tmp_path / "copied" / "ros2_ws"
+    for name in ("src", "install", "build"):
+        shutil.copytree(workspace / name, copied / name, symlinks=True)
+    assert StudentsBuilds().build(look(copied), None).install != copied / "install"
+
+
+def test_what_colcon_has_left_of_a_deleted_module_is_not_used(workspace: Path) -> None:
+    extra = module_of(workspace).with_name("helper.py")
+    extra.touch()
+    colcon_build(workspace)
+    extra.unlink()
+    colcon_build(workspace)
+    assert any((workspace / "install").rglob("helper.py"))
+    made = StudentsBuilds().build(look(workspace), None)
+    assert not any(path for prefix in made.prefixes for path in prefix.rglob("helper.py"))
+
+
+def test_what_colcon_has_left_of_a_removed_entry_point_is_not_used(workspace: Path) -> None:
+    colcon_build(workspace)
+    change(workspace / "src" / "tiny_pkg" / "setup.py", "'hello = tiny_pkg.hello:main'", "")
+    colcon_build(workspace)
+    assert (workspace / "install" / "tiny_pkg" / "lib" / "tiny_pkg" / "hello").exists()
+    assert StudentsBuilds().build(look(workspace), None).programs("tiny_pkg") == ()
+
+
+def test_a_build_that_failed_is_not_used(workspace: Path) -> None:
+    colcon_build(workspace)
+    (workspace / "build" / "tiny_pkg" / "colcon_build.rc").write_text("1\n")
+    assert not is_current(workspace, look(workspace).packages)
+
+
+def test_a_merged_install_is_not_used(workspace: Path) -> None:
+    colcon_build(workspace, "--merge-install")
+    assert StudentsBuilds().build(look(workspace), None).install != workspace / "install"
+
+
+def test_what_a_build_is_asked_for_is_built(workspace: Path) -> None:
+    colcon_build(workspace)
+    assert OwnBuilds().build(look(workspace), None).install != workspace / "install"
