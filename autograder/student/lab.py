@@ -31,6 +31,9 @@ QUIET = ("--ServerApp.log_level=WARN", "--LabApp.log_level=WARN")
 NOTEBOOKS_VARIABLE = "AUTOGRADER_NOTEBOOKS"
 """Names the folder of the session's notebooks to its terminals."""
 _CONFIG_PATH = "JUPYTER_CONFIG_PATH"
+_BUILD_TYPE = "CMAKE_BUILD_TYPE"
+"""As a check does, a student's `colcon build` builds interfaces for use: otherwise a value of the wrong type ends the
+process, and a check has to build them once more."""
 _DISCOVERY = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
 
 
@@ -59,6 +62,7 @@ def open_lab(folder: Path, arguments: Sequence[str] = ()) -> None:
     os.chdir(folder)
     os.environ[NOTEBOOKS_VARIABLE] = str(Path.cwd())
     os.environ[journal.VARIABLE] = str(journal.place(Path.cwd()))
+    os.environ[_BUILD_TYPE] = os.environ.get(_BUILD_TYPE) or "Release"
     from jupyterlab.labapp import LabApp
 
     try:

@@ -54,7 +54,7 @@ def python_folders(prefix: Path) -> list[Path]:
 def linked_build(prefix: Path) -> Path | None:
     """Return the build folder that Python imports a package from; None unless `--symlink-install` installed it.
 
-    The link in the prefix only says that there is one. Where it leads is worked out: a prefix may be a submission's.
+    The path is worked out, not read from the link in the prefix: the prefix may belong to a submission.
     """
     build = prefix.parent.parent / BESIDE[0] / prefix.name
     linked = any(any(folder.glob("*.egg-link")) for folder in _libraries(prefix))

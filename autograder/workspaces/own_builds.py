@@ -67,10 +67,10 @@ class OwnBuilds(Builds):
 
 
 class StudentsBuilds(OwnBuilds):
-    """For a student's own check: what the student has built, if that is what the sources say now; else a new build.
+    """For a student's own check: the student's build, if it holds what the sources say now; else a new build.
 
-    A check of changed sources builds them, as a class does: what is handed in are the sources, and what is right in
-    them must not fail because the student has not built it yet. The card then names what was changed.
+    If sources were changed, the check builds them, as a class does: the sources are what is handed in, and a right
+    answer must not fail because it is not built yet. The card then names the changed files.
     """
 
     def _find_or_make(self, found: Build, chosen: Sequence[Package], order: BuildOrder) -> Build:

@@ -1,12 +1,12 @@
-"""The student's own build of a workspace: whether `install` is what `src` says now, and what was changed since.
+"""The student's own build of a workspace: whether `install` holds what `src` says now, and what was changed since.
 
-Decided by the time at which a file's content or name last changed (``st_ctime``), against the beginning of the
-package's last `colcon build`: both are on one file system and so on one clock, nobody can set that time, and it also
-holds for files whose effect on a build cannot be found again in `install`, such as setup.py. A newer file with the
-bytes that are installed is no change: a cell that writes a program again does that.
+The times decide: when a file's content or name last changed (``st_ctime``), against when the package's last
+`colcon build` began. Both come from one file system, so from one clock, and no program can set the first one. The
+contents alone could not decide: `install` holds no copy of setup.py or CMakeLists.txt. But a newer file that equals its
+installed copy counts as unchanged, because running a cell that writes a program touches the file.
 
-`colcon` never takes away what an earlier build has installed. So an install that holds a module or a program of which
-the sources know nothing is not used: a class, which builds from the sources alone, would not have it either.
+`colcon` never removes what an earlier build has installed. So an `install` with a module or a program that the sources
+do not have is not used: a class, which builds from the sources alone, would not have it either.
 """
 
 from __future__ import annotations

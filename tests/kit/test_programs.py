@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from autograder.judge.verdicts import trial
 from autograder.kit import package_programs
 from autograder.kit.evidence import INTERRUPTED, Event, Evidence, Part, Reference
 from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
@@ -240,3 +241,17 @@ def test_an_entry_point_that_leads_nowhere_is_told_from_an_import(
     advice = package_programs.entry_point(seen, Entry(PACKAGE, "talker"))
     assert (advice is not None) == bool(named)
     assert advice is None or named in advice.text
+
+
+@pytest.mark.parametrize("built", [True, False])
+def test_the_card_names_what_was_changed_since_the_last_build(built: bool) -> None:
+    report = WorkspaceReport("built", built=built, trouble="" if built else "build", changed="`a/setup.py`")
+    (remark,) = trial.judge(PROGRAMS, evidence([said(as_line(report))]), "").remarks
+    assert remark.startswith("Changed since the last `colcon build`: `a/setup.py`.")
+
+
+def test_nothing_is_said_of_a_build_that_is_not_the_students(subtests: pytest.Subtests) -> None:
+    for exercise, changed in ((PROGRAMS, ""), (NODE, "`a/setup.py`")):
+        with subtests.test(exercise.id):
+            report = as_line(WorkspaceReport("built", built=True, changed=changed))
+            assert trial.judge(exercise, evidence([said(report)]), "").remarks == ()

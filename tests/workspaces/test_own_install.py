@@ -11,13 +11,14 @@ from pathlib import Path
 import pytest
 
 from autograder.workspaces.colcon import look
+from autograder.workspaces.install_folder import LIBRARY
 from autograder.workspaces.own_builds import OwnBuilds, StudentsBuilds
-from autograder.workspaces.own_install import is_current
+from autograder.workspaces.own_install import changed_since, is_current
 from autograder.workspaces.plain_jobs import PlainJobs
 from environment.python_child import python_child
 
 sys.path.insert(0, str(Path(__file__).parent))
-from made_workspaces import python_package
+from made_workspaces import interface_package, python_package
 from test_colcon import run_program
 
 SAYS = "hello from the workspace\n"
@@ -155,3 +156,36 @@ def test_a_merged_install_is_not_used(workspace: Path) -> None:
 def test_what_a_build_is_asked_for_is_built(workspace: Path) -> None:
     colcon_build(workspace)
     assert OwnBuilds().build(look(workspace), None).install != workspace / "install"
+
+
+def _touch_later(file: Path, than: Path) -> None:
+    """Touch a file until it is newer than another one: a file system's clock has ticks."""
+    while not file.exists() or file.stat().st_mtime_ns <= than.stat().st_ctime_ns:
+        file.touch()
+
+
+@pytest.mark.parametrize(
+    ("cached", "current"),
+    [("CMAKE_BUILD_TYPE:STRING=Release\n", True), ("CMAKE_BUILD_TYPE:STRING=\n", False), (None, False)],
+)
+def test_interfaces_are_used_if_they_are_built_as_in_a_class(
+    tmp_path: Path, cached: str | None, current: bool
+) -> None:
+    """A build of interfaces takes ten seconds, so what colcon leaves of one is written here."""
+    workspace, name = tmp_path / "ros2_ws", "my_robot_interfaces"
+    source = interface_package(workspace / "src" / name)
+    build, prefix = workspace / "build" / name, workspace / "install" / name
+    for folder in (build, prefix / LIBRARY / name, prefix / "share" / name / "srv"):
+        folder.mkdir(parents=True)
+    (workspace / "install" / ".colcon_install_layout").write_text("isolated\n")
+    _touch_later(build / "colcon_command_prefix_build.sh", source / "LICENSE")
+    (build / "colcon_build.rc").write_text("0\n")
+    if cached is not None:
+        (build / "CMakeCache.txt").write_text(cached)
+    definition = Path("srv", "AddTwoInts.srv")
+    shutil.copy(source / definition, prefix / "share" / name / definition)
+    assert is_current(workspace, look(workspace).packages) is current
+    _touch_later(tmp_path / "later", build / "colcon_command_prefix_build.sh")
+    (source / definition).write_text("int64 a\n---\nint64 sum\n")
+    assert not is_current(workspace, look(workspace).packages)
+    assert changed_since(workspace, look(workspace).packages) == f"`{name}/{definition}`"
