@@ -26,6 +26,7 @@ from autograder.messages.checks import SOCKET_VARIABLE
 from autograder.notebook.cells.cell_output import notebook_shell
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from types import TracebackType
 
     from autograder.verdict import Verdict
@@ -68,6 +69,29 @@ class Progress:
         return " ".join(filter(None, (words, slow, self.known)))
 
 
+class Telling:
+    """Tells the progress of a check again and again, in a thread of its own, until it is stopped.
+
+    Args:
+        tell: Shows the progress on the card of the check.
+    """
+
+    def __init__(self, tell: Callable[[], None]) -> None:
+        self._tell, self._over = tell, threading.Event()
+        here = contextvars.copy_context()  # it contains the cell to which output belongs
+        self._thread = threading.Thread(target=here.run, args=(self._repeat,), name="check", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Return once nothing more will be told."""
+        self._over.set()
+        self._thread.join()
+
+    def _repeat(self) -> None:
+        while not self._over.wait(SOON):
+            self._tell()
+
+
 @dataclass
 class _Shown:
     """The card of an exercise that is on the page."""
@@ -98,8 +122,7 @@ class CardDisplay:
     subject: Any
     _handle: Any = None
     _progress: Progress = field(default_factory=Progress)
-    _over: threading.Event = field(default_factory=threading.Event)
-    _teller: threading.Thread | None = None
+    _telling: Telling | None = None
 
     def __enter__(self) -> Self:
         if is_live():
@@ -108,9 +131,7 @@ class CardDisplay:
                 self._handle = display_card(
                     _dated(earlier, "Checking again: this is the result of the check before.")
                 )
-            here = contextvars.copy_context()  # it contains the cell to which output belongs
-            self._teller = threading.Thread(target=here.run, args=(self._tell,), name="check", daemon=True)
-            self._teller.start()
+            self._telling = Telling(self._tell)
         return self
 
     def __exit__(
@@ -152,20 +173,17 @@ class CardDisplay:
             _remember(shell, self.exercise, self.subject, _Shown(verdict, before, self._handle, "", None))
 
     def _stop_telling(self) -> None:
-        self._over.set()
-        if self._teller is not None:
-            self._teller.join()
-            self._teller = None
+        if self._telling is not None:
+            self._telling.stop()
 
     def _tell(self) -> None:
         earlier = _shown.get(self.exercise)
         title = earlier.verdict.title if earlier is not None else self.exercise
-        while not self._over.wait(SOON):
-            card = bundle.waiting_bundle(title, self._progress.words())
-            if self._handle is None:
-                self._handle = display_card(card)
-            else:
-                update_card(self._handle, card)
+        card = bundle.waiting_bundle(title, self._progress.words())
+        if self._handle is None:
+            self._handle = display_card(card)
+        else:
+            update_card(self._handle, card)
 
 
 def _dated(shown: _Shown, notice: str) -> dict[str, str]:

@@ -19,7 +19,14 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.cards import bundle
 from autograder.notebook.cells.cell_output import notebook_shell
-from autograder.notebook.checking.card_display import Progress, display_card, is_live, renew_card, update_card
+from autograder.notebook.checking.card_display import (
+    Progress,
+    Telling,
+    display_card,
+    is_live,
+    renew_card,
+    update_card,
+)
 from autograder.notebook.checking.check import after_each_check, converse, keep, what_to_pass
 from autograder.notebook.checking.judge_link import JudgeLink, JudgeUnreachable
 from autograder.verdict import State, not_checked
@@ -66,12 +73,16 @@ class Watch:
     def get_ready(self) -> None:
         """Show that the check begins."""
         self._progress = Progress()
+        self.tell()
+
+    def tell(self) -> None:
+        """Show the progress."""
         self._say(self._progress.words())
 
     def doing(self, what: str) -> None:
         """Show the present step, in a few words."""
         self._progress.doing = what
-        self._say(self._progress.words())
+        self.tell()
 
     def know(self, so_far: str) -> None:
         """Show what the judge already knows, once the check has taken long."""
@@ -94,7 +105,8 @@ class Watch:
         self._here.run(update_card, self._handle, bundle.mimebundle(verdict, before=before, short=True))
 
     def _say(self, words: str, *, over: bool = False) -> None:
-        self._here.run(update_card, self._handle, self._card(words, over=over))
+        # In a copy: the thread that repeats the progress may be inside the context.
+        self._here.copy().run(update_card, self._handle, self._card(words, over=over))
 
     def _card(self, words: str, *, over: bool = False) -> dict[str, str]:
         return bundle.waiting_bundle(f"{self.exercise}, {self.name}", words, over=over)
@@ -160,9 +172,11 @@ class Watches:
                 self._link = link
                 if self._giving_way:
                     link.close()
+            telling = Telling(watch.tell)
             try:
                 verdict = converse(link, watch.exercise, watch.subject, watch)
             finally:
+                telling.stop()
                 link.close()
         except JudgeUnreachable as error:
             if self._giving_way:

@@ -94,6 +94,32 @@ check("lab", Talker)
     assert "It says b." not in meanwhile, "that was the answer before"
 
 
+def test_what_a_long_check_knows_is_of_the_new_code_alone(run: Callable[..., list[Any]]) -> None:
+    watched = """
+shown = []
+usual = card_display.update_card
+def update(handle, card):
+    shown.append(card["text/plain"])
+    usual(handle, card)
+card_display.update_card = update
+scores[:] = [5.0, 8.0]
+check("lab", Talker)
+"""
+    again = """
+def meanwhile(place):
+    import time
+    place.know("So far: it says nothing.")
+    while not any("it says nothing" in text for text in shown):
+        time.sleep(0.01)
+card_display.LONG = 0.0
+shown.clear()
+check("lab", Talker)
+"""
+    *_, said = run(watched, again, "print(*shown[:-1])")
+    assert "So far: it says nothing." in said[0].text
+    assert "It says b." not in said[0].text, "that was the answer before"
+
+
 def test_a_quick_check_finds_the_card_of_the_one_before_marked_as_such(run: Callable[..., list[Any]]) -> None:
     watched = """
 displayed = []

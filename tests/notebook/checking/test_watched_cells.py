@@ -20,7 +20,7 @@ LIMIT = 180.0
 JUDGE = """
 import threading
 from autograder.notebook import unwatch, watch
-from autograder.notebook.checking import watched_cells
+from autograder.notebook.checking import card_display, watched_cells
 from autograder.notebook.checking.judge_link import JudgeUnreachable
 from autograder.verdict import Criterion, Diagnosis, State, Verdict
 
@@ -35,6 +35,7 @@ class Link:
 def converse(link, exercise, subject, place):
     place.doing(f"run 1 of {subject.text}")
     if patient.is_set():
+        place.know("So far: “It says b.”")
         link.closed.wait()
         raise JudgeUnreachable("hung up")
     score = scores.pop(0)
@@ -65,6 +66,14 @@ class Watched:
         while not any(text in shown[-1] for shown in self.cards.values()):
             self._hear("")
         return next(shown[-1] for shown in self.cards.values() if text in shown[-1])
+
+    def updates(self, number: int) -> list[str]:
+        """Wait for so many more updates of the only card; their texts."""
+        (shown,) = self.cards.values()
+        first = len(shown)
+        while len(shown) < first + number:
+            self._hear("")
+        return shown[first:]
 
     def _hear(self, request: str) -> bool:
         message = self.kernel.client.get_iopub_msg(timeout=LIMIT)
@@ -112,6 +121,19 @@ def test_another_cell_does_not_wait_for_a_check_which_begins_again_afterwards(wa
     watched.wait_for("5 of 10 points")
     (shown,) = watched.cards.values()
     assert any("as soon as the cell that runs now has ended" in text for text in shown)
+
+
+def test_a_check_that_goes_on_tells_its_time_and_after_half_a_minute_what_is_known(watched: Watched) -> None:
+    watched.run("patient.set(); card_display.SOON = 0.01", "other")
+    watched.run(TALKER.format("two"), "talker")
+    watched.wait_for("run 1 of two")
+    shown = watched.updates(3)
+    assert all("Checking: run 1 of two" in text for text in shown)
+    assert not any("It says b." in text for text in shown)
+    watched.run("card_display.LONG = 0.0; patient.clear(); scores.insert(0, 5.0)", "other")
+    watched.run("patient.set()", "other")
+    watched.run(TALKER.format("three"), "talker")
+    assert "run 1 of three" in watched.wait_for("So far: “It says b.”")
 
 
 def test_nothing_is_checked_after_unwatch(watched: Watched) -> None:
