@@ -24,7 +24,14 @@ CALLED = (LATE, BIASED, EXTREME)
 """The parts in which the service answers."""
 
 HANGS_AFTER = 8.0
-"""Seconds without any event after which a client that has its answer is taken to hang."""
+"""Seconds without any event after which a client is taken to hang.
+
+A program that calls before the service is there waits so long in both looks: 21 seconds in all on a quiet machine. No
+event decides that sooner. A request without a service reaches no reader, and ROS lets the judge read requests only as
+a server, which the client would see: the topic `rq/add_two_intsRequest` belongs to services, and a subscription, even
+one with `avoid_ros_namespace_conventions`, reads `/rq/add_two_intsRequest`. The stack of a client whose call was lost
+is also that of one whose timer waits for the service, and which is right. So a second run has to confirm the silence.
+"""
 
 
 @dataclass(frozen=True)

@@ -143,7 +143,8 @@ WAITS_FOREVER = mistake(
         part.endpoints("client") and part.ending is None and not requests(part)
         for part in Client(evidence).served
     ),
-    "The service was there, but your client never called it and never ended: it goes on waiting.",
+    "The service was there, but no call of your client reached it, and your client waits on. A call that is made "
+    "before the service is there is lost.",
     "Wait with a limit, and call as soon as the service is there: "
     "`if not your_client.wait_for_service(timeout_sec=5.0):` say so and stop. It returns True as soon as the service "
     "is there, so a loop that waits begins with `while not`.",
