@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
@@ -20,6 +21,9 @@ from environment.python_child import python_child
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import interface_package, python_package
 from test_colcon import run_program
+
+if TYPE_CHECKING:
+    from autograder.workspaces.colcon import Build
 
 SAYS = "hello from the workspace\n"
 
@@ -38,6 +42,43 @@ def change(file: Path, old: str = "hello from", new: str = "good evening from") 
     file.write_text(file.read_text().replace(old, new))
 
 
+@pytest.fixture(scope="session")
+def built_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A workspace that colcon has built, to be copied."""
+    workspace = tmp_path_factory.mktemp("once") / "ros2_ws"
+    python_package(workspace / "src")
+    python_package(workspace / "src", "other_pkg")
+    colcon_build(workspace)
+    return workspace
+
+
+@pytest.fixture
+def built(built_once: Path, tmp_path: Path) -> Path:
+    """A workspace that is as colcon has left it, with packages that know nothing of each other."""
+    workspace = tmp_path / "built" / "ros2_ws"
+    for name in ("src", "install", "build"):
+        shutil.copytree(built_once / name, workspace / name, symlinks=True)
+    as_if_built_now(workspace)
+    return workspace
+
+
+def as_if_built_now(workspace: Path) -> None:
+    """Have the last build begin after the last change of all sources."""
+    last = max((workspace / "src").rglob("*"), key=lambda file: file.stat().st_ctime_ns)
+    for mark in workspace.glob("build/*/colcon_command_prefix_*.sh"):
+        touch_later(mark, last)
+
+
+def touch_later(file: Path, than: Path) -> None:
+    """Touch a file until it is newer than another one: a file system's clock has ticks."""
+    while not file.exists() or file.stat().st_mtime_ns <= than.stat().st_ctime_ns:
+        file.touch()
+
+
+def the_package(_: Build) -> list[str]:
+    return ["tiny_pkg"]
+
+
 @pytest.fixture
 def nothing_is_built(monkeypatch: pytest.MonkeyPatch) -> None:
     """A build for a check ends the test."""
@@ -48,11 +89,8 @@ def nothing_is_built(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(PlainJobs, "build", refuse)
 
 
-@pytest.mark.parametrize("options", [(), ("--symlink-install",)], ids=["copied", "linked"])
-def test_what_the_student_has_built_is_used(
-    workspace: Path, options: tuple[str, ...], request: pytest.FixtureRequest
-) -> None:
-    colcon_build(workspace, *options)
+def test_what_the_student_has_built_is_used(workspace: Path, request: pytest.FixtureRequest) -> None:
+    colcon_build(workspace)
     request.getfixturevalue("nothing_is_built")
     made = StudentsBuilds().build(look(workspace), None)
     assert (made.ok, made.install, made.changed) == (True, workspace / "install", "")
@@ -60,48 +98,49 @@ def test_what_the_student_has_built_is_used(
     assert run_program(made) == SAYS
 
 
-def test_only_the_packages_that_the_exercise_needs_are_in_it(workspace: Path) -> None:
-    python_package(workspace / "src", "other_pkg")
-    colcon_build(workspace)
-    made = StudentsBuilds().build(look(workspace), lambda _: ["tiny_pkg"])
-    assert made.install == workspace / "install"
+@pytest.mark.usefixtures("nothing_is_built")
+def test_only_the_packages_that_the_exercise_needs_are_in_it(built: Path) -> None:
+    made = StudentsBuilds().build(look(built), the_package)
+    assert made.install == built / "install"
     assert [prefix.name for prefix in made.prefixes] == ["tiny_pkg"]
 
 
-def test_a_change_since_then_is_built_for_the_check_and_named(workspace: Path) -> None:
-    colcon_build(workspace)
-    change(module_of(workspace))
-    made = StudentsBuilds().build(look(workspace), None)
-    assert made.install != workspace / "install"
+def test_a_change_since_then_is_built_for_the_check_and_named(built: Path) -> None:
+    change(module_of(built))
+    made = StudentsBuilds().build(look(built), the_package)
+    assert made.install != built / "install"
     assert made.changed == "`tiny_pkg/tiny_pkg/hello.py`"
     assert run_program(made) == "good evening from the workspace\n"
-    colcon_build(workspace)
-    assert StudentsBuilds().build(look(workspace), None).changed == ""
+    colcon_build(built, "--packages-select", "tiny_pkg")
+    made = StudentsBuilds().build(look(built), the_package)
+    assert (made.install, made.changed) == (built / "install", "")
 
 
-def test_the_change_is_named_even_if_it_cannot_be_built(workspace: Path) -> None:
-    colcon_build(workspace)
-    change(workspace / "src" / "tiny_pkg" / "setup.py", "version='0.0.0',", "version='0.0.0'")
-    made = StudentsBuilds().build(look(workspace), None)
+def test_the_change_is_named_even_if_it_cannot_be_built(built: Path) -> None:
+    change(built / "src" / "tiny_pkg" / "setup.py", "version='0.0.0',", "version='0.0.0'")
+    made = StudentsBuilds().build(look(built), the_package)
     assert (made.trouble, made.changed) == ("build", "`tiny_pkg/setup.py`")
 
 
-def test_a_cell_that_writes_the_same_file_again_changes_nothing(
-    workspace: Path, request: pytest.FixtureRequest
-) -> None:
-    colcon_build(workspace)
-    module_of(workspace).write_text(module_of(workspace).read_text())
-    request.getfixturevalue("nothing_is_built")
-    assert StudentsBuilds().build(look(workspace), None).install == workspace / "install"
+def test_three_changes_are_named_and_the_others_counted(built: Path) -> None:
+    for name in "abcde":
+        module_of(built).with_name(f"{name}.py").write_text(name)
+    first = ", ".join(f"`tiny_pkg/tiny_pkg/{name}.py`" for name in "abc")
+    assert changed_since(built, look(built).packages) == f"{first} and 2 more"
 
 
-def test_a_file_that_is_put_there_with_an_old_date_is_a_change(workspace: Path, tmp_path: Path) -> None:
+@pytest.mark.usefixtures("nothing_is_built")
+def test_a_cell_that_writes_the_same_file_again_changes_nothing(built: Path) -> None:
+    module_of(built).write_text(module_of(built).read_text())
+    assert StudentsBuilds().build(look(built), the_package).install == built / "install"
+
+
+def test_a_file_that_is_put_there_with_an_old_date_is_a_change(built: Path, tmp_path: Path) -> None:
     old = tmp_path / "older.py"
     old.write_text("def main():\n    print('older')\n")
     os.utime(old, (1_000_000_000, 1_000_000_000))
-    colcon_build(workspace)
-    old.replace(module_of(workspace))
-    made = StudentsBuilds().build(look(workspace), None)
+    old.replace(module_of(built))
+    made = StudentsBuilds().build(look(built), the_package)
     assert made.changed == "`tiny_pkg/tiny_pkg/hello.py`"
     assert run_program(made) == "older\n"
 
@@ -120,48 +159,36 @@ def test_links_of_a_copied_workspace_lead_elsewhere(workspace: Path, tmp_path: P
     copied = tmp_path / "copied" / "ros2_ws"
     for name in ("src", "install", "build"):
         shutil.copytree(workspace / name, copied / name, symlinks=True)
-    assert StudentsBuilds().build(look(copied), None).install != copied / "install"
+    as_if_built_now(copied)
+    assert not is_current(copied, look(copied).packages)
 
 
-def test_what_colcon_has_left_of_a_deleted_module_is_not_used(workspace: Path) -> None:
-    extra = module_of(workspace).with_name("helper.py")
-    extra.touch()
-    colcon_build(workspace)
-    extra.unlink()
-    colcon_build(workspace)
-    assert any((workspace / "install").rglob("helper.py"))
-    made = StudentsBuilds().build(look(workspace), None)
-    assert not any(path for prefix in made.prefixes for path in prefix.rglob("helper.py"))
+def test_what_colcon_has_left_of_a_deleted_module_is_not_used(built: Path) -> None:
+    assert is_current(built, look(built).packages)
+    (installed,) = (built / "install" / "tiny_pkg").rglob("hello.py")
+    installed.with_name("helper.py").touch()
+    assert not is_current(built, look(built).packages)
 
 
-def test_what_colcon_has_left_of_a_removed_entry_point_is_not_used(workspace: Path) -> None:
-    colcon_build(workspace)
-    change(workspace / "src" / "tiny_pkg" / "setup.py", "'hello = tiny_pkg.hello:main'", "")
-    colcon_build(workspace)
-    assert (workspace / "install" / "tiny_pkg" / "lib" / "tiny_pkg" / "hello").exists()
-    assert StudentsBuilds().build(look(workspace), None).programs("tiny_pkg") == ()
+def test_what_colcon_has_left_of_a_removed_entry_point_is_not_used(built: Path) -> None:
+    change(built / "src" / "tiny_pkg" / "setup.py", "'hello = tiny_pkg.hello:main'", "")
+    colcon_build(built, "--packages-select", "tiny_pkg")
+    assert (built / "install" / "tiny_pkg" / "lib" / "tiny_pkg" / "hello").exists()
+    assert StudentsBuilds().build(look(built), the_package).programs("tiny_pkg") == ()
 
 
-def test_a_build_that_failed_is_not_used(workspace: Path) -> None:
-    colcon_build(workspace)
-    (workspace / "build" / "tiny_pkg" / "colcon_build.rc").write_text("1\n")
-    assert not is_current(workspace, look(workspace).packages)
+def test_a_build_that_failed_is_not_used(built: Path) -> None:
+    (built / "build" / "tiny_pkg" / "colcon_build.rc").write_text("1\n")
+    assert not is_current(built, look(built).packages)
 
 
-def test_a_merged_install_is_not_used(workspace: Path) -> None:
-    colcon_build(workspace, "--merge-install")
-    assert StudentsBuilds().build(look(workspace), None).install != workspace / "install"
+def test_a_merged_install_is_not_used(built: Path) -> None:
+    (built / "install" / ".colcon_install_layout").write_text("merged\n")
+    assert not is_current(built, look(built).packages)
 
 
-def test_what_a_build_is_asked_for_is_built(workspace: Path) -> None:
-    colcon_build(workspace)
-    assert OwnBuilds().build(look(workspace), None).install != workspace / "install"
-
-
-def _touch_later(file: Path, than: Path) -> None:
-    """Touch a file until it is newer than another one: a file system's clock has ticks."""
-    while not file.exists() or file.stat().st_mtime_ns <= than.stat().st_ctime_ns:
-        file.touch()
+def test_what_a_notebook_asks_to_be_built_is_built(built: Path) -> None:
+    assert OwnBuilds().build(look(built), the_package).install != built / "install"
 
 
 @pytest.mark.parametrize(
@@ -178,14 +205,14 @@ def test_interfaces_are_used_if_they_are_built_as_in_a_class(
     for folder in (build, prefix / LIBRARY / name, prefix / "share" / name / "srv"):
         folder.mkdir(parents=True)
     (workspace / "install" / ".colcon_install_layout").write_text("isolated\n")
-    _touch_later(build / "colcon_command_prefix_build.sh", source / "LICENSE")
+    touch_later(build / "colcon_command_prefix_build.sh", source / "LICENSE")
     (build / "colcon_build.rc").write_text("0\n")
     if cached is not None:
         (build / "CMakeCache.txt").write_text(cached)
     definition = Path("srv", "AddTwoInts.srv")
     shutil.copy(source / definition, prefix / "share" / name / definition)
     assert is_current(workspace, look(workspace).packages) is current
-    _touch_later(tmp_path / "later", build / "colcon_command_prefix_build.sh")
+    touch_later(tmp_path / "later", build / "colcon_command_prefix_build.sh")
     (source / definition).write_text("int64 a\n---\nint64 sum\n")
     assert not is_current(workspace, look(workspace).packages)
     assert changed_since(workspace, look(workspace).packages) == f"`{name}/{definition}`"
