@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.workspaces.colcon import look
+from autograder.workspaces.graded_builds import GradedBuilds
 from autograder.workspaces.install_folder import LIBRARY
 from autograder.workspaces.own_builds import OwnBuilds, StudentsBuilds
 from autograder.workspaces.own_install import changed_since, is_current
@@ -21,6 +22,7 @@ from environment.python_child import python_child
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import interface_package, python_package
 from test_colcon import run_program
+from test_service import FakeJobs
 
 if TYPE_CHECKING:
     from autograder.workspaces.colcon import Build
@@ -189,6 +191,15 @@ def test_a_merged_install_is_not_used(built: Path) -> None:
 
 def test_what_a_notebook_asks_to_be_built_is_built(built: Path) -> None:
     assert OwnBuilds().build(look(built), the_package).install != built / "install"
+
+
+def test_a_class_builds_again(built: Path, tmp_path: Path) -> None:
+    assert is_current(built, look(built).packages)
+    (tmp_path / "execution").mkdir(mode=0o700)
+    builds = GradedBuilds(tmp_path / "execution", jobs := FakeJobs())
+    made = builds.build(look(built), the_package)
+    assert made.install != built / "install"
+    assert jobs.builds == [["tiny_pkg"]]
 
 
 @pytest.mark.parametrize(
