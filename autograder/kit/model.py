@@ -370,3 +370,14 @@ class Exercise:
     def points(self) -> float:
         """The points of all criteria together."""
         return sum(criterion.points for criterion in self.criteria)
+
+    def judge_as_one(self, evidence: Evidence, right: str) -> Finding:
+        """The first criterion that does not hold; where all hold, that.
+
+        Args:
+            evidence: All that was seen.
+            right: What was seen where all hold, in a few words.
+        """
+        findings = [criterion.judge(evidence) for criterion in self.criteria]
+        holds = Finding(True, findings[0].expected, right)
+        return next((finding for finding in findings if not finding.passed), holds)

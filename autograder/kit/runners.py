@@ -55,4 +55,19 @@ class Launches:
     """
 
 
-Runner = RunsProgram | RunsPrograms | ServesInterface | Launches
+@dataclass(frozen=True)
+class LaunchesFromPackage:
+    """The workspace is built, and a launch file that one of its packages has installed is launched.
+
+    A start whose arguments begin with :data:`ALONE` is one of a program, as with :class:`Launches`.
+
+    Attributes:
+        package: The package.
+        file: The name of the launch file without the ending of its language, such as ``"remap.launch"``.
+    """
+
+    package: str
+    file: str
+
+
+Runner = RunsProgram | RunsPrograms | ServesInterface | Launches | LaunchesFromPackage

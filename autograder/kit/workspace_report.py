@@ -61,6 +61,8 @@ class PackageReport:
         modules: Its Python files, as paths inside the package.
         commented: What package.xml would depend on, too, if the lines inside its comments counted.
         installed: The programs that `ros2 run` finds of it, by name; empty before the build.
+        launch_files: Its launch files, as paths inside the package; after the build those that are installed, as paths
+            below the folder of the package in ``install``.
     """
 
     name: str
@@ -71,6 +73,7 @@ class PackageReport:
     modules: Sequence[str] = ()
     commented: Sequence[str] = ()
     installed: Sequence[str] = ()
+    launch_files: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -142,6 +145,7 @@ def _shortened(package: PackageReport, limit: int) -> PackageReport:
         modules=package.modules[: limit // 60],  # none where all else needs the room
         commented=package.commented[: limit // 60],
         installed=package.installed[:few],
+        launch_files=package.launch_files[: max(few, 5)],
     )
 
 

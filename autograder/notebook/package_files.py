@@ -18,15 +18,17 @@ from autograder.workspaces import entry_points
 from autograder.workspaces.packages import UNREADABLE
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
 PACKAGE = "my_robot_pkg"
+_ADDED = "# by add_data_files"
+"""The comment that tells a line of data_files that was added from those of the package itself."""
 _DEFINITIONS = re.compile(r"rosidl_generate_interfaces\s*\(\s*\$\{PROJECT_NAME\}[^)]*")
 
 
 @dataclass(frozen=True)
 class _Element:
-    """An element of the list of entry points.
+    """An element of a list in setup.py: of entry points, or of data files.
 
     Attributes:
         source: The text in setup.py, which is written back unchanged.
@@ -59,14 +61,10 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
         if not isinstance(entry, str) or not entry_points.is_entry_point(entry):
             return entry_points.objection(entry)
     try:
-        text = setup.read_text(encoding="utf-8")
-        tree = ast.parse(text)
+        text, tree = _read(setup)
         programs = entry_points.console_scripts(tree)
-    except FileNotFoundError:
-        return f"There is no {setup}. First make the package, as in Lab 1.1."
-    except UNREADABLE as error:
-        where = f"line {error.lineno}: {error.msg}" if isinstance(error, SyntaxError) else error
-        return f"{setup} cannot be read: {where}."
+    except _CannotUse as error:
+        return str(error)
     if programs is None:
         listed = ", ".join(f'"{entry}"' for entry in wanted)
         return f'{setup} has no list of console_scripts. Add: entry_points={{"console_scripts": [{listed}]}},'
@@ -90,6 +88,77 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
             *_without_package(wanted, package),
         ]
     )
+
+
+def add_data_files(
+    workspace: str | Path, pairs: Iterable[tuple[str, Sequence[str]]], package: str = PACKAGE
+) -> str:
+    """Have a package's ``setup.py`` install files, in place of those that an earlier call has added.
+
+    Args:
+        workspace: The folder that contains ``src``.
+        pairs: Each a folder below that of the package in ``install``, and the files that come into it.
+        package: The name of the package.
+
+    Returns:
+        The pairs that ``setup.py`` installs now, a line each, or what the student has to do.
+    """
+    setup = Path(workspace) / "src" / package / "setup.py"
+    wanted = list(pairs)
+    for pair in wanted:
+        if not _is_data_files(pair):
+            return (
+                f"{pair!r} is not a pair of a folder and a list of files. Write it in parentheses, the folder first, "
+                "and square brackets around the files, even if there is only one."
+            )
+    try:
+        text, tree = _read(setup)
+    except _CannotUse as error:
+        return str(error)
+    listed = _listed_data_files(tree)
+    if listed is None:
+        return f"{setup} has no list of data_files. Add: data_files={wanted!r},"
+    elements, last_comments = _elements(text, tree, listed)
+    kept = [element for element in elements if element.behind != _ADDED]
+    merged = [*kept, *(_Element(repr(pair), repr(pair), behind=_ADDED) for pair in wanted)]
+    if merged != elements:
+        setup.write_text(_with_list(text, listed, merged, last_comments), encoding="utf-8")
+    return "\n".join([f"{package} installs:", *(f"  {' '.join(one.source.split())}" for one in merged)])
+
+
+def _is_data_files(pair: object) -> bool:
+    match pair:
+        case (str(), [*files]):
+            return all(isinstance(file, str) for file in files)
+    return False
+
+
+def _listed_data_files(tree: ast.Module) -> ast.List | None:
+    """The list that a setup.py gives as ``data_files``."""
+    values = (
+        node.value for node in ast.walk(tree) if isinstance(node, ast.keyword) and node.arg == "data_files"
+    )
+    return next((value for value in values if isinstance(value, ast.List)), None)
+
+
+class _CannotUse(ValueError):
+    """A setup.py that cannot be changed. The message says what the student has to do."""
+
+
+def _read(setup: Path) -> tuple[str, ast.Module]:
+    """The text of a setup.py, and its syntax tree.
+
+    Raises:
+        _CannotUse: There is no such file, or it cannot be read.
+    """
+    try:
+        text = setup.read_text(encoding="utf-8")
+        return text, ast.parse(text)
+    except FileNotFoundError:
+        raise _CannotUse(f"There is no {setup}. First make the package, as in Lab 1.1.") from None
+    except UNREADABLE as error:
+        where = f"line {error.lineno}: {error.msg}" if isinstance(error, SyntaxError) else error
+        raise _CannotUse(f"{setup} cannot be read: {where}.") from None
 
 
 def add_dependencies(workspace: str | Path, names: Iterable[str], package: str = PACKAGE) -> str:

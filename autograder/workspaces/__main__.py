@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder import exercises
-from autograder.kit.runners import Launches, RunsPrograms
+from autograder.kit.runners import Launches, LaunchesFromPackage, RunsPrograms
 from autograder.process_trees import die_with_parent
 from autograder.workspaces.own_builds import StudentsBuilds
 from autograder.workspaces.packages import workspace_of
@@ -42,11 +42,15 @@ def main(arguments: Sequence[str]) -> int:
     die_with_parent(number=signal.SIGTERM)
     if isinstance(exercise.runner, Launches):
         return _launch(arguments[1:])
-    if exercise.runner is None or (len(arguments) > 2) != isinstance(exercise.runner, RunsPrograms):
+    launches = isinstance(exercise.runner, LaunchesFromPackage)
+    several = isinstance(exercise.runner, RunsPrograms)
+    if exercise.runner is None or (len(arguments) > 2 and not launches) != several:
         print(f"{exercise.id} takes no path: give it the class or function, or a command", file=sys.stderr)
         return 2
     here = Preparation(StudentsBuilds(), tell)
     prepared = here.workspace(plan_for(exercise.runner, arguments[2:]), Path(arguments[1]))
+    if prepared is not None and launches:
+        return _run(prepared)
     if prepared is not None:
         os.execvpe(prepared.command[0], list(prepared.command), prepared.environment)
     return 1

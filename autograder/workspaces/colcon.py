@@ -10,7 +10,7 @@ import re2
 
 from autograder.workspaces.failures import telling_line
 from autograder.workspaces.install_folder import entry_points, package_prefixes, programs
-from autograder.workspaces.packages import find_packages, needed
+from autograder.workspaces.packages import find_packages, launch_files, needed
 from environment.python_child import INTERPRETER, python_child
 
 if TYPE_CHECKING:
@@ -74,6 +74,10 @@ class Build:
     def programs(self, package: str) -> tuple[str, ...]:
         """The names of the programs that ``ros2 run`` finds of an installed package; empty where it is none."""
         return tuple(p for prefix in self.prefixes if prefix.name == package for p in programs(prefix))
+
+    def launch_files(self, package: str) -> tuple[Path, ...]:
+        """The launch files that a package has installed, as paths below its prefix."""
+        return tuple(f for prefix in self.prefixes if prefix.name == package for f in launch_files(prefix))
 
     def entry_points(self, package: str, room: Room) -> tuple[str, ...]:
         """The entry points of an installed Python package, as ``name = module:function``, however it names them."""

@@ -30,6 +30,8 @@ DEFINITIONS = (".msg", ".srv", ".action")
 UNREADABLE = (SyntaxError, ValueError, LookupError, RecursionError, MemoryError)
 """The errors with which Python's parsers of Python and XML refuse a text: malformed, in an encoding that they do not
 know, too deep."""
+LAUNCH_LANGUAGES = (".py", ".xml", ".yaml", ".yml")
+"""The endings of the names of launch files, one for each language and each spelling of it."""
 MAX_FILES = 5_000
 MAX_BYTES = 100_000_000
 """Files and bytes of sources beyond which something else than a workspace was named."""
@@ -123,6 +125,13 @@ def find_packages(src: Path) -> tuple[list[Package], list[str]]:
         except BadPackage as error:
             unusable.append(str(error))
     return sorted(packages, key=lambda package: package.name), unusable
+
+
+def launch_files(folder: Path) -> list[Path]:
+    """The launch files below a folder, as paths inside it: those named so, and all of that form in folders `launch`."""
+    every = (path for path in folder.rglob("*") if path.suffix in LAUNCH_LANGUAGES and path.is_file())
+    named = (path for path in every if path.stem.endswith("launch") or path.parent.name == "launch")
+    return sorted(path.relative_to(folder) for path in named)
 
 
 def workspace_of(file: Path, beside: Iterable[Path]) -> Path | None:

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder import course
-from autograder.kit.runners import ALONE, RunsProgram, RunsPrograms, ServesInterface
+from autograder.kit.runners import ALONE, LaunchesFromPackage, RunsProgram, RunsPrograms, ServesInterface
 from autograder.kit.workspace_report import AMENT_PACKAGE
 from autograder.workspaces.install_folder import files_of_interfaces, has_service, is_indexed
-from autograder.workspaces.packages import WORKSPACE
+from autograder.workspaces.packages import LAUNCH_LANGUAGES, WORKSPACE, launch_files
 from autograder.workspaces.room import Room
 from environment.python_child import installed_program, python_child
 
@@ -42,20 +42,25 @@ class Plan:
         missing: What it asks for and the build has not brought; empty where all is there.
         command: What is run, in the environment of the build. Asked for only where nothing is missing.
         definition: The name of the interface file that it is about; empty where it is about none.
+        launches: The launch file that is launched, where it is installed; None for an exercise that launches none.
     """
 
     targets: Callable[[Build], Iterable[str]]
     missing: Callable[[Build], str]
     command: Callable[[Build], Sequence[str]]
     definition: str = ""
+    launches: Callable[[Build], Path | None] = lambda _: None
 
 
-def plan_for(runner: RunsProgram | RunsPrograms | ServesInterface, arguments: Sequence[str] = ()) -> Plan:
+def plan_for(
+    runner: RunsProgram | RunsPrograms | ServesInterface | LaunchesFromPackage, arguments: Sequence[str] = ()
+) -> Plan:
     """The plan for what an exercise runs in a workspace.
 
     Args:
         runner: What the exercise runs.
-        arguments: Of this start; where there are several programs, the first one says which.
+        arguments: Of this start; where there are several programs, the first one says which. A launch's may name
+            a program that is run in its place.
     """
     match runner:
         case RunsProgram(package=package, program=program):
@@ -64,18 +69,56 @@ def plan_for(runner: RunsProgram | RunsPrograms | ServesInterface, arguments: Se
             return _program_plan(package, arguments[0], arguments[1:])
         case ServesInterface():
             return _interface_plan(runner)
+        case LaunchesFromPackage(package=package, file=file):
+            return _launch_plan(package, file, arguments)
 
 
 def _program_plan(package: str, program: str, arguments: Sequence[str]) -> Plan:
-    def missing(made: Build) -> str:
-        if not any(prefix.name == package for prefix in made.prefixes):
-            return package
-        return "" if program in made.programs(package) else program
-
     return Plan(
         targets=lambda found: [known.name for known in found.packages if known.name == package],
-        missing=missing,
+        missing=lambda made: _missing(made, package, program, made.programs(package)),
         command=lambda _: [ros2(), "run", package, program, *arguments],
+    )
+
+
+def _missing(made: Build, package: str, wanted: str, there: Iterable[str]) -> str:
+    """The package, if it was not built; what is wanted of the package, if it is not there; else empty."""
+    if not any(prefix.name == package for prefix in made.prefixes):
+        return package
+    return "" if wanted in there else wanted
+
+
+def _launch_plan(package: str, file: str, arguments: Sequence[str]) -> Plan:
+    def targets(found: Build) -> list[str]:
+        folders = [known.folder for known in found.packages if known.name == package]
+        named = {name for path in _of_name(file, folders) for name in launch_targets(path)(found)}
+        return [known.name for known in found.packages if known.name in {package, *named}]
+
+    def installed(made: Build) -> list[Path]:
+        """The files that `ros2 launch` finds of this name, in the first language in which there is one."""
+        shares = [prefix / "share" / package for prefix in made.prefixes if prefix.name == package]
+        found = _of_name(file, shares)
+        return [path for path in found if path.name == found[0].name]
+
+    def command(made: Build) -> Sequence[str]:
+        # By its path: the course's package of this name comes first where the student's lacks the programs.
+        paths = installed(made)
+        name = [str(paths[0])] if len(paths) == 1 else [package, paths[0].name]
+        return alone(arguments) or [ros2(), "launch", *name]
+
+    return Plan(
+        targets=targets,
+        missing=lambda made: _missing(made, package, file, [path.stem for path in installed(made)]),
+        command=command,
+        launches=lambda made: next(iter(installed(made)), None),
+    )
+
+
+def _of_name(file: str, folders: Iterable[Path]) -> list[Path]:
+    """The launch files of this name, without its language's ending, in some folders; in the order of the languages."""
+    found = [folder / path for folder in folders for path in launch_files(folder)]
+    return sorted(
+        (path for path in found if path.stem == file), key=lambda path: LAUNCH_LANGUAGES.index(path.suffix)
     )
 
 

@@ -72,9 +72,10 @@ class Preparation:
         self.report(report_line("built", made, plan, missing))
         if not made.ok or missing:
             return None
-        return Prepared(
-            plan.command(made), self._with(self.builds.jobs.environment, WORKSPACE, made), {WORKSPACE: made}
-        )
+        command = plan.command(made)
+        if (file := plan.launches(made)) is not None:
+            return self._launched(command, file, made, self._course())
+        return Prepared(command, self._with(self.builds.jobs.environment, WORKSPACE, made), {WORKSPACE: made})
 
     def launch(self, command: Sequence[str], file: Path | None, workspace: Path | None) -> Prepared | None:
         """Prepare a launch with the student's packages and, after these, the course's own ``my_robot_pkg``.
@@ -90,25 +91,37 @@ class Preparation:
         Raises:
             RuntimeError: The course's own could not.
         """
-        builds: dict[str, Build] = {}
+        course = self._course()
+        if file is None or workspace is None:
+            return self._launched(command, file, None, course)
+        made = self._built(look(workspace), launch_targets(file))
+        self.build_ended()
+        self.report(report_line("built", made))
+        return self._launched(command, file, made, course) if made.ok else None
+
+    def _course(self) -> Build | None:
+        """The course's own packages, built; None in what students are handed: those would be Lab 1.2's solutions."""
+        if not (own := reference_workspace()).is_dir():
+            return None
+        course = self.builds.build(look(own), None, name=COURSE)
+        if not course.ok:
+            raise RuntimeError(f"the course's own packages could not be built: {course.line}")
+        return course
+
+    def _launched(
+        self, command: Sequence[str], file: Path | None, made: Build | None, course: Build | None
+    ) -> Prepared:
+        """A launch in which the student's packages are found, and the course's own behind or before these."""
         environment: Mapping[str, str] = {**self.builds.jobs.environment, **_ALL_OUTPUT}
-        course_first = False
-        # What students are handed has no programs but theirs: those would be Lab 1.2's solutions.
-        if (own := reference_workspace()).is_dir():
-            builds[COURSE] = self.builds.build(look(own), None, name=COURSE)
-            if not builds[COURSE].ok:
-                raise RuntimeError(f"the course's own packages could not be built: {builds[COURSE].line}")
-        if file is not None and workspace is not None:
-            made = self._built(look(workspace), launch_targets(file))
-            self.build_ended()
-            self.report(report_line("built", made))
-            if not made.ok:
-                return None
-            course_first = COURSE in builds and lacks_programs(file, made, builds[COURSE])
-            environment = self._with(environment, WORKSPACE, made)
+        builds: dict[str, Build] = {}
+        if made is not None:
             builds[WORKSPACE] = made
-        if COURSE in builds:
-            environment = self._with(environment, COURSE, builds[COURSE], last=not course_first)
+            environment = self._with(environment, WORKSPACE, made)
+            command = self._at_its_place(command, made)
+        if course is not None:
+            builds[COURSE] = course
+            first = made is not None and file is not None and lacks_programs(file, made, course)
+            environment = self._with(environment, COURSE, course, last=not first)
         return Prepared(command, environment, builds)
 
     def _built(self, found: Build, targets: Targets) -> Build:
@@ -123,3 +136,12 @@ class Preparation:
             return found
         entry = made.install.parent
         return relocated(found, entry, self.builds.jobs.place(name, entry))
+
+    def _at_its_place(self, command: Sequence[str], made: Build) -> Sequence[str]:
+        """A command whose paths into a build are those that somebody sees who runs it."""
+        if made.install is None:
+            return command
+        entry = made.install.parent
+        return [
+            word.replace(f"{entry}/", f"{self.builds.jobs.place(WORKSPACE, entry)}/", 1) for word in command
+        ]

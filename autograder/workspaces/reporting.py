@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.workspace_report import Interface, PackageReport, WorkspaceReport, as_line
-from autograder.workspaces.packages import MAX_LOOK
+from autograder.workspaces.packages import MAX_LOOK, launch_files
 from autograder.workspaces.room import Room
 
 if TYPE_CHECKING:
@@ -67,6 +67,7 @@ def _described(package: Package, definition: str, made: Build, room: Room) -> Pa
     programs = made.entry_points(package.name, room)
     if not programs and room.has(package.folder / "setup.py"):
         programs = package.programs
+    launches = made.launch_files(package.name) if made.install else launch_files(package.folder)
     return PackageReport(
         package.name,
         package.build_type,
@@ -76,6 +77,7 @@ def _described(package: Package, definition: str, made: Build, room: Room) -> Pa
         tuple(file.as_posix() for file in package.modules),
         package.commented,
         made.programs(package.name),
+        tuple(file.as_posix() for file in launches),
     )
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
 from autograder import exercises
-from autograder.kit.runners import Launches, ServesInterface
+from autograder.kit.runners import Launches, LaunchesFromPackage, ServesInterface
 from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, NotUnderstood
 from autograder.workspaces.jobs import ProgramJob, output_lines
@@ -174,7 +174,8 @@ class _Run:
             self._launch(what.tree / what.path)
         else:
             plan = plan_for(what.runner, self._arguments)
-            self._follow(self._prepare.workspace(plan, what.tree / what.path))
+            launches = isinstance(what.runner, LaunchesFromPackage)
+            self._follow(self._prepare.workspace(plan, what.tree / what.path), watch=launches)
 
     def _launch(self, file: Path) -> None:
         tree = self._submitted.tree

@@ -69,9 +69,7 @@ class Program:
 
     def judge(self, evidence: Evidence) -> Finding:
         """The first criterion of its node that does not hold; where all do, that."""
-        findings = [criterion.judge(self.view(evidence)) for criterion in self.node.criteria]
-        wrong = [finding for finding in findings if not finding.passed]
-        return wrong[0] if wrong else Finding(True, findings[0].expected, "all that is asked of its node")
+        return self.node.judge_as_one(self.view(evidence), "all that is asked of its node")
 
     def ending(self, evidence: Evidence) -> str:
         """The reaction to Ctrl-C, in a few words; empty where it ended by that."""
