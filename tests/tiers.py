@@ -108,6 +108,7 @@ class Draw:
 
 _LIVE = "tests/judge/test_bank.py::test_answer_is_judged_right"
 BUILT = (
+    "exercise_1_1.package",
     "exercise_1_1.remap",
     "lab_1_1.hello",
     "lab_1_2.programs",

@@ -76,7 +76,7 @@ class Build:
         return tuple(p for prefix in self.prefixes if prefix.name == package for p in programs(prefix))
 
     def launch_files(self, package: str) -> tuple[Path, ...]:
-        """The launch files that a package has installed, as paths below its prefix."""
+        """The launch files that a package has installed, as paths below the prefix."""
         return tuple(f for prefix in self.prefixes if prefix.name == package for f in launch_files(prefix))
 
     def entry_points(self, package: str, room: Room) -> tuple[str, ...]:

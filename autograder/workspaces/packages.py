@@ -128,7 +128,7 @@ def find_packages(src: Path) -> tuple[list[Package], list[str]]:
 
 
 def launch_files(folder: Path) -> list[Path]:
-    """The launch files below a folder, as paths inside it: those named so, and all of that form in folders `launch`."""
+    """The launch files below a folder, as paths inside it: named so, or in a folder named `launch`."""
     every = (path for path in folder.rglob("*") if path.suffix in LAUNCH_LANGUAGES and path.is_file())
     named = (path for path in every if path.stem.endswith("launch") or path.parent.name == "launch")
     return sorted(path.relative_to(folder) for path in named)

@@ -42,7 +42,7 @@ class Plan:
         missing: What it asks for and the build has not brought; empty where all is there.
         command: What is run, in the environment of the build. Asked for only where nothing is missing.
         definition: The name of the interface file that it is about; empty where it is about none.
-        launches: The launch file that is launched, where it is installed; None for an exercise that launches none.
+        launches: The path of the installed launch file; None if the exercise launches none.
     """
 
     targets: Callable[[Build], Iterable[str]]
@@ -101,7 +101,7 @@ def _launch_plan(package: str, file: str, arguments: Sequence[str]) -> Plan:
         return [path for path in found if path.name == found[0].name]
 
     def command(made: Build) -> Sequence[str]:
-        # By its path: the course's package of this name comes first where the student's lacks the programs.
+        # By its path: if the student's package lacks the programs, the course's package of this name comes first.
         paths = installed(made)
         name = [str(paths[0])] if len(paths) == 1 else [package, paths[0].name]
         return alone(arguments) or [ros2(), "launch", *name]

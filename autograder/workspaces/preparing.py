@@ -111,7 +111,7 @@ class Preparation:
     def _launched(
         self, command: Sequence[str], file: Path | None, made: Build | None, course: Build | None
     ) -> Prepared:
-        """A launch in which the student's packages are found, and the course's own behind or before these."""
+        """A launch with the student's packages and the course's, which come first if the student's lack programs."""
         environment: Mapping[str, str] = {**self.builds.jobs.environment, **_ALL_OUTPUT}
         builds: dict[str, Build] = {}
         if made is not None:
@@ -138,7 +138,7 @@ class Preparation:
         return relocated(found, entry, self.builds.jobs.place(name, entry))
 
     def _at_its_place(self, command: Sequence[str], made: Build) -> Sequence[str]:
-        """A command whose paths into a build are those that somebody sees who runs it."""
+        """The command with the paths into a build as the started program sees them."""
         if made.install is None:
             return command
         entry = made.install.parent

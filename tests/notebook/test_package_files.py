@@ -7,7 +7,12 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.notebook.package_files import add_definition, add_dependencies, add_entry_points
+from autograder.notebook.package_files import (
+    add_data_files,
+    add_definition,
+    add_dependencies,
+    add_entry_points,
+)
 from environment.ros2_command import pkg_templates
 from environment.ros2_command.pkg_templates import Package
 
@@ -214,3 +219,59 @@ def test_a_definition_is_generated_once_it_is_written(workspace: Path) -> None:
     assert (folder / "package.xml").read_text().count("<depend>action_msgs</depend>") == 1
     (folder / "CMakeLists.txt").write_text("project(x)\n")
     assert "generates nothing yet" in add_definition(workspace, INTERFACES, action)
+
+
+LAUNCH = ("share/my_robot_pkg/launch", ["launch/remap.launch.py"])
+
+
+def data_files(workspace: Path) -> list[str]:
+    tree = ast.parse((workspace / "src/my_robot_pkg/setup.py").read_text())
+    (keyword,) = (n for n in ast.walk(tree) if isinstance(n, ast.keyword) and n.arg == "data_files")
+    assert isinstance(keyword.value, ast.List)
+    return [ast.unparse(pair) for pair in keyword.value.elts]
+
+
+def test_data_files_are_added_once_below_those_of_the_package(workspace: Path) -> None:
+    own = data_files(workspace)
+    add_entry_points(workspace, [TALKER])
+    said = add_data_files(workspace, [LAUNCH])
+    assert data_files(workspace) == [*own, repr(LAUNCH)]
+    assert said.splitlines()[0] == "my_robot_pkg installs:"
+    assert said.splitlines()[-1] == f"  {LAUNCH!r}"
+    setup = (workspace / "src/my_robot_pkg/setup.py").read_text()
+    add_data_files(workspace, [LAUNCH])
+    add_entry_points(workspace, [TALKER])
+    assert (workspace / "src/my_robot_pkg/setup.py").read_text() == setup
+
+
+def test_corrected_data_files_replace_the_wrong_ones_and_no_others(workspace: Path) -> None:
+    own = data_files(workspace)
+    setup = workspace / "src/my_robot_pkg/setup.py"
+    setup.write_text(
+        setup.read_text().replace("data_files=[", "data_files=[('share/mine', glob('*.txt')),  # mine")
+    )
+    add_data_files(workspace, [("share/my_robot_pkg/lunch", ["remap.launch.py"])])
+    add_data_files(workspace, [LAUNCH])
+    assert data_files(workspace) == ["('share/mine', glob('*.txt'))", *own, repr(LAUNCH)]
+    assert "# mine" in setup.read_text()
+    add_data_files(workspace, [])
+    assert data_files(workspace) == ["('share/mine', glob('*.txt'))", *own]
+
+
+@pytest.mark.parametrize(
+    "pair",
+    ["launch", ("share/my_robot_pkg/launch", "launch/remap.launch.py"), ("share", [1]), ("share",), 3],
+)
+def test_what_is_no_pair_of_a_folder_and_files_changes_nothing(workspace: Path, pair: object) -> None:
+    before = (workspace / "src/my_robot_pkg/setup.py").read_text()
+    assert "square brackets around the files" in add_data_files(workspace, [LAUNCH, pair])  # type: ignore[list-item]
+    assert (workspace / "src/my_robot_pkg/setup.py").read_text() == before
+
+
+@pytest.mark.parametrize(
+    ("text", "words"), [(None, "First make"), ("setup(", "cannot be read"), ("setup()", "no list")]
+)
+def test_a_setup_to_which_no_data_files_can_be_added(workspace: Path, text: str | None, words: str) -> None:
+    setup = workspace / "src/my_robot_pkg/setup.py"
+    setup.unlink() if text is None else setup.write_text(text)
+    assert words in add_data_files(workspace, [LAUNCH])

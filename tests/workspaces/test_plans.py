@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from autograder.kit.runners import ALONE, LaunchesFromPackage
 from autograder.workspaces.colcon import Build
 from autograder.workspaces.packages import Package
-from autograder.workspaces.plans import lacks_programs, launch_targets
+from autograder.workspaces.plans import lacks_programs, launch_targets, plan_for
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -74,3 +75,66 @@ def test_in_launch_files_that_are_far_too_long_nothing_is_taken_for_missing(tmp_
     (folder / "2.launch.py").unlink()
     assert lacks_programs(file, own, course)
     assert list(launch_targets(file)(own)) == []
+
+
+def installed(workspace: Path, *files: str) -> Build:
+    """A workspace whose package has installed these files."""
+    made = built(workspace, "talker", "listener")
+    for name in files:
+        file = workspace / "install" / PACKAGE / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.touch()
+    return made
+
+
+INSTALLED = LaunchesFromPackage(PACKAGE, "remap.launch")
+SHARE = f"share/{PACKAGE}"
+
+
+@pytest.mark.parametrize(
+    ("files", "missing", "launched"),
+    [
+        ((), "remap.launch", ""),
+        ((f"{SHARE}/launch/remap.launch.py",), "", f"{SHARE}/launch/remap.launch.py"),
+        ((f"{SHARE}/launch/remap.launch.yaml",), "", f"{SHARE}/launch/remap.launch.yaml"),
+        ((f"{SHARE}/remap.launch.xml",), "", f"{SHARE}/remap.launch.xml"),  # ros2 launch finds it there, too
+        ((f"{SHARE}/a.launch.py", f"{SHARE}/launch/remap_launch.py"), "remap.launch", ""),
+        (("launch/remap.launch.py", f"share/other/{PACKAGE}/remap.launch.py"), "remap.launch", ""),
+        (
+            (f"{SHARE}/launch/remap.launch.xml", f"{SHARE}/b/remap.launch.py"),
+            "",
+            f"{SHARE}/b/remap.launch.py",
+        ),
+    ],
+)
+def test_what_the_package_has_installed_is_launched(
+    files: tuple[str, ...], missing: str, launched: str, tmp_path: Path
+) -> None:
+    made = installed(tmp_path, *files)
+    plan = plan_for(INSTALLED)
+    assert plan.missing(made) == missing
+    file = tmp_path / "install" / PACKAGE / launched if launched else None
+    assert plan.launches(made) == file
+    assert file is None or plan.command(made)[1:] == ["launch", str(file)]
+
+
+def test_of_two_installed_files_of_one_name_ros2_launch_itself_complains(tmp_path: Path) -> None:
+    made = installed(tmp_path, f"{SHARE}/launch/remap.launch.py", f"{SHARE}/remap.launch.py")
+    assert plan_for(INSTALLED).command(made)[1:] == ["launch", PACKAGE, "remap.launch.py"]
+
+
+def test_a_package_that_is_not_built_is_missing_and_a_program_runs_in_place_of_a_launch(
+    tmp_path: Path,
+) -> None:
+    made = installed(tmp_path, f"{SHARE}/launch/remap.launch.py")
+    assert plan_for(LaunchesFromPackage("other", "remap.launch")).missing(made) == "other"
+    assert plan_for(INSTALLED, (ALONE, PACKAGE, "talker")).command(made)[1:] == ["run", PACKAGE, "talker"]
+
+
+def test_the_packages_that_a_launch_file_in_a_package_names_are_built_as_well(tmp_path: Path) -> None:
+    own = built(tmp_path, "talker")
+    names = ("chat_pkg", "half_done_pkg")
+    others = tuple(Package(name, tmp_path / "src" / name, "ament_python") for name in names)
+    found = Build(tmp_path, ok=False, packages=(*own.packages, *others))
+    (own.packages[0].folder / "launch" / "remap.launch.py").write_text("Node(package='chat_pkg')")
+    assert plan_for(INSTALLED).targets(found) == [PACKAGE, "chat_pkg"]

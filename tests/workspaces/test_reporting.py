@@ -48,6 +48,7 @@ REPORT = WorkspaceReport(
             ["a/b.py"],
             ["a_group"],
             ["p"],
+            ["launch/p.launch.py"],
         )
     ],
 )
@@ -208,6 +209,35 @@ def test_entry_points_are_those_that_are_installed(tmp_path: Path) -> None:
     seen = report_of(part(report_line("built", made)))
     assert seen is not None
     assert list(seen.packages[0].programs) == []
+
+
+def test_launch_files_are_those_of_the_sources_and_after_the_build_those_that_are_installed(
+    tmp_path: Path,
+) -> None:
+    package = package_with(tmp_path, "a")
+    for file in ("launch/a.launch.py", "launch/b.yaml", "start.launch.xml", "config/c.yaml", "launch/README"):
+        (package.folder / file).parent.mkdir(exist_ok=True)
+        (package.folder / file).touch()
+    found = Build(tmp_path, ok=False, packages=(package,))
+    assert launches(report_line("found", found)) == [
+        "launch/a.launch.py",
+        "launch/b.yaml",
+        "start.launch.xml",
+    ]
+    built = replace(found, ok=True, install=tmp_path / "install")
+    share = tmp_path / "install" / "a" / "share" / "a"
+    share.mkdir(parents=True)
+    assert launches(report_line("built", built)) == []
+    (share / "a.launch.py").touch()
+    assert launches(report_line("built", built)) == ["share/a/a.launch.py"]
+
+
+def launches(line: str) -> list[str]:
+    """The launch files of the one package of a report."""
+    report = report_of(part(line), "built" if '"phase":"built"' in line else "found")
+    assert report is not None
+    (package,) = report.packages
+    return list(package.launch_files)
 
 
 def test_nonsense_is_no_report() -> None:

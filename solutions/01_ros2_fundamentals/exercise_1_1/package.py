@@ -35,7 +35,8 @@ def installed(evidence: Evidence) -> Finding:
         return Finding(False, expected, workspace.seen_of_build(report))
     found = _launch_files(evidence, "built")
     # What a long report has left out is not judged as missing.
-    there = FOLDER in _folders(found) or not (report.complete or report.missing)
+    in_place = any(str(path.parent) == FOLDER for path in _named(found))
+    there = in_place or not (report.complete or report.missing)
     return Finding(
         there, expected, "it is there" if there else ", ".join(found) or "no launch file is installed"
     )
@@ -52,10 +53,9 @@ def _launch_files(evidence: Evidence, phase: str) -> Sequence[str]:
     return own.launch_files if own else ()
 
 
-def _folders(files: Sequence[str]) -> list[str]:
-    """The folders of the launch file among others: it keeps its name, in each language of launch files."""
-    paths = map(PurePosixPath, files)
-    return [str(path.parent) for path in paths if path.stem == FILE]
+def _named(files: Sequence[str]) -> list[PurePosixPath]:
+    """The files of the name that the task asks for, in whatever language of launch files."""
+    return [path for path in map(PurePosixPath, files) if path.stem == FILE]
 
 
 def _about_the_file(recognise: Callable[[Sequence[str], Sequence[str]], Advice | None]) -> Mistake:
@@ -72,17 +72,17 @@ def _about_the_file(recognise: Callable[[Sequence[str], Sequence[str]], Advice |
 
 def launch_elsewhere(_: Sequence[str], built: Sequence[str]) -> Advice | None:
     """The launch file is installed, and in another folder."""
-    if not (folders := _folders(built)):
+    if not (files := _named(built)):
         return None
     return Advice(
-        f"The build puts {SHOWN} into {folders[0]}, and not into {FOLDER}.",
+        f"The build puts {files[0].name} into {files[0].parent}, and not into {FOLDER}.",
         f"In data_files of setup.py, the first string of a pair is the folder: write {FOLDER}.",
     )
 
 
 def launch_file_name(found: Sequence[str], _: Sequence[str]) -> Advice | None:
     """The package has launch files, all of other names."""
-    if not found or _folders(found):
+    if not found or _named(found):
         return None
     return Advice(
         f"The package has no file {SHOWN}: its launch file is {', '.join(found)}.",
@@ -93,17 +93,17 @@ def launch_file_name(found: Sequence[str], _: Sequence[str]) -> Advice | None:
 
 def launch_not_installed(found: Sequence[str], _: Sequence[str]) -> Advice:
     """The launch file is in the package and is not installed; or it is not even there."""
-    if not found:
+    if files := _named(found):
         return Advice(
-            f"There is no launch file in the package {PACKAGE}.",
-            f"Make the folder ros2_ws/src/{PACKAGE}/launch, and copy {SHOWN} into it. Then name the file in data_files "
-            "of setup.py, so that the build installs it.",
+            f"{files[0]} is in the package, but setup.py does not install it: `ros2 launch` finds only what the build "
+            f"has put into share/{PACKAGE}.",
+            f"The list data_files in setup.py needs one more pair: the folder {FOLDER}, and a list with the path of "
+            "the file as it is seen from the folder of the package.",
         )
     return Advice(
-        f"{found[0]} is in the package, but setup.py does not install it: `ros2 launch` finds only what the build has "
-        f"put into share/{PACKAGE}.",
-        f"The list data_files in setup.py needs one more pair: the folder {FOLDER}, and a list with the path of the "
-        "file as it is seen from the folder of the package.",
+        f"There is no launch file in the package {PACKAGE}.",
+        f"Make the folder ros2_ws/src/{PACKAGE}/launch, and copy {SHOWN} into it. Then name the file in data_files of "
+        "setup.py, so that the build installs it.",
     )
 
 
