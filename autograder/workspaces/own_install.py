@@ -6,7 +6,8 @@ contents alone could not decide: `install` holds no copy of setup.py or CMakeLis
 installed copy counts as unchanged, because running a cell that writes a program touches the file.
 
 `colcon` never removes what an earlier build has installed. So an `install` with a module or a program that the sources
-do not have is not used: a class, which builds from the sources alone, would not have it either.
+do not have is not used: a class, which builds from the sources alone, would not have it either. The same holds for a
+launch file that the last build did not install: `ros2 launch` refuses a name that it finds twice.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from autograder.workspaces.install_folder import (
     programs,
     python_folders,
 )
-from autograder.workspaces.packages import DEFINITIONS
+from autograder.workspaces.packages import DEFINITIONS, launch_files
 from autograder.workspaces.room import Room
 from autograder.workspaces.sources import is_source
 
@@ -39,6 +40,8 @@ _BEGAN = "colcon_command_prefix_*.sh"
 """colcon writes this file into a package's build folder when it begins to build the package."""
 _RESULT = "colcon_build.rc"
 """colcon writes the exit code of a package's build into this file."""
+_RECORDS = ("install.log", "install_manifest.txt")
+"""In a package's build folder: what its last build has installed, a path a line, by setuptools and by CMake."""
 _OPTIMIZED = re2.compile(r"(?m)^CMAKE_BUILD_TYPE:\w+=(?:Release|RelWithDebInfo|MinSizeRel)$")
 """In CMakeCache.txt where NDEBUG is defined. Without it a value of the wrong type ends the process, as it does not in
 a class (:func:`autograder.workspaces.colcon.command`)."""
@@ -94,8 +97,11 @@ def _changed(workspace: Path, package: Package) -> Iterator[Path]:
 
 
 def _left_over(workspace: Path, package: Package) -> Iterator[Path]:
-    """What is installed of a package, modules or definitions, and is not in the sources in just this form."""
-    _, prefix = _folders(workspace, package)
+    """What is installed of a package and is not in the sources like that, or that the last build did not install."""
+    build, prefix = _folders(workspace, package)
+    recorded = {path for record in _RECORDS for path in _text(build / record).splitlines()}
+    launches = [prefix / file for file in launch_files(prefix)]
+    yield from (file for file in launches if str(file) not in recorded)
     linked = _linked(prefix)
     # The links of a workspace that was copied lead to the first one.
     yield from (folder for folder in linked if not folder.is_relative_to(package.folder))

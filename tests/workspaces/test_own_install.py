@@ -179,6 +179,25 @@ def test_what_colcon_has_left_of_a_removed_entry_point_is_not_used(built: Path) 
     assert StudentsBuilds().build(look(built), the_package).programs("tiny_pkg") == ()
 
 
+def test_what_colcon_has_left_of_a_launch_file_that_is_installed_elsewhere_now_is_not_used(
+    built: Path,
+) -> None:
+    package = built / "src" / "tiny_pkg"
+    (package / "launch").mkdir()
+    (package / "launch" / "a.launch.py").touch()
+    pairs = [
+        f"('{folder}', ['launch/a.launch.py'])," for folder in ("share/tiny_pkg", "share/tiny_pkg/launch")
+    ]
+    change(package / "setup.py", "['package.xml']),", f"['package.xml']), {pairs[0]}")
+    colcon_build(built, "--packages-select", "tiny_pkg")
+    assert is_current(built, look(built).packages)
+    change(package / "setup.py", *pairs)
+    colcon_build(built, "--packages-select", "tiny_pkg")
+    assert len(list((built / "install" / "tiny_pkg" / "share").rglob("a.launch.py"))) == 2
+    made = StudentsBuilds().build(look(built), the_package)
+    assert made.launch_files("tiny_pkg") == (Path("share/tiny_pkg/launch/a.launch.py"),)
+
+
 def test_a_build_that_failed_is_not_used(built: Path) -> None:
     (built / "build" / "tiny_pkg" / "colcon_build.rc").write_text("1\n")
     assert not is_current(built, look(built).packages)
