@@ -32,9 +32,9 @@ _notebooks = click.option(
     help=f"""Run any COMMAND as the subject of EXERCISE and print the verdict.
 
     \b
-    {COMMAND} check                               lists the exercises
-    {COMMAND} check lab_1_2.talker -- python3 talker.py
-    {COMMAND} check lab_1_2.talker --box -- python3 another_students_talker.py
+    {COMMAND} check                                       lists the exercises
+    {COMMAND} check EXERCISE -- python3 my_program.py
+    {COMMAND} check EXERCISE --box -- python3 program_of_another_person.py
 
     Exit code 0: passed; 1: not passed; 2: could not be checked."""
 )

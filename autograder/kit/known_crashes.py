@@ -283,8 +283,8 @@ KNOWN = (
         r"ModuleNotFoundError: No module named '(?P<name>[\w.]+)'",
         "Python does not find the module {name}.",
         "Compare the name with the import in the lab's text (.msg, .srv, .action), letter by letter. "
-        "Packages of your own workspace need `colcon build` and `source install/setup.bash` first. A folder inside your "
-        "package has to be in the list `packages` of setup.py too, as in packages=[package_name, 'my_robot_pkg.helpers'].",
+        "Packages of your own workspace need `colcon build` and `source install/setup.bash` first. The list `packages` "
+        "of setup.py has to name each folder of your package, as in packages=[package_name, 'my_robot_pkg.helpers'].",
     ),
     Crash(
         "module_not_found",
