@@ -85,14 +85,19 @@ class Publisher:
         return max(1, int(counting[0].data.get("number", 1)) - self.greetings) if counting else 1
 
     @property
-    def first_number(self) -> int | None:
-        """The number of its first message, also where that was sent before anybody could hear it; None for none.
+    def step(self) -> int:
+        """The difference between its first two numbers; 0 if it does not count. Asked of the reference."""
+        first = self.counters[:2]
+        return first[-1] - first[0] if first else 0
 
-        A loop may publish in the moment in which it makes its publisher, which no listener can be quick enough for.
-        What was lost is known by its number. One below zero means that not all of it were texts with numbers.
-        """
-        first = counters(self.texts[self.greetings :][:1])
-        return first[0] - (self.number_of_first - 1) if first else None
+    def place(self, number: int) -> int:
+        """Return the place that a number has among its numbers, from 0, below zero if it comes before the first."""
+        return (number - self.counters[0]) // self.step if self.step else 0
+
+    @property
+    def has_numbers_alone(self) -> bool:
+        """True if its messages are whole numbers without a text."""
+        return self.templates[:1] == ["#"]
 
     @property
     def begun(self) -> int:

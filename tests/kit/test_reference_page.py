@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs/exercise-reference.md").read_text(encoding="utf-8")
 WRITTEN = re.compile(r"""\b(?:_?record|_note|end|ended)\(\s*"(\w+)",""")
+HEARS = Hears()
+HEARS.says_text()
+HEARS.counts()
 RECIPES: dict[str, Recipe[Any]] = {
     "OwnScenario": OwnScenario(
         lambda _: None,
@@ -35,7 +38,7 @@ RECIPES: dict[str, Recipe[Any]] = {
         "action_client",
         "action_server",
     ),
-    "Hears": Hears(messages=8, long_run=20),
+    "Hears": HEARS,
     "Speaks": Speaks(pace=0.5, paced_by="a timer"),
     "Asks": Asks(lambda _: [], lambda _: {}),
     "Calls": Calls(1, lambda _: [], [], too_many=("", "")),

@@ -13,9 +13,10 @@ from autograder.kit.in_words import counted
 from autograder.kit.model import STEP, Advice, Bench, Finding, Mistake, Pace
 from autograder.kit.published_texts import Publisher
 from autograder.kit.rate import ROW, Rate, burst_at_the_start, confirmed, rate_of, simulated
+from autograder.kit.recipes import counting
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from autograder.kit.draft import Judge
     from autograder.kit.evidence import Event, Evidence, Reference
@@ -37,7 +38,7 @@ PERSISTS = 1.0
 
 
 class Hears:
-    """The recipe for a publisher of texts.
+    """The recipe for a publisher.
 
     Args:
         messages: That are listened to, in simulated time and where nothing else is known.
@@ -51,6 +52,7 @@ class Hears:
         self._long_run = long_run
         self._text: Judge[Publisher] | None = None
         self._course: Judge[Publisher] | None = None
+        self._variable = "self.count"
 
     def each_text(self, judge: Judge[Publisher]) -> Judge[Publisher]:
         """Mark the criterion on each single message: a wrong rate is told only where that one holds."""
@@ -135,6 +137,26 @@ class Hears:
 
     # --- criteria --------------------------------------------------------------------------------------------
 
+    def says_text(self) -> Callable[[Evidence], Finding]:
+        """Return the criterion that each text is the reference's, the number aside; its mistakes become known."""
+        self._text = counting.says_text
+        return self._criterion(counting.says_text)
+
+    def counts(self, variable: str = "self.count") -> Callable[[Evidence], Finding]:
+        """Return the criterion that the numbers are the reference's; its mistakes become known.
+
+        The last whole number of a text counts, or the number that a message holds. First number and step are those of
+        the reference solution, which may count down.
+
+        Args:
+            variable: The counter's name in the advice.
+        """
+        self._course, self._variable = counting.counts, variable
+        return self._criterion(counting.counts)
+
+    def _criterion(self, judge: Judge[Publisher]) -> Callable[[Evidence], Finding]:
+        return lambda evidence: judge(self.seen(evidence), self.expected(evidence))
+
     def on_topic(self, evidence: Evidence) -> Finding:
         """A publisher of the subject's is on the topic."""
         topic, _ = evidence.reference.only("publisher")
@@ -185,7 +207,7 @@ class Hears:
         seen, expected = self.seen(evidence), self.expected(evidence)
         if not seen.counters or not expected.counters:
             return ""
-        unheard = min(seen.number_of_first - 1, seen.counters[0] - expected.counters[0])
+        unheard = min(seen.number_of_first - 1, expected.place(seen.counters[0]))
         counting = seen.messages[seen.greetings :]
         return burst_at_the_start(counting, unheard, reference_period(evidence.reference))
 
@@ -201,6 +223,11 @@ class Hears:
     @property
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most telling first."""
+        of = counting.Counting(self._variable)
+        texts, numbers = self._text is counting.says_text, self._course is counting.counts
+        early = [("field_typo", counting.field_typo)] * texts + [("counter_stuck", of.stuck)] * numbers
+        early += [("wrong_text", of.wrong_text)] * texts
+        late = [("counter_start", of.start), ("counter_step", of.step)] * numbers
         return (
             *common.CRASHES,
             common.NEVER_CONSTRUCTED,
@@ -211,16 +238,23 @@ class Hears:
             common.everything_twice("publisher"),
             Mistake("published_before_discovery", self._published_before_discovery),
             OWN,
+            *(self._mistake(*one, certain=True) for one in early),
             Mistake("never_published", self._never_published),
             *HANGS,
             common.never_spun("publisher"),
             common.went_deaf("publisher"),
             OWN_LATE,
+            *(self._mistake(*one) for one in late),
             Mistake("ended_too_early", common.ended_too_early),
             Mistake("wrong_rate", self._wrong_rate),
             Mistake("stopped_publishing", self._stopped_publishing),
             *common.NOTHING_THERE,
         )
+
+    def _mistake(
+        self, key: str, told: Callable[[Publisher, Publisher], Advice | None], *, certain: bool = False
+    ) -> Mistake:
+        return Mistake(key, lambda evidence: told(self.seen(evidence), self.expected(evidence)), certain)
 
     def _published_before_discovery(self, evidence: Evidence) -> Advice | None:
         """It says that it published, and ended before anybody could hear it."""

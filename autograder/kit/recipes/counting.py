@@ -1,0 +1,219 @@
+"""What a publisher says and counts: two criteria on its messages, and the mistakes that fail them.
+
+The reference solution's first messages say what is due: the text around the number, the first number and the step.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit.in_words import counted, first_difference
+from autograder.kit.model import Advice, Finding
+from autograder.kit.published_texts import counters, template
+
+if TYPE_CHECKING:
+    from autograder.kit.published_texts import Publisher
+
+MANY = 3
+"""Publishers in a row that are too many to be two nodes or two timers."""
+_UNFILLED = re2.compile(r"\{[^{}]*\}|%[ds]|\(?\bself\.\w+\)?")
+_FRACTION = re2.compile(r"\d[.,]\d")
+
+
+def says_text(seen: Publisher, expected: Publisher) -> Finding:
+    """Every text is the reference's, the number aside."""
+    odd = [
+        text for text, form in zip(seen.texts, seen.templates, strict=True) if form not in expected.templates
+    ]
+    found = f"“{(odd or seen.texts)[0]}”" if seen.texts else "no message arrived"
+    if seen.texts and not odd and not seen.went_on:
+        found += ", and no more"
+    passed = seen.went_on and not odd
+    return Finding(passed, f"“{expected.texts[0]}”, “{expected.texts[1]}”, …", found)
+
+
+def counts(seen: Publisher, expected: Publisher) -> Finding:
+    """The numbers are the reference's, from the first message on.
+
+    Raises:
+        ValueError: The reference solution does not count.
+    """
+    numbers, step = seen.counters, expected.step
+    if not step:
+        raise ValueError("the reference solution does not count, so leave out heard.counts(...)")
+    # A slow publisher sent fewer numbers; the rate criterion judges that.
+    enough = seen.enough - seen.greetings
+    all_of_them = len(numbers) >= enough or (bool(numbers) and seen.goes_on_slowly(expected))
+    steady = all_of_them and not _slip(numbers, step)
+    found = ", ".join(map(str, numbers)) if len(numbers) < enough else _around(numbers, _slip(numbers, step))
+    if steady and (more := _uncounted(seen, expected)):
+        found = f"{counted(more, 'message')} more before {found}"
+    passed = steady and seen.went_on and _starts_right(seen, expected)
+    if passed and (lost := seen.number_of_first - 1):
+        found += f" after {counted(lost, 'message')} before anybody could hear"
+    return Finding(passed, _row(expected.counters[:5]), found or "no whole number arrived")
+
+
+def field_typo(seen: Publisher, _: Publisher) -> Advice | None:
+    """Return advice if all texts are empty."""
+    if not seen.texts or any(seen.texts):
+        return None
+    return Advice(
+        "Your messages arrive, but their string is empty: the field was never set.",
+        "A String has one field, data. Set it, as in message.data = ...; String(...) ignores a misspelt keyword "
+        "silently.",
+    )
+
+
+@dataclass(frozen=True)
+class Counting:
+    """The mistakes of a publisher that counts.
+
+    Attributes:
+        variable: The counter's name in the advice, such as ``"self.count"``.
+    """
+
+    variable: str
+
+    def wrong_text(self, seen: Publisher, expected: Publisher) -> Advice | None:
+        """Return advice if messages arrive with another text."""
+        texts = seen.texts[seen.greetings :]
+        odd = next((said for said in texts if template(said) not in expected.templates), None)
+        if odd is None:
+            return None
+        asked, form = says_text(seen, expected).expected, expected.templates[0]
+        if blank := _UNFILLED.search(odd):
+            return Advice(
+                f"Your talker says “{odd}”: {blank[0]} is sent as it is, Python put no number in its place.",
+                "Put an f in front of the opening quotation mark, and braces around what Python is to fill in, as in "
+                f"f'{form.replace('#', f'{{{self.variable}}}')}'.",
+            )
+        if _FRACTION.search(odd) and expected.step:
+            first = expected.counters[0]
+            return Advice(
+                f"Your talker says “{odd}”: its number is not a whole number; the task asks for {asked}",
+                f"Begin with a whole number, as in {self.variable} = {first} (not {first}.0), and "
+                f"{self._changes(expected)}; or write int(...) around it.",
+            )
+        return Advice(
+            f"Your talker says “{odd}”; the task asks for {asked}",
+            f"{first_difference(template(odd), form)} (N is the number.) Every letter counts, because "
+            "other nodes read this string.".replace("#", "N"),
+        )
+
+    def stuck(self, seen: Publisher, expected: Publisher) -> Advice | None:
+        """Return advice if every message has the same number."""
+        if len(seen.counters) < 3 or len(set(seen.counters)) > 1:
+            return None
+        made = (
+            "fill a new message with the counter"
+            if expected.has_numbers_alone
+            else "make the string anew, with the counter in an f-string"
+        )
+        return Advice(
+            f"Every message carries the number {seen.counters[0]}.",
+            f"In the method that the timer calls, {made}, and {self._changes(expected, 'the counter')} below that, as "
+            f"in {self._statement(expected)}, with no return above it. Set it to {expected.counters[0]} in __init__ "
+            "only. Without self. in front, another variable is changed, not the node's.",
+        )
+
+    def start(self, seen: Publisher, expected: Publisher) -> Advice | None:
+        """Return advice if it counts by the right step, but from another number, or not from its first message on."""
+        steady = len(seen.counters) > 1 and not _slip(seen.counters, expected.step)
+        unheard, right = _uncounted(seen, expected), _starts_right(seen, expected)
+        if not steady or (right and not seen.greetings):
+            return None
+        if unheard or right:
+            what = f": “{seen.texts[0]}”" if seen.greetings else ", too early for anybody to hear"
+            return Advice(
+                f"“{seen.texts[seen.greetings]}” was message {seen.greetings + seen.number_of_first} of your node: it "
+                f"published {counted(seen.greetings + unheard, 'message')} more before it than it counted{what}.",
+                "Fill each message before you publish it, and publish nothing before the first of these: a line such "
+                "as “Talker started” goes into the log.",
+            )
+        first, begins = _first_number(seen, expected), expected.counters[0]
+        return Advice(
+            f"The first message carries the number {seen.counters[0] if first is None else first}; the counter must "
+            f"begin at {begins}.",
+            f"Set your counter in __init__, as in {self.variable} = {begins}, and {self._changes(expected)} only after "
+            "the message was published.",
+        )
+
+    def step(self, seen: Publisher, expected: Publisher) -> Advice | None:
+        """Return advice if the numbers do not change by the right step."""
+        numbers = seen.counters
+        place = _slip(numbers, expected.step)
+        if len(numbers) < 3 or not place:
+            return None
+        came = f"After {numbers[place - 1]} comes {numbers[place]} ({_around(numbers, place)})."
+        if seen.begun >= MANY:
+            return Advice(
+                f"{came} Your node makes a new publisher again and again, and a new one has no subscriber yet.",
+                "Call create_publisher once, in __init__, keep what it returns (self.publisher = …) and publish with "
+                "that.",
+            )
+        kind = seen.endpoints.get(seen.part.real_name(seen.topic))
+        others = sorted(name for name, other in seen.endpoints.items() if other == kind)
+        if len(others) > 1:
+            things = "numbers" if expected.has_numbers_alone else "strings"
+            return Advice(
+                f"{came} Your node publishes {things} on {' and '.join(others)}. What goes elsewhere is missing here.",
+                "One publisher is enough: let it publish every message.",
+            )
+        way, by = ("up", expected.step) if expected.step > 0 else ("down", -expected.step)
+        return Advice(
+            f"{came} The numbers must go {way} by {'one' if by == 1 else by} with each message.",
+            f"Count once for each published message: one line as {self._statement(expected)} at the end of the method, "
+            "no loop, and one timer.",
+        )
+
+    def _statement(self, expected: Publisher) -> str:
+        return f"{self.variable} {'+' if expected.step > 0 else '-'}= {abs(expected.step)}"
+
+    @staticmethod
+    def _changes(expected: Publisher, counter: str = "") -> str:
+        by = abs(expected.step)
+        if expected.step > 0:
+            return f"add {by} to {counter}" if counter else f"add {by}"
+        return f"take {by} from {counter}" if counter else f"take {by} away"
+
+
+def _first_number(seen: Publisher, expected: Publisher) -> int | None:
+    """Return the number of its first message, even if that was sent before anybody could hear it; None for none.
+
+    A loop may publish in the moment in which it makes its publisher, which no listener can be quick enough for.
+    What was lost is known by its number in DDS. A number that the reference begins after means that not all of the
+    lost messages counted.
+    """
+    first = counters(seen.texts[seen.greetings :][:1])
+    return first[0] - expected.step * (seen.number_of_first - 1) if first else None
+
+
+def _starts_right(seen: Publisher, expected: Publisher) -> bool:
+    return _first_number(seen, expected) == expected.counters[0]
+
+
+def _uncounted(seen: Publisher, expected: Publisher) -> int:
+    """Return how many of the messages that nobody could hear were too many, for a counter that begins at the start."""
+    if _first_number(seen, expected) is None or (place := expected.place(seen.counters[0])) < 0:
+        return 0
+    return max(0, seen.number_of_first - 1 - place)
+
+
+def _slip(numbers: list[int], step: int) -> int:
+    """Return the place of the first number that does not follow from the one before; 0 if all do."""
+    return next((place for place, (a, b) in enumerate(pairwise(numbers), 1) if b - a != step), 0)
+
+
+def _row(numbers: list[int]) -> str:
+    return ", ".join(map(str, numbers)) + ", …"
+
+
+def _around(numbers: list[int], place: int) -> str:
+    """Return the numbers on both sides of a place; the first ones if it is near the beginning."""
+    first = max(0, place - 3)
+    return "…, " * bool(first) + _row(numbers[first : first + 6])
