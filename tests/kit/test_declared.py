@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from random import Random
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.recipes.declared import NAN, SILENCE, SOME_TEXT, Machine, Relay
+from autograder.kit.recipes.machine import SOME_TEXT, Machine
+from autograder.kit.recipes.relay import NAN, NUMBER, SILENCE, WHOLE, Relay, _drawn
 from autograder.kit.rules import same
 
 if TYPE_CHECKING:
@@ -52,8 +54,8 @@ def differences() -> Exercise:
     relay.answers("due", 5, "Answers")
     relay.copies("stamp", 5, "Copies")
     relay.wrong("summed", lambda n: n[-1] + n[-2] if len(n) > 1 else SILENCE, "It adds.", "Take away.")
-    relay.not_copied("not_copied", "No stamp.", "Copy it.")
-    relay.too_early("too_early", "Too early.", "Wait.")
+    relay.not_copied()
+    relay.too_early()
     return relay.exercise()
 
 
@@ -96,6 +98,25 @@ def test_a_relay_is_judged_by_what_is_due(
     assert diagnoses(differences(), seen) == told
 
 
+def test_a_wrong_relay_may_be_the_right_one_with_another_argument() -> None:
+    def due(numbers: Sequence[float], lag: int = 1) -> Any:
+        return numbers[-1] - numbers[-1 - lag] if len(numbers) > lag else SILENCE
+
+    relay = Relay("a.b", "A", "B", field="pose.x", due=due)
+    relay.wrong("summed", {"lag": 0}, "It is always 0.", "Keep the number before.")
+    zeros = [event for sent in SENT[:2] for event in (sent, heard("message", 0.0, 1))]
+    assert diagnoses(relay.exercise(), zeros) == {"summed"}
+    assert diagnoses(relay.exercise(), RIGHT) == set()
+
+
+def test_numbers_are_drawn_where_they_are_asked_for_and_none_twice() -> None:
+    drawn = list(_drawn([NUMBER, NAN, WHOLE, 7, *[WHOLE] * 50], Random("seed")))
+    assert isinstance(drawn[0], float)
+    assert same(drawn[1], NAN)
+    assert drawn[3] == 7
+    assert len(set(drawn[4:])) == 50
+
+
 def door() -> Exercise:
     """A state that is refused where it is so already."""
 
@@ -103,13 +124,13 @@ def door() -> Exercise:
         return asked, {"success": True} if asked != state else {"success": False, "message": SOME_TEXT}
 
     machine = Machine("a.b", "A", "B", state=False, step=step, asks=(True, True, False), late_after=2)
-    machine.replies("success", 4, "Success", "success")
-    machine.replies("refuses", 2, "Refuses", "message", lambda call: not call.changed)
+    machine.replies("success", 4, "Success")
+    machine.replies("message", 2, "Refuses")
     machine.once_at_each_change("once", 2, "Once")
     machine.late_joiner_gets_the_last("late", 2, "Late")
     machine.wrong("stays_so", lambda _, asked: (asked, {"success": True}), "Always.", "Compare.")
-    machine.told_too_often("told_too_often", "Too often.", "Once.")
-    machine.not_latched("not_latched", "Not kept.", "Latch.")
+    machine.told_too_often()
+    machine.not_latched()
     return machine.exercise()
 
 
@@ -132,15 +153,15 @@ USUAL = run([(True, ""), (False, "so already"), (True, "")], [(2, 1, True), (3, 
     ("seen", "failed", "told"),
     [
         (USUAL, set(), set()),
-        (USUAL[:5], {"success", "refuses", "once", "late"}, set()),
+        (USUAL[:5], {"success", "message", "once", "late"}, set()),
         (
             run([(True, ""), (True, ""), (True, "")], [(2, 1, True), (3, 2, False)]),
-            {"success", "refuses"},
+            {"success", "message"},
             {"stays_so"},
         ),
         (
             run([(True, ""), (False, " "), (True, "")], [(2, 1, True), (3, 2, False)]),
-            {"refuses"},
+            {"message"},
             set(),
         ),
         (

@@ -1,0 +1,219 @@
+"""A node with a state that a service changes, declared by how the state steps from one request to the next."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from autograder.kit.model import Finding, Pace
+from autograder.kit.recipes.declared import Declared, fields, pick, variant
+from autograder.kit.rules import SOME_TEXT, same, value
+
+if TYPE_CHECKING:
+    from random import Random
+
+    from autograder.kit.counterparts import Caller
+    from autograder.kit.evidence import Event, Part
+    from autograder.kit.model import Bench
+
+__all__ = ["SOME_TEXT", "Machine"]
+
+QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
+"""Seconds of wall time without any event after which the judge waits no longer for an answer or a message."""
+PAUSE = 0.5
+"""Seconds of the subject's time after each answer in which a timer of the subject may tell of the change."""
+ON_AND_OFF = (False, True, True, False, False, True, True, False, False, True, False)
+"""Requests of a state that is on or off: each change is asked for twice."""
+
+Step = Callable[..., tuple[Any, Mapping[str, Any]]]
+"""From the state and what is asked for to the new state and the fields of the reply."""
+
+
+@dataclass(frozen=True)
+class Call:
+    """One call of a machine's service, as the machine is declared.
+
+    Attributes:
+        asked: What was asked for: the request's field ``data``, or all fields of a request without that one.
+        reply: The fields of the reply that is due.
+        state: The state afterwards.
+        changed: Whether the call changed the state.
+    """
+
+    asked: Any
+    reply: Mapping[str, Any]
+    state: Any
+    changed: bool
+
+
+class Machine(Declared):
+    """A node with a state that a service changes, and that a topic tells of at each change, to late listeners, too.
+
+    Args:
+        exercise_id: Such as ``"lab_8_1.mode"``.
+        title: For the card: the lab and what the subject is.
+        task: One sentence: what is asked for.
+        state: The state at first.
+        step: From the state and what is asked for to the new state and the reply; :data:`SOME_TEXT` in a reply stands
+            for any text.
+        asks: What is asked for, one call after the other, or a function that draws it, as many in each run. A
+            dictionary is a whole request, anything else its field ``data``.
+        late_after: The number of calls after which the judge subscribes to the topic.
+        field: The path of the field of a message that has the state.
+    """
+
+    def __init__(
+        self,
+        exercise_id: str,
+        title: str,
+        task: str,
+        *,
+        state: Any,
+        step: Step,
+        asks: Sequence[Any] | Callable[[Random], Sequence[Any]] = ON_AND_OFF,
+        late_after: int = 6,
+        field: str = "data",
+    ) -> None:
+        super().__init__(exercise_id, title, task, self._scenario, "publisher", "service", given="answered")
+        self._state, self._step, self._asks = state, step, asks
+        self._late_after, self._field = late_after, field
+
+    def replies(self, field: str, points: float, title: str, words: str = "") -> None:
+        """Add a criterion, named after a field: that field is as it is due in each reply for which ``step`` says it.
+
+        Args:
+            field: The reply's field.
+            points: Points it carries.
+            title: One line for a person.
+            words: The words of the task that the criterion judges.
+        """
+
+        def due(seen: Part) -> list[Any]:
+            return [call.reply[field] for call in self._course(seen, self._step) if field in call.reply]
+
+        def came(seen: Part) -> list[Any]:
+            pairs = zip(self._course(seen, self._step), fields(seen, "answered"), strict=False)
+            return [reply[field] for call, reply in pairs if field in call.reply]
+
+        self._compares(field, points, title, due, came, words)
+
+    def once_at_each_change(self, name: str, points: float, title: str, words: str = "") -> None:
+        """Add a criterion: one message comes at each change, and no other one; arguments as in :meth:`asks`."""
+
+        def judge(seen: Part, expected: Part) -> Finding:
+            course = self._course(seen, self._step)
+            due = [[n, state] for n, state in enumerate((c.state for c in course if c.changed), 1)]
+            live = sum(call.changed for call in course[self._late_after :])
+            told = [[event.data["number"], self._told(event)] for event in seen.of("message")]
+            passed = (
+                self._got_through(seen, expected)
+                and all(any(same(one, d) for d in due) for one in told)
+                and all(any(same(one, d) for one in told) for d in due[len(due) - live :])
+            )
+            heard = max((int(number) for number, _ in told), default=0)
+            return Finding(passed and bool(told), f"{len(due)} messages", f"{heard} messages")
+
+        self._draft.criterion(name, points, title)(judge)
+        self._judges(name, words)
+
+    def late_joiner_gets_the_last(self, name: str, points: float, title: str, words: str = "") -> None:
+        """Add a criterion: who subscribes late hears the state as it is then; arguments as in :meth:`asks`."""
+
+        def due(seen: Part) -> list[Any]:
+            return [call.state for call in self._course(seen, self._step)][: self._late_after][-1:]
+
+        def came(seen: Part) -> list[Any]:
+            calls, before = 0, []
+            for event in seen.events:
+                calls += event.kind == "asked"
+                if event.kind == "message" and calls == self._late_after:
+                    before.append(self._told(event))
+            return before[-1:]
+
+        self._compares(name, points, title, due, came, words)
+
+    def wrong(self, key: str, step: Step | Mapping[str, Any], says: str, next_step: str) -> None:
+        """Add a mistake: all replies are those of a variant of ``step``; arguments as in :meth:`Relay.wrong`."""
+        wrong = variant(self._step, step)
+
+        def replied(seen: Part, step: Step) -> bool:
+            pairs = zip(self._course(seen, step), fields(seen, "answered"), strict=False)
+            return all(
+                same(due, reply.get(field)) for call, reply in pairs for field, due in call.reply.items()
+            )
+
+        def found(seen: Part) -> bool:
+            return bool(seen.of("answered")) and not replied(seen, self._step) and replied(seen, wrong)
+
+        self._knows(key, found, says, next_step)
+
+    def told_too_often(self, key: str = "told_too_often") -> None:
+        """Add a mistake: more messages than changes."""
+
+        def found(seen: Part) -> bool:
+            most = sum(call.changed for call in self._course(seen, self._step))
+            return any(event.data["number"] > most for event in seen.of("message"))
+
+        self._knows(
+            key,
+            found,
+            "Your node publishes more often than anything changes.",
+            "Publish only if the new value differs from the old one, once for each change.",
+        )
+
+    def not_latched(self, key: str = "not_latched") -> None:
+        """Add a mistake: the publisher keeps nothing for late listeners."""
+        self._knows(
+            key,
+            lambda seen: any(event.data["policy"] == "durability" for event in seen.of("mismatch")),
+            "Your publisher keeps no message: who subscribes after it was published hears nothing.",
+            "Give create_publisher QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) in place of 10.",
+        )
+
+    def _scenario(self, bench: Bench) -> None:
+        asks = self._asks(bench.random) if callable(self._asks) else self._asks
+        (service, service_type), (topic, topic_type) = map(bench.reference.only, ("service", "publisher"))
+        bench.part("machine")
+        bench.start()
+        if bench.await_endpoint("service", service):
+            bench.release()
+            caller = bench.call(service, service_type)
+            ask = partial(self._all_answered, bench, caller)
+            if caller.await_server(QUIET[bench.pace]) and ask(asks[: self._late_after]):
+                self._join_late(bench, topic, topic_type)
+                ask(asks[self._late_after :])
+            if not bench.seen().of("answered"):
+                bench.note_whether_it_spins()
+        bench.stop()
+
+    @staticmethod
+    def _all_answered(bench: Bench, caller: Caller, asks: Sequence[Any]) -> bool:
+        for asked in asks:
+            caller.ask(asked if isinstance(asked, Mapping) else {"data": asked})
+            if not caller.await_answers(QUIET[bench.pace]):
+                return False
+            bench.run_time(PAUSE)
+            bench.settle()
+        return True
+
+    @staticmethod
+    def _join_late(bench: Bench, topic: str, type_name: str) -> None:
+        bench.listen(topic, type_name, latched=True)
+        bench.wait_until(lambda e: bool(e.main.of("mismatch") or e.main.of("message")), QUIET[bench.pace])
+        bench.settle()
+        if bench.seen().of("mismatch"):
+            bench.listen(topic, type_name)
+
+    def _course(self, seen: Part, step: Step) -> list[Call]:
+        """Return each call that was made with what a machine with this step makes of it."""
+        state, course = self._state, []
+        for asked in map(value, seen.of("asked")):
+            new, reply = step(state, asked)
+            course.append(Call(asked, reply, new, not same(new, state)))
+            state = new
+        return course
+
+    def _told(self, event: Event) -> Any:
+        return pick(event.data["fields"], self._field)
