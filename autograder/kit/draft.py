@@ -1,9 +1,9 @@
 """An exercise while it is written: a recipe, then criteria and mistakes, each a decorated function.
 
 A function is given two views of the same kind that the recipe makes: what was seen of the subject, and what was
-recorded of the reference solution. Its name and its docstring are for whoever reads the exercise; what a student reads
-are the texts in the decorators, which may quote from both views: ``"It carries {seen.counters[0]}."``. Those of a
-mistake may also quote what its function found, as ``{}``.
+recorded of the reference solution. A mistake is spelt in one of two ways. :meth:`Draft.knows` takes two texts, which
+may quote from both views, ``"It carries {seen.counters[0]}."``, and what was found, as ``{}``. Where texts do not do,
+:meth:`Draft.mistake` decorates a function that gives the advice itself.
 """
 
 from __future__ import annotations
@@ -21,12 +21,10 @@ if TYPE_CHECKING:
 
 View = TypeVar("View")
 View_co = TypeVar("View_co", covariant=True)
-Found = TypeVar("Found")
 Judge = Callable[[View, View], Finding]
 """Decides a criterion from what was seen and from what was recorded."""
-Recognise = Callable[[View, View], object]
-"""What shows that a mistake was made, or anything that is false; advice of its own where the decorator's texts do not
-fit."""
+Told = Callable[[View, View], Advice | None]
+"""Says what is to be told of a mistake, if it was made."""
 
 
 class Recipe(Protocol[View_co]):
@@ -112,20 +110,22 @@ class Draft(Generic[View]):
 
         return add
 
-    def mistake(
+    def knows(
         self,
         key: str,
+        found: Callable[[View, View], object],
+        says: str,
+        next_step: str,
         *,
-        says: str = "",
-        next_step: str = "",
         certain: bool | Callable[[View], bool] = False,
         late: bool = False,
         before: str = "",
-    ) -> Callable[[Callable[[View, View], Found]], Callable[[View, View], Found]]:
-        """Add a known mistake, most telling first.
+    ) -> None:
+        """Add a known mistake that is told in two texts, most telling first.
 
         Args:
             key: A stable name, explained in ``docs/mistakes.md``.
+            found: Gives what shows the mistake; anything that is false if nothing does.
             says: What the student is told, with places such as ``{seen.texts[0]}``; ``{}`` stands for what was found.
             next_step: What to do about it, with the same places.
             certain: What was seen proves it whatever the machine's load was; or on what that depends.
@@ -133,43 +133,40 @@ class Draft(Generic[View]):
             before: The key of the common mistake before which it is asked, where its place is neither of the two.
         """
 
-        def add(recognise: Callable[[View, View], Found]) -> Callable[[View, View], Found]:
-            self.knows(key, recognise, says, next_step, certain=certain, late=late, before=before)
-            return recognise
+        def told(seen: View, expected: View) -> Advice | None:
+            if not (shown := found(seen, expected)):
+                return None
+            views = {"seen": seen, "expected": expected}
+            return Advice(says.format(shown, **views), next_step.format(shown, **views))
 
-        return add
+        self.mistake(key, certain=certain, late=late, before=before)(told)
 
-    def knows(
+    def mistake(
         self,
         key: str,
-        recognise: Recognise[View],
-        says: str = "",
-        next_step: str = "",
         *,
         certain: bool | Callable[[View], bool] = False,
         late: bool = False,
         before: str = "",
-    ) -> None:
-        """Add a known mistake that a function of the exercise, or a ``lambda``, recognises; as :meth:`mistake` does."""
+    ) -> Callable[[Told[View]], Told[View]]:
+        """Add a known mistake whose words the decorated function gives; the arguments are those of :meth:`knows`."""
 
-        def advice(evidence: Evidence) -> Advice | None:
-            seen, expected = self._views(evidence)
-            found = recognise(seen, expected)
-            if isinstance(found, Advice):
-                return found
-            if not found:
-                return None
-            views = {"seen": seen, "expected": expected}
-            return Advice(says.format(found, **views), next_step.format(found, **views))
+        def add(told: Told[View]) -> Told[View]:
+            def advice(evidence: Evidence) -> Advice | None:
+                return told(*self._views(evidence))
 
-        def proven(evidence: Evidence) -> Advice | None:
-            return advice(evidence) if callable(certain) and certain(self._recipe.seen(evidence)) else None
+            def proven(evidence: Evidence) -> Advice | None:
+                holds = callable(certain) and certain(self._recipe.seen(evidence))
+                return advice(evidence) if holds else None
 
-        usual = self._own[id(OWN_LATE if late else OWN)]
-        own = self._before.setdefault(before, []) if before else usual
-        if callable(certain):
-            own.append(Mistake(key, proven, certain=True))
-        own.append(Mistake(key, advice, certain=certain is True))
+            usual = self._own[id(OWN_LATE if late else OWN)]
+            own = self._before.setdefault(before, []) if before else usual
+            if callable(certain):
+                own.append(Mistake(key, proven, certain=True))
+            own.append(Mistake(key, advice, certain=certain is True))
+            return told
+
+        return add
 
     def exercise(self, **more: Any) -> Exercise:
         """The exercise, once everything is said of it.

@@ -31,17 +31,17 @@ def keys(draft: Draft[Part]) -> list[str]:
 
 def test_own_mistakes_come_in_their_order_at_the_place_that_they_name() -> None:
     draft = Draft("lab.it", "", "", Recipe())
-    draft.mistake("late", late=True)(lambda *_: False)
-    draft.mistake("usual")(lambda *_: False)
-    draft.mistake("one", before="deaf")(lambda *_: False)
-    draft.mistake("other", before="deaf")(lambda *_: False)
+    draft.mistake("late", late=True)(lambda *_: None)
+    draft.mistake("usual")(lambda *_: None)
+    draft.mistake("one", before="deaf")(lambda *_: None)
+    draft.mistake("other", before="deaf")(lambda *_: None)
     assert keys(draft) == ["usual", "hangs", "one", "other", "deaf", "deaf", "late"]
     assert keys(draft) == keys(draft)
 
 
 def test_a_place_that_the_recipe_has_not_is_an_error() -> None:
     draft = Draft("lab.it", "", "", Recipe())
-    draft.mistake("one", before="blind")(lambda *_: False)
+    draft.mistake("one", before="blind")(lambda *_: None)
     with pytest.raises(ValueError, match="no mistake blind"):
         draft.exercise()
 
@@ -53,12 +53,18 @@ def test_a_place_that_the_recipe_has_not_is_an_error() -> None:
         (7, "It is 7 in rolling."),
         (0, None),
         (None, None),
-        (Advice("Its own words.", ""), "Its own words."),
     ],
-    ids=["true", "a value", "a value that is false", "nothing", "advice"],
+    ids=["true", "a value", "a value that is false", "nothing"],
 )
 def test_a_text_may_quote_what_was_found(found: object, text: str | None) -> None:
     draft = Draft("lab.it", "", "", Recipe())
-    draft.knows("usual", lambda *_: found, "It is {} in {seen.name}.")
+    draft.knows("usual", lambda *_: found, "It is {} in {seen.name}.", "")
     advice = draft.exercise().mistakes[0].recognise(Evidence([Part("rolling")], Reference("lab.it", {})))
     assert (advice and advice.text) == text
+
+
+def test_a_mistake_may_have_words_of_its_own() -> None:
+    draft = Draft("lab.it", "", "", Recipe())
+    draft.mistake("usual")(lambda seen, _: Advice(f"It has {{braces}} in {seen.name}.", "") if seen else None)
+    advice = draft.exercise().mistakes[0].recognise(Evidence([Part("rolling")], Reference("lab.it", {})))
+    assert advice == Advice("It has {braces} in rolling.", "")

@@ -19,7 +19,7 @@ import re2
 from autograder.kit import common_mistakes as common
 from autograder.kit import giving_up, service_mistakes
 from autograder.kit.crashes import OTHER_SLIPS
-from autograder.kit.draft import OWN, OWN_LATE, Judge
+from autograder.kit.draft import OWN, OWN_LATE, Judge, Told
 from autograder.kit.giving_up import drawn_patience
 from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import (
@@ -37,6 +37,7 @@ from autograder.kit.service_calls import (
     LATE,
     Client,
     answers,
+    braces_left,
     cut_short,
     has_reported,
     how_it_went,
@@ -288,14 +289,22 @@ class Calls:
         called = bool(requests(late))
         return Finding(called, "waits, then calls", "it did" if called else how_it_went(late))
 
-    def unreported(self, seen: Client) -> Part | None:
-        """A run with the right calls whose last answer is not said."""
+    def unreported(self, says: str, next_step: str) -> Told[Client]:
+        """Return a mistake: the calls are right, and the last answer is not said, or a string has its braces left."""
+
+        def told(seen: Client, _: Client) -> Advice | None:
+            part = self._unreported(seen)
+            return (braces_left(part) or Advice(says, next_step)) if part else None
+
+        return told
+
+    def _unreported(self, seen: Client) -> Part | None:
         answered = (part for part in seen.served if part.of("response"))
         return next((part for part in answered if self.is_right(part) and not reports(part)), None)
 
     def another_sum(self, seen: Client) -> AnotherSum | None:
         """What is said in place of the last answer of a run with the right calls."""
-        part = self.unreported(seen)
+        part = self._unreported(seen)
         if part is None:
             return None
         answer = answers(part)[-1]

@@ -154,13 +154,11 @@ adder.knows(
     late=True,
     certain=Client.ended_each_time,
 )
-adder.knows(
-    "sum_not_reported",
-    lambda seen, _: (part := recipe.unreported(seen)) and (service_calls.braces_left(part) or True),
-    "Both calls are right, but the final sum is never said.",
-    "Log or print the sum of the second answer. In a notebook, return it, too.",
-    late=True,
-    certain=Client.ended_each_time,
+adder.mistake("sum_not_reported", late=True, certain=Client.ended_each_time)(
+    recipe.unreported(
+        "Both calls are right, but the final sum is never said.",
+        "Log or print the sum of the second answer. In a notebook, return it, too.",
+    )
 )
 
 

@@ -321,17 +321,20 @@ def found_in(seen: Evidence) -> list[Part]:
     return [other for other in [seen.part(OTHER)] if names_it(other)]
 
 
-@question.mistake(
-    "not_written",
-    certain=True,
-    before="syntax_error",
-    says="Your function comes back at once and names no service.",
-    next_step=common.STEP_MISSING,
-)
 def not_written(seen: Evidence, _: Evidence) -> bool:
     """It comes back at once, with nothing, whatever it is asked."""
     runs = [seen.part(name) for name in (LATE, OTHER, ABSENT)]
     return not any(part.said() or part.traceback for part in runs) and gave_up_at_once(runs[0])
+
+
+question.knows(
+    "not_written",
+    not_written,
+    "Your function comes back at once and names no service.",
+    common.STEP_MISSING,
+    certain=True,
+    before="syntax_error",
+)
 
 
 @question.mistake("wrong_service", certain=True)
@@ -384,17 +387,20 @@ question.knows(
 )
 
 
-@question.mistake(
-    "type_never_matches",
-    says="The service was on the graph, and you looked, but never found it.",
-    next_step="get_service_names_and_types() gives pairs of a name and a *list* of types, each written like "
-    "std_srvs/srv/Empty. Ask with `type_name in types`.",
-)
 def type_never_matches(seen: Evidence, _: Evidence) -> bool:
     """It looks long enough and finds nothing, although it is there."""
     runs = [seen.part(LATE), seen.part(OTHER)]
     looked = not gave_up_at_once(runs[0]) and all(part.events for part in runs)
     return looked and not any(named(part) or _crashed(part) for part in runs)
+
+
+question.knows(
+    "type_never_matches",
+    type_never_matches,
+    "The service was on the graph, and you looked, but never found it.",
+    "get_service_names_and_types() gives pairs of a name and a *list* of types, each written like "
+    "std_srvs/srv/Empty. Ask with `type_name in types`.",
+)
 
 
 question.knows(

@@ -236,28 +236,34 @@ mismatched.asks("type_published", 2.5, "Finds the talker's type", _finds("type_p
 mismatched.asks("type_subscribed", 2.5, "Finds the listener's type", _finds("type_subscribed"))
 
 
-@mismatched.mistake(
-    "looked_too_early",
-    before="syntax_error",
-    says="Your function asked the graph before it had discovered the two nodes: a new node knows no other node yet.",
-    next_step="Wait, with a limit, until both names are in node.get_node_names_and_namespaces(); then ask what they "
-    "have.",
-)
 def looked_too_early(seen: Evidence, _: Evidence) -> bool:
     """A node was asked about before it was met."""
     missing = any("NodeNameNonExistentError" in part.traceback for part in seen)
     return missing or any(given is not None and not any(given.values()) for _, given in _wrong(seen))
 
 
-@mismatched.mistake(
-    "invented_answer",
-    says="Your answer is the same each time, but each pair of nodes is another one.",
-    next_step="The names of the two nodes are the arguments of your function: look these nodes up.",
+mismatched.knows(
+    "looked_too_early",
+    looked_too_early,
+    "Your function asked the graph before it had discovered the two nodes: a new node knows no other node yet.",
+    "Wait, with a limit, until both names are in node.get_node_names_and_namespaces(); then ask what they "
+    "have.",
+    before="syntax_error",
 )
+
+
 def invented_answer(seen: Evidence, _: Evidence) -> bool:
     """The same answer whatever was planted."""
     given = [answer(seen.part(case)) for case in CASES]
     return None not in given and all(one == given[0] for one in given)
+
+
+mismatched.knows(
+    "invented_answer",
+    invented_answer,
+    "Your answer is the same each time, but each pair of nodes is another one.",
+    "The names of the two nodes are the arguments of your function: look these nodes up.",
+)
 
 
 mismatched.knows(
@@ -304,11 +310,6 @@ def no_answer(seen: Evidence, _: Evidence) -> Advice | None:
     return None
 
 
-@mismatched.mistake(
-    "sides_swapped",
-    says="The two sides are mixed up: what you give as published is what the listener subscribes to.",
-    next_step="Look at the publishers of the first node, and at the subscriptions of the second.",
-)
 def swapped(seen: Evidence, _: Evidence) -> bool:
     """The topic that is published is given as the one that is subscribed to."""
     crossed = dict(zip(KEYS, (KEYS[1], KEYS[0], KEYS[3], KEYS[2]), strict=True))
@@ -316,6 +317,14 @@ def swapped(seen: Evidence, _: Evidence) -> bool:
         given and all(_same(key, given.get(crossed[key]), str(part.inputs[key])) for key in KEYS)
         for part, given in _wrong(seen)
     )
+
+
+mismatched.knows(
+    "sides_swapped",
+    swapped,
+    "The two sides are mixed up: what you give as published is what the listener subscribes to.",
+    "Look at the publishers of the first node, and at the subscriptions of the second.",
+)
 
 
 @mismatched.mistake("wrong_node")

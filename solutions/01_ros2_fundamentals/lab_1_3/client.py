@@ -86,17 +86,20 @@ client.knows(
 )
 
 
-@client.mistake(
-    "no_call",
-    late=True,
-    says="Your client never called the service.",
-    next_step="Make a request, fill a and b, and send it with call_async. "
-    "Lines below a raise or a return, and indented like it, are never reached. "
-    "What you add up yourself is not the answer of the server.",
-)
 def no_call(seen: Client, _: Client) -> bool:
     """It ends by itself, with a client and without a call."""
     return seen.had_client and any(part.ending and not requests(part) for part in seen.served)
+
+
+client.knows(
+    "no_call",
+    no_call,
+    "Your client never called the service.",
+    "Make a request, fill a and b, and send it with call_async. "
+    "Lines below a raise or a return, and indented like it, are never reached. "
+    "What you add up yourself is not the answer of the server.",
+    late=True,
+)
 
 
 client.knows(
@@ -107,13 +110,11 @@ client.knows(
     late=True,
     certain=Client.ended_each_time,
 )
-client.knows(
-    "sum_not_reported",
-    lambda seen, _: (part := recipe.unreported(seen)) and (service_calls.braces_left(part) or True),
-    "The call is right, but the sum is never said.",
-    "Log or print the field sum of the answer that the service gave. In a notebook, return it, too.",
-    late=True,
-    certain=Client.ended_each_time,
+client.mistake("sum_not_reported", late=True, certain=Client.ended_each_time)(
+    recipe.unreported(
+        "The call is right, but the sum is never said.",
+        "Log or print the field sum of the answer that the service gave. In a notebook, return it, too.",
+    )
 )
 
 

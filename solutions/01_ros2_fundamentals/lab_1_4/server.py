@@ -71,7 +71,7 @@ server.asks("refuse", 2, "Rejects bad orders and lives on", criteria.refuses_bad
 
 
 @server.mistake("bad_order_accepted", certain=True)
-def only_bad_orders(seen: Evidence, _: Evidence) -> bool | Advice | None:
+def only_bad_orders(seen: Evidence, _: Evidence) -> Advice | None:
     """All else is right."""
     rest = (criteria.counts, criteria.gives_feedback, criteria.serves_two_at_once, criteria.lets_cancel)
     return bad_order_accepted(seen, seen) if all(judge(seen).passed for judge in rest) else None
@@ -99,18 +99,21 @@ def goal_rejected(seen: Evidence, _: Evidence) -> Advice | None:
     )
 
 
-@server.mistake(
-    "field_typo",
-    certain=True,
-    before="cancel_not_accepted",
-    says="The goals succeed, but the result is empty: its field sequence was never filled.",
-    next_step="Set the field sequence of your result before you return it. A misspelt keyword in Fibonacci.Result(...) "
-    "is ignored silently.",
-)
 def result_never_filled(seen: Evidence, _: Evidence) -> bool:
     """Every goal succeeds with an empty sequence."""
     good = [one for one in paced_goals(seen) if one.status == SUCCEEDED]
     return bool(good) and not any(one.sequence for one in good)
+
+
+server.knows(
+    "field_typo",
+    result_never_filled,
+    "The goals succeed, but the result is empty: its field sequence was never filled.",
+    "Set the field sequence of your result before you return it. A misspelt keyword in Fibonacci.Result(...) "
+    "is ignored silently.",
+    certain=True,
+    before="cancel_not_accepted",
+)
 
 
 server.knows(

@@ -10,10 +10,11 @@ from autograder.kit.common_mistakes import STEP_MISSING
 from autograder.kit.rate import another_rate
 
 if TYPE_CHECKING:
-    from autograder.kit.draft import Recognise
+    from collections.abc import Callable
+
     from autograder.kit.evidence import Part
 
-MISTAKES: tuple[tuple[str, Recognise[Part], str, str, dict[str, Any]], ...] = (
+MISTAKES: tuple[tuple[str, Callable[[Part, Part], object], str, str, dict[str, Any]], ...] = (
     (
         "wrong_movement",
         lambda seen, expected: next((told for told in commands(seen) if told not in commands(expected)), ""),

@@ -48,13 +48,11 @@ odometer.asks("sum", 4, "Reports the sum that the service answered", service_cal
 odometer.asks("limit", 2, "Ends clearly when there is no service", service_calls.gives_up_in_time)
 
 
-odometer.knows(
-    "sum_not_reported",
-    lambda seen, _: recipe.unreported(seen),
-    "The call is right, but the sum is never said.",
-    "Log or print the sum of the answer: future.result().sum. In a notebook, return it, too.",
-    late=True,
-    certain=Client.ended_each_time,
+odometer.mistake("sum_not_reported", late=True, certain=Client.ended_each_time)(
+    recipe.unreported(
+        "The call is right, but the sum is never said.",
+        "Log or print the sum of the answer: future.result().sum. In a notebook, return it, too.",
+    )
 )
 
 
