@@ -160,7 +160,12 @@ def failed(exercise: str, title: str, max_score: float, diagnosis: Diagnosis, de
 
 
 def not_checked(exercise: str, title: str, max_score: float, reason: str, next_step: str = "") -> Verdict:
-    """The verdict for trouble of the grader's own; it earns nothing and accuses nobody."""
+    """Return the verdict for trouble of the grader's own; it earns nothing and accuses nobody.
+
+    A reason of two lines has what to do in its second line, if ``next_step`` is not given.
+    """
+    if not next_step:
+        reason, _, next_step = reason.partition("\n")
     return Verdict(
         exercise=exercise,
         title=title,

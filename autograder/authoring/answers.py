@@ -99,7 +99,8 @@ class Answer:
     def objection(self, verdict: Verdict) -> str:
         """The difference from the expected verdict, or an empty string."""
         if verdict.state == State.NOT_CHECKED:
-            return f"could not be checked: {verdict.detail}"
+            why = verdict.diagnosis.text if verdict.diagnosis and not verdict.detail else verdict.detail
+            return f"could not be checked: {why}"
         key = verdict.diagnosis.key if verdict.diagnosis else ""
         missed = "; ".join(f"{c.name}: {c.seen}" for c in verdict.criteria if not c.passed)
         if not self.diagnoses:

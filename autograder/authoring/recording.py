@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
+    from autograder.messages.orders import Report
+    from autograder.verdict import Verdict
+
 RUN_LIMIT = 600.0
 """Seconds of wall time in which one reference solution must have been seen; one may build a workspace twice."""
 
@@ -78,21 +81,7 @@ def recording(exercise_id: str) -> str:
         exercise = exercises.get(exercise_id)
     except (exercises.UnknownExercise, exercises.BrokenExercise) as error:
         raise CannotRecord(str(error)) from error
-    text = program(exercise.id)
-    with HeldFolder("autograder-record-") as folder:
-        file = folder.path / "reference_solution.py"
-        file.write_text(text, encoding="utf-8")
-        try:
-            with JudgeProcess(folder.path / "judge", seed=secrets.token_hex(8)) as judge:
-                judge.open(exercise.id, record=True)
-                output = _run(file, judge.socket_path)
-                report = judge.close_report()
-        except JudgeDied as error:
-            raise CannotRecord(f"{exercise.id}: {error}") from error
-        except subprocess.TimeoutExpired as error:
-            raise CannotRecord(
-                f"{exercise.id}: the reference solution was not seen to its end in {RUN_LIMIT:g} s"
-            ) from error
+    report, output = _judged(exercise.id, program(exercise.id), record=True)
     if report.reference is None or report.verdict is None:
         raise CannotRecord(
             f"{exercise.id}: {report.trouble or 'the solution never asked to be checked'}\n{output}".strip()
@@ -103,8 +92,36 @@ def recording(exercise_id: str) -> str:
     return report.reference
 
 
-def program(exercise_id: str) -> str:
-    """The program that is recorded: the solution of the master, and its check.
+def unsolved(exercise_id: str) -> Verdict | None:
+    """Return the verdict on the notebook as students get it; None if that ends before its check.
+
+    Raises:
+        CannotRecord: No master checks the exercise, or its master cannot be used.
+    """
+    report, _ = _judged(exercise_id, program(exercise_id, solved=False), record=False)
+    return report.verdict
+
+
+def _judged(exercise_id: str, text: str, *, record: bool) -> tuple[Report, str]:
+    """Run a program beside a judge; the judge's report, and what the program printed."""
+    with HeldFolder("autograder-record-") as folder:
+        file = folder.path / "reference_solution.py"
+        file.write_text(text, encoding="utf-8")
+        try:
+            with JudgeProcess(folder.path / "judge", seed=secrets.token_hex(8)) as judge:
+                judge.open(exercise_id, record=record)
+                output = _run(file, judge.socket_path)
+                return judge.close_report(), output
+        except JudgeDied as error:
+            raise CannotRecord(f"{exercise_id}: {error}") from error
+        except subprocess.TimeoutExpired as error:
+            raise CannotRecord(
+                f"{exercise_id}: the notebook was not seen to its end in {RUN_LIMIT:g} s"
+            ) from error
+
+
+def program(exercise_id: str, *, solved: bool = True) -> str:
+    """The program that is recorded: the solution of the master, or what students get in its place, and its check.
 
     Raises:
         CannotRecord: No master checks the exercise, or its master cannot be used.
@@ -113,7 +130,7 @@ def program(exercise_id: str) -> str:
     if not master.is_file() or exercise_id not in master.read_text(encoding="utf-8"):
         raise CannotRecord(f"{master} does not check {exercise_id}")
     try:
-        solution = reference_source(master, exercise_id)
+        solution = reference_source(master, exercise_id, solved=solved)
     except MasterError as error:
         raise CannotRecord(str(error)) from error
     return solution.source + _CALL.format(exercise=exercise_id, subject=solution.subject)

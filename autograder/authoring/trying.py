@@ -9,10 +9,13 @@ from typing import TYPE_CHECKING
 
 from autograder import exercises
 from autograder.authoring import recording
+from autograder.authoring.answer_tables import BadTable
 from autograder.authoring.answers import Answer, answers, folder_of
+from autograder.authoring.edits import CannotEdit
 from autograder.authoring.judging import Turn, judge_all, warm_up
 from autograder.authoring.readiness import still_to_do
 from autograder.cards.text import card_text
+from autograder.temporary_folders import HeldFolder
 from autograder.verdict import to_json
 from environment.installation import COMMAND
 
@@ -87,12 +90,13 @@ def try_exercise(
 ) -> bool:
     """Record or compare the reference output, judge the answers and tell what does not fit, and what is still to do.
 
-    A reference output that is not there is recorded. One that differs from what the solution does now is left as it
-    is, and no answer is judged by it: what is expected of students does not change unasked.
+    Edits that fit no line are told before anything runs. The notebook as students get it must earn no points. A
+    reference output that is not there is recorded. One that differs from what the solution does now is left as it is,
+    and no answer is judged by it: what is expected of students does not change unasked.
 
     Args:
         exercise_id: Such as ``"lab_1_2.talker"``.
-        only: Parts of the names of answers; all answers where empty. The reference output is not compared then.
+        only: Parts of the names of answers; all answers where empty. If given, only these answers are looked at.
         jobs: Answers that are judged at once.
         repeat: How many times each answer is judged, each time with other random inputs.
         transcript: A folder that gets what was seen of each answer, the last time; None where nobody wants it.
@@ -110,8 +114,10 @@ def try_exercise(
     """
     exercises.get(exercise_id)
     wanted: Sequence[Answer] = chosen(exercise_id, only)
+    _fit(wanted)
     if not (only and exercises.reference_path(exercise_id).exists()) and not _is_in_step(exercise_id, tell):
         return False
+    gifts = [] if only else list(_given(exercise_id))
     if transcript is not None:
         wanted = [Transcribed(**vars(answer), folder=transcript) for answer in wanted]
     surprises = judged(wanted, jobs=jobs, repeat=repeat, tell=tell)
@@ -120,10 +126,12 @@ def try_exercise(
     times = f", each judged {repeat} times" if repeat > 1 else ""
     count = f"{len(wanted)} answer{'s' * (len(wanted) != 1)}{times}"
     tell(f"\n{count}, {len(surprises) or 'none'} not as expected")
+    for line in gifts:
+        tell(f"the unsolved notebook earns points: {line}")
     if not only:
         for line in still_to_do(exercise_id, wanted):
             tell(f"to do: {line}")
-    return not surprises
+    return not surprises and not gifts
 
 
 def chosen(exercise_id: str, only: Sequence[str] = ()) -> list[Answer]:
@@ -190,6 +198,33 @@ def judged(
     warm_up()
     judge_all(turns, jobs=jobs, done=take, failed=fail)
     return [surprises[answer.name] for answer in wanted if answer.name in surprises]
+
+
+def _fit(wanted: Sequence[Answer]) -> None:
+    """Unpack each answer once.
+
+    Raises:
+        BadTable: Edits do not fit their bases; a line for each.
+    """
+    troubles = []
+    for answer in wanted:
+        with HeldFolder("autograder-answer-") as folder:
+            try:
+                answer.unpack(folder.path)
+            except BadTable as error:
+                troubles.append(str(error))
+            except CannotEdit as error:
+                troubles.append(f"{answer.short_name}: its change does not fit: {error}")
+    if troubles:
+        raise BadTable("\n".join(troubles))
+
+
+def _given(exercise_id: str) -> Iterator[str]:
+    """Yield the criteria that hold for the notebook as students get it: what is given must not earn points."""
+    verdict = recording.unsolved(exercise_id)
+    for one in verdict.criteria if verdict is not None else ():
+        if one.passed:
+            yield f"{one.points:g} for “{one.title}”. Give less, or let it be judged by what is not given"
 
 
 def _is_in_step(exercise_id: str, tell: Callable[[str], object]) -> bool:

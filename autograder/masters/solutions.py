@@ -49,8 +49,12 @@ class Reference:
     subject: str
 
 
-def reference_source(master: Path, exercise: str, *, points: Points = exercise_points) -> Reference:
+def reference_source(
+    master: Path, exercise: str, *, points: Points = exercise_points, solved: bool = True
+) -> Reference:
     """Return the source of everything that a notebook defines before the check of ``exercise``.
+
+    If ``solved`` is false, solution cells are as students get them.
 
     Solution cells are kept whole. Of given cells, only imports, functions, classes and constants are kept; the
     rest only demonstrates. Files are written and, if the subject is a path, shell cells are run,
@@ -62,25 +66,29 @@ def reference_source(master: Path, exercise: str, *, points: Points = exercise_p
     cells: list[Cell] = []
     for named in named_cells(master, points=points):
         if named.check is not None and named.check.exercise == exercise:
-            parts = [part for cell in cells for part in _kept(cell, shell=named.check.is_path)]
+            shell = named.check.is_path
+            parts = [part for cell in cells for part in _kept(cell, shell=shell, solved=solved)]
             return Reference("\n\n".join(parts) + "\n", named.check.subject)
         cells.append(named.cell)
     raise MasterError(master, None, f"No cell checks '{exercise}'.", f'Write one: check("{exercise}", …).')
 
 
-def _kept(cell: Cell, *, shell: bool) -> Iterator[str]:
+def _kept(cell: Cell, *, shell: bool, solved: bool) -> Iterator[str]:
     """Yield the part of one cell that the program needs.
 
     Args:
         cell: Any cell above the check.
         shell: True to run shell cells.
+        solved: False to leave the solution out.
     """
     if cell.kind not in (CellRole.SOLUTION, CellRole.GIVEN):
         return
-    if has_magic(cell.source):
-        yield from _on_disk(cell.source, shell=shell)
+    is_stub = cell.kind is CellRole.SOLUTION and not solved
+    source = find_region(cell.source).unsolved if is_stub else cell.source
+    if has_magic(source):
+        yield from _on_disk(source, shell=shell)
     elif cell.kind is CellRole.SOLUTION:
-        yield cell.source
+        yield source
     else:
         yield from _definitions(cell)
 

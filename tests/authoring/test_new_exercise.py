@@ -201,7 +201,7 @@ def test_a_new_exercise_works_and_shows_what_its_author_got_wrong(root: Path) ->
 
 @pytest.mark.ros
 @pytest.mark.slow
-def test_a_judge_that_dies_of_the_exercise_is_a_surprise(root: Path) -> None:
+def test_an_exception_of_the_exercise_is_named_with_its_line(root: Path) -> None:
     new_exercise(root, ID, "publisher")
     file = root / "solutions/01_first/lab_9_1/battery_of_mine.py"
     # In a known mistake: the criteria are asked of the solution, too.
@@ -209,9 +209,46 @@ def test_a_judge_that_dies_of_the_exercise_is_a_surprise(root: Path) -> None:
     file.write_text(file.read_text().replace("\nEXERCISE", f"\n{wrong}\nEXERCISE"))
     tried = autograder(root, "try-exercise", ID, "--only", "counter_step")
     assert tried.returncode == 1, tried.stdout + tried.stderr
-    assert "ZeroDivisionError" in tried.stderr
-    assert "wrong/counter_step.py: no verdict: the judge's process ended" in tried.stdout
+    fault = "The exercise has a fault: ZeroDivisionError: division by zero (battery_of_mine.py, line "
+    assert f"wrong/counter_step.py: could not be checked: {fault}" in tried.stdout
+    assert "Show this card to your instructor" in tried.stdout
+    assert "again" not in tried.stdout
     assert "1 answer, 1 not as expected" in tried.stdout
+
+
+def test_all_edits_that_fit_no_line_are_told_before_anything_runs(root: Path) -> None:
+    new_exercise(root, ID, "publisher")
+    lab = root / "solutions/01_first/lab_9_1"
+    table = lab / "battery_of_mine.answers/wrong/answers.toml"
+    table.write_text(table.read_text().replace("-        self.charge -= 1", "-        self.charge -= 7"))
+    tried = autograder(root, "try-exercise", ID)
+    assert tried.returncode == 2, tried.stdout + tried.stderr
+    assert tried.stderr.count("its change does not fit usual.py") == 2
+    assert "counter_step.py" in tried.stderr
+    assert "counter_stuck.py" in tried.stderr
+    assert not list(lab.glob("*.reference.json"))
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+def test_a_point_for_what_is_given_is_found(root: Path) -> None:
+    new_exercise(root, ID, "switch")
+    file = root / "solutions/01_first/lab_9_1/battery_of_mine.py"
+    file.write_text(file.read_text().replace('subject.has("service")', 'subject.has("publisher")'))
+    tried = autograder(root, "try-exercise", ID)
+    assert tried.returncode == 1, tried.stdout + tried.stderr
+    assert ", none not as expected" in tried.stdout
+    assert "the unsolved notebook earns points: 1 for “Serves the right service and type”" in tried.stdout
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+def test_each_recipe_makes_a_lab_that_is_recorded_built_and_executed(root: Path) -> None:
+    for number, recipe in enumerate(recipes(), 1):
+        new_exercise(root, f"lab_9_{number}.mine", recipe)
+    for command in ("record", "build", "execute"):
+        done = autograder(root, command)
+        assert done.returncode == 0, done.stdout + done.stderr
 
 
 @pytest.mark.ros

@@ -15,6 +15,7 @@ from autograder.judge.serving import domain
 from autograder.judge.subjects.path_subject import PathSubject
 from autograder.judge.subjects.remote_subject import RemotePath, RemoteSubject
 from autograder.judge.verdicts import keeping, record, reference, trial
+from autograder.judge.verdicts.exercise_code import WHAT_TO_DO, of_exercise
 from autograder.messages.checks import Check, Judged, Refused
 from autograder.messages.lines import Hangup, Lines, NotUnderstood
 from autograder.messages.orders import Open, Report
@@ -57,8 +58,11 @@ def converse(connection: socket.socket, order: Open | None) -> Report:
     asked = first.exercise[:MAX_NAME].encode("utf-8", "replace").decode()
     try:
         exercise = exercises.get(asked)
-    except (exercises.UnknownExercise, exercises.BrokenExercise) as error:
+    except exercises.UnknownExercise as error:
         _tell(lines, Refused(str(error)))
+        return Report()
+    except exercises.BrokenExercise as error:
+        _tell(lines, Refused(f"{' '.join(str(error).split())}\n{WHAT_TO_DO}"))
         return Report()
     if wanted.exercise and asked != wanted.exercise:
         _tell(lines, Refused(f"the check cell of {wanted.exercise} asked for {asked}"))
@@ -106,8 +110,9 @@ def _report(
                     exercise, subject, stored, seed=seed, domain_id=domain_id, marks_crowded=marks_crowded
                 )
                 return Report(checked.verdict, crowded=checked.crowded), checked
-            recorded = record.record(exercise, subject, domain_id=domain_id)
-            verdict = trial.judge(exercise, record.as_evidence(recorded), seed)
+            with of_exercise(exercise):
+                recorded = record.record(exercise, subject, domain_id=domain_id)
+                verdict = trial.judge(exercise, record.as_evidence(recorded), seed)
             return Report(verdict, reference.dump(recorded, exercise.recorded)), None
     except (domain.NoFreeDomainError, reference.NoReference, record.NotRecordable, JudgeFailed) as error:
         return Report(trouble=str(error)), None

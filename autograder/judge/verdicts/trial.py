@@ -13,6 +13,7 @@ from autograder.judge.verdicts import timeline
 from autograder.judge.verdicts.crowding import SEEN_SO_FAR, TOO_BUSY, Crowding, Hurry, OutOfTime, TooBusy
 from autograder.judge.verdicts.deciding import Undecided, limited, undecidable
 from autograder.judge.verdicts.delivery import NOT_DELIVERED, NotDelivered, delivers
+from autograder.judge.verdicts.exercise_code import of_exercise
 from autograder.judge.verdicts.misnamed import misnamed
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.in_words import of_its_kind, shortened
@@ -88,9 +89,17 @@ def check(
         marks_crowded: Return a marked verdict instead of raising TooBusy.
 
     Raises:
+        ExerciseFailed: The exercise's own code raised an exception.
         TooBusy: The machine was too busy to decide; or a student has waited for long on a busy machine.
         NotDelivered: The subject did not pass, nothing proves a mistake, and this machine lost messages.
     """
+    with of_exercise(exercise):
+        return _check(exercise, subject, reference, seed, domain_id, marks_crowded)
+
+
+def _check(
+    exercise: Exercise, subject: Subject, reference: Reference, seed: str, domain_id: int, marks_crowded: bool
+) -> Checked:
     began = time.monotonic()
     crowded, delivered = False, delivers()
     # A student waits for a check cell. A grader does not.

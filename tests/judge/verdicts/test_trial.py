@@ -8,11 +8,15 @@ from typing import TYPE_CHECKING, Any, cast
 import pytest
 
 from autograder import exercises
+from autograder.cards.text import card_text
 from autograder.judge.verdicts import crowding, reference, trial
 from autograder.judge.verdicts.crowding import ANSWER_WITHIN, Crowding, TooBusy
 from autograder.judge.verdicts.delivery import NotDelivered
-from autograder.kit.evidence import Evidence, Part
+from autograder.judge.verdicts.exercise_code import WHAT_TO_DO, ExerciseFailed
+from autograder.kit.evidence import Event, Evidence, Part
 from autograder.kit.model import Advice, Criterion, Finding, Mistake, Pace
+from autograder.kit.rules import value
+from autograder.verdict import not_checked
 
 if TYPE_CHECKING:
     from autograder.kit.model import Exercise
@@ -118,6 +122,28 @@ def test_who_checks_by_hand_is_told_that_the_machine_is_too_busy_to_tell(
     subject: Any = Anybody()
     with pytest.raises(TooBusy, match="The machine is too busy"):
         trial.check(exercise(), subject, stored, seed="s", domain_id=0)
+
+
+@pytest.mark.parametrize("place", ["criteria", "mistakes"])
+def test_an_exception_of_the_exercise_is_no_trouble_of_the_moment(
+    monkeypatch: pytest.MonkeyPatch, place: str
+) -> None:
+    def fails(*_: object) -> Any:
+        return value(Event(0.0, "message", "/any", {}))  # a line of the kit, as an author calls it
+
+    stored = reference.load(USUAL.id)
+    seen = trial.Seen(Evidence([Part("bad")], stored), doubtful=False)
+    monkeypatch.setattr(trial, "look", lambda *_, **__: seen)
+    if place == "criteria":
+        judged = replace(exercise(), criteria=(Criterion("good", "Good", 10, fails),))
+    else:
+        judged = replace(exercise(), mistakes=(Mistake("mistake", fails),))
+    subject: Any = Anybody()
+    with pytest.raises(ExerciseFailed, match=r"KeyError: 'fields' \(rules\.py, line \d+\)") as failed:
+        trial.check(judged, subject, stored, seed="s", domain_id=0)
+    card = card_text(not_checked(judged.id, judged.title, 10, str(failed.value)))
+    assert WHAT_TO_DO in card
+    assert "again" not in card
 
 
 class BusyFor:

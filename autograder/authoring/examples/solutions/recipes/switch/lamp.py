@@ -40,7 +40,7 @@ lamp = Draft(
     "Publish only while the service lamp has switched it on.",
     subject := OwnScenario(once_met(switching), "publisher", "service"),
 )
-lamp.asks("topic", 1, "Publishes on the right topic and type", subject.has("publisher"))
+lamp.asks("service", 1, "Serves the right service and type", subject.has("service"))
 
 
 def heard(seen: Part) -> list[int]:
