@@ -1,7 +1,6 @@
-"""Rules from what a subject was given to what it must make of that, and the wrong ones that students follow.
+"""What contents are the same, and rules for a subject that says from time to time how things are, by what it was given.
 
-A :class:`Rule` is for a subject that answers what it is given; a :class:`StateRule` for one that says from time to time
-how things are.
+For a subject that answers what it is given, see ``recipes/relay.py`` and ``recipes/machine.py``.
 """
 
 from __future__ import annotations
@@ -9,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import isclose, isnan
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from autograder.kit.in_words import counted
 from autograder.kit.model import Finding
@@ -20,10 +19,6 @@ if TYPE_CHECKING:
 
     from autograder.kit.draft import Judge
     from autograder.kit.evidence import Event, Part
-
-Thing = TypeVar("Thing")
-Made = TypeVar("Made")
-Row = Sequence[Any]
 
 
 class _SomeText:
@@ -47,55 +42,8 @@ def values(kind: str, name: str | None = None) -> Callable[[Part], list[Any]]:
     return lambda seen: [value(event) for event in seen.of(kind, name)]
 
 
-SENT, HEARD = values("sent"), values("message")
-"""What the judge published, and what it heard."""
-
-
-def each(rule: Callable[[Thing], Made]) -> Callable[[Sequence[Thing]], list[Made]]:
-    """The rule that makes of each thing what ``rule`` makes of it alone."""
-    return lambda given: [rule(thing) for thing in given]
-
-
-@dataclass(frozen=True)
-class Rule:
-    """A rule from all that a subject was given to all that it must make of that, both in order.
-
-    Attributes:
-        rule: From what was given to what is to be made.
-        given: What it was given, from what was seen.
-        made: What it made of that. Numbers with a point may differ by what is lost in rounding.
-    """
-
-    rule: Callable[[Row], Row]
-    given: Callable[[Part], Row] = SENT
-    made: Callable[[Part], Row] = HEARD
-
-    def finding(self, seen: Part, expected: Part) -> Finding:
-        """A criterion: it was given as much as the reference solution, and made of all of it what the rule makes.
-
-        Who ends in the middle is given less, so a scenario gives the same number of things in each run. Where the
-        subject was given nothing, the card says what the reference solution makes, in place of "expected: nothing".
-        """
-        given, made, usual = self.given(seen), self.made(seen), self.given(expected)
-        if not given:
-            return Finding(False, f"such as {in_words(self.rule(usual))}", in_words(made))
-        due = self.rule(given)
-        if len(given) < len(usual):
-            return Finding(False, f"{in_words(due)}, and more after that", in_words(made))
-        return Finding(same(made, due), in_words(due), in_words(made))
-
-    def taken_for(self, *wrong: Callable[[Row], Row]) -> Callable[[Part, Part], bool]:
-        """A mistake: all that it made is what one of these wrong rules makes, and not what the right one does.
-
-        A subject that stopped on its way is compared as far as it came.
-        """
-
-        def recognise(seen: Part, _: Part) -> bool:
-            given, made = self.given(seen), self.made(seen)
-            right, *others = (same(made, rule(given)[: len(made)]) for rule in (self.rule, *wrong))
-            return bool(made) and not right and any(others)
-
-        return recognise
+SENT = values("sent")
+"""What the judge published."""
 
 
 class Given(NamedTuple):
