@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from autograder.authoring.new_exercise import recipes
+from autograder.authoring.new_exercise import EXAMPLES, recipes
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = (ROOT / "docs/adding-an-exercise.md").read_text(encoding="utf-8")
 COMMAND = re.compile(r"^\$ \./course (.+)$", re.MULTILINE)
-EXERCISE = "lab_8_1.battery"
+EXERCISE = "lab_8_1.converter"
 WRITTEN = re.compile(r"^written .*$", re.MULTILINE)
 
 
@@ -31,9 +31,15 @@ def run(course: Path, words: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_the_page_names_every_recipe_and_fits_a_page() -> None:
+def test_the_page_names_every_recipe_and_is_short() -> None:
     assert [name for name in recipes() if f"`{name}`" not in PAGE] == []
-    assert len(PAGE.splitlines()) <= 90
+    assert len(PAGE.splitlines()) <= 130
+
+
+def test_the_page_begins_with_a_whole_exercise_that_is_tried() -> None:
+    example = EXAMPLES / "solutions/recipes/relay/converter.py"
+    shown = PAGE.partition("```python\n")[2].partition("```\n")[0]
+    assert shown == example.read_text(encoding="utf-8").replace("relay.converter", EXERCISE)
 
 
 @pytest.mark.ros
@@ -52,7 +58,7 @@ def test_the_page_does_what_it_says(tmp_path: Path) -> None:
     shown = PAGE.partition(f"$ ./course {trying}\n")[2].partition("```")[0].splitlines()
     for line in shown:
         # Which answer is judged first depends on the machine.
-        assert line.partition("/6 ")[2] in tried.stdout, line
+        assert line.partition("/7 ")[2] in tried.stdout, line
     built = run(tmp_path, building)
     assert WRITTEN.search(built.stdout), built.stdout + built.stderr
     assert {line.rstrip() for line in WRITTEN.findall(built.stdout)} <= set(PAGE.splitlines())

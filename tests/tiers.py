@@ -60,11 +60,14 @@ NIGHTLY = (
     "tests/authoring/test_recording.py::test_inputs_that_were_changed_and_not_recorded_again_are_noticed",
     "tests/grading/rebuilding/test_course_version.py::test_a_changed_byte_in_any_of_them_moves_it",
     # A chapter and an exercise of somebody else's; the first steps of one are in both tiers.
-    "tests/authoring/test_new_exercise.py::test_a_judge_that_dies_of_the_exercise_is_a_surprise",
+    "tests/authoring/test_new_exercise.py::test_an_exception_of_the_exercise_is_named_with_its_line",
+    "tests/authoring/test_new_exercise.py::test_a_point_for_what_is_given_is_found",
+    "tests/authoring/test_new_exercise.py::test_each_recipe_makes_a_lab_that_is_recorded_built_and_executed",
     "tests/authoring/test_new_exercise.py::test_what_is_expected_does_not_change_unasked",
     "tests/test_second_chapter.py",
     "tests/test_wheel.py::test_an_exercise",
-    "tests/test_adding_an_exercise.py",
+    "tests/test_adding_an_exercise.py::test_the_page_does_what_it_says",
+    "tests/test_first_exercise.py::test_the_page_does_what_it_says",
     # A browser, but for the first minutes and for texts that nobody may trust.
     "tests/browser/test_accessibility.py",
     "tests/browser/test_autograde_button.py",
