@@ -310,23 +310,6 @@ def no_answer(seen: Evidence, _: Evidence) -> Advice | None:
     return None
 
 
-def swapped(seen: Evidence, _: Evidence) -> bool:
-    """The topic that is published is given as the one that is subscribed to."""
-    crossed = dict(zip(KEYS, (KEYS[1], KEYS[0], KEYS[3], KEYS[2]), strict=True))
-    return any(
-        given and all(_same(key, given.get(crossed[key]), str(part.inputs[key])) for key in KEYS)
-        for part, given in _wrong(seen)
-    )
-
-
-mismatched.knows(
-    "sides_swapped",
-    swapped,
-    "The two sides are mixed up: what you give as published is what the listener subscribes to.",
-    "Look at the publishers of the first node, and at the subscriptions of the second.",
-)
-
-
 @mismatched.mistake("wrong_node")
 def wrong_node(seen: Evidence, _: Evidence) -> Advice | None:
     """A topic that every node has, or that another node has, is given as the answer."""
@@ -342,35 +325,6 @@ def wrong_node(seen: Evidence, _: Evidence) -> Advice | None:
             return Advice(
                 f"Your answer names {named}, of a third node that has nothing to do with it.",
                 "Ask for the topics of the two nodes you were given, not for all that there are.",
-            )
-    return None
-
-
-@mismatched.mistake("one_side_only")
-def one_side_only(seen: Evidence, _: Evidence) -> Advice | None:
-    """One side's answer is given for both."""
-    for part, answered in _wrong(seen):
-        for what in ("topic", "type"):
-            sides = (f"{what}_published", f"{what}_subscribed")
-            one, two = ((answered or {}).get(side) for side in sides)
-            if one is not None and one == two and part.inputs[sides[0]] != part.inputs[sides[1]]:
-                return Advice(
-                    f"Your answer has the same {what} on both sides, {one}; the two nodes use different ones.",
-                    "Ask the graph about each node by itself: the publishers of the first, the subscriptions of the "
-                    "second.",
-                )
-    return None
-
-
-@mismatched.mistake("wrong_type")
-def type_missing(seen: Evidence, _: Evidence) -> Advice | None:
-    """The names are right, and a type is not."""
-    for part, given in _wrong(seen):
-        if given and all(_same(key, given.get(key), str(part.inputs[key])) for key in KEYS[:2]):
-            return Advice(
-                f"The topics are right, but not the types: you give {given.get(KEYS[2])} and {given.get(KEYS[3])}.",
-                "A topic's type is beside its name, in get_publisher_names_and_types_by_node as in `ros2 topic "
-                "list -t`. The two sides may have different ones.",
             )
     return None
 
