@@ -75,6 +75,8 @@ def test_what_the_reference_counts_is_right_even_if_nobody_heard_its_first_messa
     late = [Event(e.t + 2.0, e.kind, e.name, e.data, e.sim) for e in heard(later, first=3)]
     assert failed(evidence(due, late)) == set()
     assert failed(evidence(due, heard(later))) == {"counts"}
+    too_soon = heard(later, first=3)
+    assert failed(evidence(due, too_soon)) == {"rate"}
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING, Any
 
@@ -175,6 +176,12 @@ USUAL = run([(True, ""), (False, "so already"), (True, "")], [(2, 1, True), (3, 
 def test_a_machine_is_judged_by_its_steps(seen: Sequence[Event], failed: set[str], told: set[str]) -> None:
     assert {name for name, holds in passed(door(), seen, USUAL).items() if not holds} == failed
     assert diagnoses(door(), seen) == told
+
+
+def test_the_ready_made_mistakes_are_explained_to_students() -> None:
+    page = (Path(__file__).parents[2] / "docs/mistakes.md").read_text(encoding="utf-8")
+    for key in ("not_copied", "too_early", "told_too_often", "not_latched"):
+        assert f"### `{key}`\n" in page
 
 
 def test_nan_is_nan_and_some_text_is_any_text_but_a_blank_one() -> None:
