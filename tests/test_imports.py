@@ -99,6 +99,19 @@ def test_a_part_of_the_notebook_imports_only_what_is_below(part: str) -> None:
     assert not wrong, "\n".join(wrong)
 
 
+def test_what_was_handed_in_is_parsed_by_a_desk_alone() -> None:
+    of_the_class = {
+        "rebuilding/named_cells.py",
+        "collecting/handed_out.py",
+    }  # its own sources, and what it releases
+    users = {
+        path.relative_to(PACKAGE / "grading").as_posix()
+        for path, _, name in imports(PACKAGE)
+        if name in ("autograder.grading.rebuilding.parsing.parse", "autograder.grading.rebuilding.parsing")
+    }
+    assert users == {"rebuilding/desk_process.py", *of_the_class}
+
+
 def test_no_folder_of_the_package_is_a_long_list() -> None:
     counts = {path.parent: len(list(path.parent.glob("*.py"))) for path in PACKAGE.rglob("*.py")}
     wrong = [f"{folder.relative_to(ROOT)}: {count}" for folder, count in counts.items() if count > MOST_FILES]

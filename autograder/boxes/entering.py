@@ -16,7 +16,7 @@ from typing import Any
 from autograder.boxes import syscalls
 from autograder.boxes.cgroups import join, memberships
 from autograder.boxes.channel import Channel, ChannelClosed, close_all
-from autograder.boxes.seccomp_filter import filter_for_boxes
+from autograder.boxes.seccomp_filter import filter_for_boxes, filter_for_readers
 from autograder.process_trees import adopt_orphans, die_with_parent, end_descendants
 
 Run = Callable[[Mapping[str, Any], Sequence[int]], None]
@@ -41,6 +41,8 @@ class Entrance:
         rlimits: Limits of each process, by the name that :mod:`resource` gives them.
         hidden_memory: See :func:`autograder.boxes.seccomp_filter.filter_for_boxes`.
         call: What ``run`` is told.
+        reader_seconds: Limit in seconds of processor time for a process that may only read its descriptors and write
+            to them (:func:`autograder.boxes.seccomp_filter.filter_for_readers`); 0 for any other process.
     """
 
     cwd: str
@@ -50,6 +52,7 @@ class Entrance:
     rlimits: Mapping[str, int] = field(default_factory=dict)
     hidden_memory: bool = True
     call: Mapping[str, Any] = field(default_factory=dict)
+    reader_seconds: int = 0
 
 
 def enter(channel: Channel, run: Run) -> None:
@@ -108,10 +111,13 @@ def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
         if entrance.boxed:
             close_all(descriptors[:1])
             descriptors = descriptors[1:]
-            give_up_rights(hidden_memory=entrance.hidden_memory)
+            filters = filter_for_boxes(hidden_memory=entrance.hidden_memory)
+            give_up_rights(b"" if entrance.reader_seconds else filters)
         # Given up rights take this away (prctl(2)), so it comes after them. Our parent is in another PID namespace.
         die_with_parent()
         signal.signal(signal.SIGINT, signal.default_int_handler)
+        if entrance.reader_seconds:
+            _become_a_reader(entrance.reader_seconds)
         run(entrance.call, descriptors)
         code = 0
     except SystemExit as error:
@@ -125,12 +131,21 @@ def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
         os._exit(code)
 
 
-def give_up_rights(*, hidden_memory: bool) -> None:
+def give_up_rights(filters: bytes) -> None:
     """No capability, none to be had by executing anything, and the filter of system calls."""
     syscalls.drop_capabilities()
-    syscalls.filter_system_calls(filter_for_boxes(hidden_memory=hidden_memory))
+    syscalls.filter_system_calls(filters)
     # A process that changed its rights does not own its /proc/self any more, which programs read.
     syscalls.prctl(syscalls.PR_SET_DUMPABLE, 1)
+
+
+def _become_a_reader(seconds: int) -> None:
+    """Take the limit on processor time and the filter of readers, with which SIGXCPU cannot be caught.
+
+    SIGXCPU comes a second before SIGKILL, so that it tells the limit from a machine that is out of memory.
+    """
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
+    syscalls.filter_system_calls(filter_for_readers())
 
 
 def take_limits(cgroups: Sequence[str], rlimits: Mapping[str, int]) -> None:

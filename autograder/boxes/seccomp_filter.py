@@ -72,6 +72,22 @@ _EVERYWHERE: Mapping[str, int] = {
     "pidfd_getfd": 438, "mount_setattr": 442, "quotactl_fd": 443, "memfd_secret": 447,
     "setxattrat": 463,
 }  # fmt: skip
+_READERS: Mapping[str, Mapping[str, int]] = {
+    "x86_64": {
+        "read": 0, "write": 1, "close": 3, "lseek": 8, "mmap": 9, "mprotect": 10, "munmap": 11, "brk": 12,
+        "rt_sigreturn": 15, "pread64": 17, "mremap": 25, "madvise": 28, "exit": 60, "clock_gettime": 228,
+        "exit_group": 231,
+    },
+    "aarch64": {
+        "close": 57, "lseek": 62, "read": 63, "write": 64, "pread64": 67, "exit": 93, "exit_group": 94,
+        "clock_gettime": 113, "rt_sigreturn": 139, "brk": 214, "munmap": 215, "mremap": 216, "mmap": 222,
+        "mprotect": 226, "madvise": 233,
+    },
+}  # fmt: skip
+"""The system calls of a reader. None of them opens, starts, sends or waits, and none sets up a handler of signals."""
+_FUTEX = {"x86_64": 202, "aarch64": 98}
+_FUTEX_WAKE = (1, 129)
+"""FUTEX_WAKE, and the same in one process (linux/futex.h). A lock that was free calls it; nothing can wait for one."""
 _BY_ARGUMENT = {"clone", "clone3", "socket", "socketpair", "setsockopt", "ioctl", "fcntl", "prctl"}
 _ATTRIBUTES = {"setxattr", "lsetxattr", "fsetxattr", "setxattrat"}
 _HIDDEN_MEMORY = {"memfd_create", "shmget", "vmsplice"}
@@ -141,14 +157,7 @@ def filter_for_boxes(*, hidden_memory: bool = True, machine: str = "") -> bytes:
         for name, number in known.calls.items()
         if name not in _BY_ARGUMENT and not (hidden_memory and name in _HIDDEN_MEMORY)
     )
-    program = [
-        (_LOAD, 0, 0, _ARCH),
-        (_JUMP_EQUAL, 1, 0, known.audit),
-        (_RETURN, 0, 0, _KILL),
-        (_LOAD, 0, 0, _NUMBER),
-    ]
-    if known.x32:
-        program += [(_JUMP_AT_LEAST, 0, 1, 0x40000000), _fail(errno.ENOSYS)]
+    program = _beginning(known)
     attributes = {known.calls[name] for name in _ATTRIBUTES}
     for number in refused:
         why = errno.EOPNOTSUPP if number in attributes else errno.EPERM
@@ -163,10 +172,47 @@ def filter_for_boxes(*, hidden_memory: bool = True, machine: str = "") -> bytes:
     program += _where(calls["socket"], _decide_on_socket())
     program += _where(calls["socketpair"], _refuse_others(0, (socket.AF_UNIX,), errno.EAFNOSUPPORT))
     program.append((_RETURN, 0, 0, _ALLOW))
-    return b"".join(struct.pack("=HBBI", *instruction) for instruction in program)
+    return _packed(program)
+
+
+def filter_for_readers(machine: str = "") -> bytes:
+    """Return the filter of a process that only reads what it was given and writes its answer.
+
+    Such a process can open nothing, start nothing, reach no other process, and not sleep: it ends, or its processor
+    time is used up. So processes of several students can be in one box, and nothing of one is left for the next.
+
+    Args:
+        machine: As for :func:`filter_for_boxes`.
+    """
+    machine = machine or platform.machine()
+    known = ARCHITECTURES.get(machine)
+    if known is None:
+        return b""
+    program = _beginning(known)
+    for number in sorted(_READERS[machine].values()):
+        program += [(_JUMP_EQUAL, 0, 1, number), (_RETURN, 0, 0, _ALLOW)]
+    program += _where(_FUTEX[machine], _refuse_others(1, _FUTEX_WAKE, errno.EPERM))
+    return _packed([*program, _fail(errno.EPERM)])
 
 
 _Instruction = tuple[int, int, int, int]
+
+
+def _beginning(known: Architecture) -> list[_Instruction]:
+    """Kill a process that makes calls of another architecture, and load the number of the call."""
+    program = [
+        (_LOAD, 0, 0, _ARCH),
+        (_JUMP_EQUAL, 1, 0, known.audit),
+        (_RETURN, 0, 0, _KILL),
+        (_LOAD, 0, 0, _NUMBER),
+    ]
+    if known.x32:
+        program += [(_JUMP_AT_LEAST, 0, 1, 0x40000000), _fail(errno.ENOSYS)]
+    return program
+
+
+def _packed(program: Sequence[_Instruction]) -> bytes:
+    return b"".join(struct.pack("=HBBI", *instruction) for instruction in program)
 
 
 def _fail(number: int) -> _Instruction:

@@ -11,7 +11,13 @@ from pathlib import Path
 
 import pytest
 
-from autograder.boxes.seccomp_filter import ARCHITECTURES, filter_for_boxes
+from autograder.boxes.seccomp_filter import (
+    _FUTEX,
+    _READERS,
+    ARCHITECTURES,
+    filter_for_boxes,
+    filter_for_readers,
+)
 from autograder.boxes.syscalls import (
     CLONE_FILES,
     CLONE_NEWNET,
@@ -28,13 +34,17 @@ HEADERS = {
 
 
 def decide(machine: str, name: str | int, *arguments: int, audit: int = 0, hidden_memory: bool = True) -> int:
-    """What the filter says to a call (linux/seccomp.h, struct seccomp_data)."""
+    """What the filter of boxes says to a call."""
+    program = filter_for_boxes(machine=machine, hidden_memory=hidden_memory)
+    return _says(program, machine, name, *arguments, audit=audit)
+
+
+def _says(program_bytes: bytes, machine: str, name: str | int, *arguments: int, audit: int = 0) -> int:
+    """What a filter says to a call (linux/seccomp.h, struct seccomp_data)."""
     known = ARCHITECTURES[machine]
     number = name if isinstance(name, int) else known.calls[name]
     data = struct.pack("=IIQ6Q", number, audit or known.audit, 0, *(*arguments, *[0] * 6)[:6])
-    program = list(
-        struct.iter_unpack("=HBBI", filter_for_boxes(machine=machine, hidden_memory=hidden_memory))
-    )
+    program = list(struct.iter_unpack("=HBBI", program_bytes))
     register = position = 0
     while True:
         code, yes, no, value = program[position]
@@ -155,6 +165,18 @@ def test_hidden_memory_only_where_it_is_counted(machine: str) -> None:
 
 
 @machines
+def test_a_reader_reads_writes_has_memory_and_ends(machine: str) -> None:
+    program = filter_for_readers(machine)
+    allowed = {number for number in range(500) if _says(program, machine, number, 3, 1) == ALLOW}
+    assert allowed == {*_READERS[machine].values(), _FUTEX[machine]}
+    for operation in (0, 9, 128, 137):  # those that wait
+        assert _says(program, machine, _FUTEX[machine], 3, operation) == ERRNO | errno.EPERM
+    for name in ARCHITECTURES[machine].calls:
+        assert _says(program, machine, name) != ALLOW, name
+    assert _says(program, machine, 0, audit=0x40000003) == KILL
+
+
+@machines
 def test_another_machines_calls_end_the_process(machine: str) -> None:
     assert decide(machine, 0, audit=0x40000003) == KILL  # 32-bit x86
     if ARCHITECTURES[machine].x32:
@@ -167,7 +189,7 @@ def test_the_numbers_are_the_kernels(machine: str) -> None:
     if not header.exists():
         pytest.skip(f"{header} is not installed")
     official = {name: int(number) for name, number in re.findall(pattern, header.read_text())}
-    ours = ARCHITECTURES[machine].calls
+    ours = {**ARCHITECTURES[machine].calls, **_READERS[machine], "futex": _FUTEX[machine]}
     assert {name: official[name] for name in ours if name in official} == {
         name: number for name, number in ours.items() if name in official
     }
@@ -175,4 +197,4 @@ def test_the_numbers_are_the_kernels(machine: str) -> None:
 
 
 def test_a_machine_that_is_not_known_has_no_filter() -> None:
-    assert filter_for_boxes(machine="riscv64") == b""
+    assert filter_for_boxes(machine="riscv64") == filter_for_readers("riscv64") == b""

@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.collecting.forms import base_and_number
-from autograder.grading.rebuilding.submission import UnreadableSubmission, parse
+from autograder.grading.rebuilding.desk import read_notebook
+from autograder.grading.rebuilding.submission import UnreadableSubmission
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.rebuilding.named_cells import Target
     from autograder.grading.rebuilding.submission import SubmittedCell
@@ -139,9 +142,9 @@ class AssignmentOf:
         return dict(found)
 
 
-def _cells(data: bytes) -> list[SubmittedCell]:
+def _cells(data: bytes) -> Sequence[SubmittedCell]:
     """A notebook's cells; none of what cannot be read."""
     try:
-        return parse(data)[0]
+        return read_notebook(data)[0]
     except UnreadableSubmission:
-        return []
+        return ()

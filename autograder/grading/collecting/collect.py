@@ -22,7 +22,7 @@ from autograder.grading.collecting.proposals import Edit, Proposals, entries_of,
 from autograder.grading.collecting.student_of import StudentOf
 from autograder.grading.collecting.table import Table
 from autograder.grading.errors import GradingError, check_known
-from autograder.grading.rebuilding.submission import why_unreadable
+from autograder.grading.rebuilding.desk import why_unreadable
 from autograder.grading.table.roster import enter_roster, read_roster
 from autograder.regular_files import name_as_text
 

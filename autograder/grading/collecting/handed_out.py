@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.errors import GradingError
+from autograder.grading.rebuilding.desk import read_notebook
+from autograder.grading.rebuilding.parsing import parse
 from autograder.grading.rebuilding.rebuild import grade_id, is_answer
-from autograder.grading.rebuilding.submission import UnreadableSubmission, parse, read_bytes
+from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 
 if TYPE_CHECKING:
     from autograder.grading.classes.class_directory import ClassDirectory
@@ -31,7 +33,7 @@ class HandedOut:
         Where the class's notebook cannot be read, every notebook may be work. What cannot be read is none.
         """
         try:
-            cells, _ = parse(data)
+            cells, _ = read_notebook(data)
         except UnreadableSubmission:
             return False
         given, theirs = self._texts(assignment, notebook)

@@ -6,7 +6,8 @@ import functools
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from autograder.grading.rebuilding.submission import UnreadableSubmission, parse
+from autograder.grading.rebuilding.parsing import parse
+from autograder.grading.rebuilding.submission import UnreadableSubmission
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable

@@ -1,42 +1,37 @@
-"""Reading what a student handed in, believing nothing but the text of the cells."""
+"""Read a file that a student handed in, and define what is taken over from it: the text of the cells."""
 
 from __future__ import annotations
 
 import contextlib
-import gc
 import itertools
-import json
 import os
 import stat
-from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Annotated
 
-import re2
+import msgspec
 
-from autograder.boxes.execution import CellType
-from autograder.boxes.outputs import IMAGES
+from autograder.boxes.execution import CellType  # noqa: TC001  (msgspec reads the annotations)
 from autograder.regular_files import files_below, opened
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
 MAX_BYTES = 50_000_000
 """A notebook with many pictures in its outputs has a few megabytes."""
-MAX_VALUES = 3_000_000
-"""Lists, objects and the values in them, each of which takes some fifty bytes of memory; a picture is a single text."""
 MAX_CELLS = 2_000
 MAX_CELL_CHARACTERS = 100_000
 """Of one cell; what students write has a few thousand."""
 MAX_CHARACTERS = 1_000_000
 """Of all cells together."""
+LONGEST_REASON = 300
+"""Limit of a sentence of the desk in characters."""
+LONGEST_NAME = 200
+"""Limit of the name of a cell or a picture in characters."""
 HARMLESS_LENGTH = 6_000
 """Of a notebook's own cells that become a page without a trial: the worst of them take less than a page's budget."""
-_QUOTED = re2.compile(r'(?s)"(?:[^"\\]|\\.)*"')
-"""A text in JSON."""
-_BASE64 = re2.compile(r"[A-Za-z0-9+/=\s]+")
 _LONGEST_SHOWN = 80
-_CELL_TYPES = tuple(CellType)
 _KINDS = {
     stat.S_ISLNK: "a link",
     stat.S_ISDIR: "a folder",
@@ -51,7 +46,8 @@ class UnreadableSubmission(ValueError):
     """The submission cannot be taken as a notebook; the message is a sentence for the student."""
 
 
-Picture = tuple[str, str, str]
+_Name = Annotated[str, msgspec.Meta(max_length=LONGEST_NAME)]
+Picture = tuple[_Name, str, str]
 
 
 @dataclass(frozen=True)
@@ -68,11 +64,33 @@ class SubmittedCell:
     """
 
     kind: CellType
-    source: str
-    grade_id: str = ""
-    identifier: str = ""
+    source: Annotated[str, msgspec.Meta(max_length=MAX_CELL_CHARACTERS)]
+    grade_id: _Name = ""
+    identifier: _Name = ""
     is_graded: bool = False
     pictures: tuple[Picture, ...] = ()
+
+
+class ReadNotebook(msgspec.Struct, frozen=True, tag=True):
+    """The answer of the desk about a file that is a notebook.
+
+    Attributes:
+        cells: The cells of the notebook.
+        left_out: The number of cells that were left out because they had not the form of a cell.
+    """
+
+    cells: Annotated[tuple[SubmittedCell, ...], msgspec.Meta(max_length=MAX_CELLS)]
+    left_out: Annotated[int, msgspec.Meta(ge=0, le=MAX_CELLS)]
+
+
+class Unreadable(msgspec.Struct, frozen=True, tag=True):
+    """The answer of the desk about any other file.
+
+    Attributes:
+        reason: A sentence for the student.
+    """
+
+    reason: Annotated[str, msgspec.Meta(min_length=1, max_length=LONGEST_REASON)]
 
 
 class NotAFile(UnreadableSubmission):
@@ -178,142 +196,3 @@ def _shown(name: str) -> str:
     """A file's name as it can be in any text: a student chose it, or a program that a student wrote."""
     name = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in name)
     return name if len(name) <= _LONGEST_SHOWN else f"{name[:_LONGEST_SHOWN]}…"
-
-
-def parse(data: bytes) -> tuple[list[SubmittedCell], int]:
-    """The cells of a submitted notebook.
-
-    Returns:
-        The cells, and the number of those that were left out because they had not the form of a cell.
-
-    Raises:
-        UnreadableSubmission: The file is not a notebook.
-    """
-    notebook = _decoded(data)
-    if not isinstance(notebook, Mapping) or not isinstance(notebook.get("nbformat"), int):
-        raise UnreadableSubmission("The file is JSON, but not a Jupyter notebook.")
-    cells = _raw_cells(notebook)
-    if len(cells) > MAX_CELLS:
-        raise UnreadableSubmission(f"The notebook has {len(cells)} cells; the limit is {MAX_CELLS}.")
-    taken = [cell for cell in map(_cell, cells) if cell is not None]
-    characters = sum(len(cell.source) for cell in taken)
-    if characters > MAX_CHARACTERS:
-        raise UnreadableSubmission(
-            f"The cells of the notebook have {characters} characters; the limit is {MAX_CHARACTERS}."
-        )
-    return taken, len(cells) - len(taken)
-
-
-@contextlib.contextmanager
-def without_garbage_collection() -> Iterator[None]:
-    """Collect no garbage meanwhile: each collection would go through all objects of the process."""
-    collects = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if collects:
-            gc.enable()
-
-
-def why_unreadable(data: bytes) -> str:
-    """Return the reason why these bytes cannot be taken as a notebook, for the student; empty if they can be."""
-    try:
-        parse(data)
-    except UnreadableSubmission as error:
-        return str(error)
-    return ""
-
-
-def _decoded(data: bytes) -> Any:
-    if not data.strip(b"\0 \t\r\n"):
-        raise UnreadableSubmission(
-            f"The file is empty: {len(data)} bytes, and no text. Save the notebook in JupyterLab and hand in that file."
-        )
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise UnreadableSubmission(
-            f"The file is not a notebook: it is not UTF-8 text (byte {error.start}). "
-            "Save the notebook in JupyterLab and hand in that file."
-        ) from None
-    # A quoted string counts once, even if it contains a million printed numbers.
-    if _values(text) > MAX_VALUES and _values(_QUOTED.sub("", text)) > MAX_VALUES:
-        raise UnreadableSubmission(
-            f"The file has more than {MAX_VALUES:,} values, far more than a notebook has."
-        )
-    try:
-        # Nothing that is made here can be freed, but the collector would look for it again and again.
-        with without_garbage_collection():
-            return json.loads(text)
-    except (RecursionError, MemoryError):
-        raise UnreadableSubmission("The file is not a notebook: its JSON is nested too deeply.") from None
-    except ValueError as error:
-        raise UnreadableSubmission(
-            f"The file is not a notebook: it is not JSON ({error}). "
-            "Save the notebook in JupyterLab and hand in that file."
-        ) from None
-
-
-def _values(text: str) -> int:
-    return sum(map(text.count, "[{,"))
-
-
-def _raw_cells(notebook: Mapping[str, Any]) -> list[Any]:
-    if notebook["nbformat"] == 3 and isinstance(notebook.get("worksheets"), list):
-        sheets = [sheet.get("cells") for sheet in notebook["worksheets"] if isinstance(sheet, Mapping)]
-        return [_from_version_3(cell) for cells in sheets if isinstance(cells, list) for cell in cells]
-    cells = notebook.get("cells")
-    if notebook["nbformat"] != 4 or not isinstance(cells, list):
-        raise UnreadableSubmission(
-            f"This is not a notebook of format 4 (the file says format {str(notebook['nbformat'])[:20]})."
-        )
-    return cells
-
-
-def _from_version_3(cell: Any) -> Any:
-    if not isinstance(cell, Mapping):
-        return cell
-    return {**cell, "source": cell.get("input", cell.get("source"))}
-
-
-def _cell(cell: Any) -> SubmittedCell | None:
-    if not isinstance(cell, Mapping) or cell.get("cell_type") not in _CELL_TYPES:
-        return None
-    source = cell.get("source")
-    if isinstance(source, list) and all(isinstance(line, str) for line in source):
-        source = "".join(source)
-    if not isinstance(source, str) or len(source) > MAX_CELL_CHARACTERS:
-        return None
-    metadata = cell.get("metadata")
-    marks = metadata.get("nbgrader") if isinstance(metadata, Mapping) else None
-    marks = marks if isinstance(marks, Mapping) else {}
-    return SubmittedCell(
-        CellType(cell["cell_type"]),
-        _text(source),
-        _name(marks.get("grade_id")),
-        _name(cell.get("id")),
-        marks.get("grade") is True,
-        tuple(_pictures(cell)),
-    )
-
-
-def _pictures(cell: Mapping[str, Any]) -> Iterator[Picture]:
-    """The attached bitmaps; a drawing that may hold a script is none of them."""
-    attached = cell.get("attachments")
-    for name, kinds in attached.items() if isinstance(attached, Mapping) else ():
-        for kind in IMAGES if isinstance(kinds, Mapping) else ():
-            data = kinds.get(kind)
-            data = "".join(data) if isinstance(data, list) and all(isinstance(x, str) for x in data) else data
-            if isinstance(data, str) and _BASE64.fullmatch(data):
-                yield _name(name), kind, data
-                break
-
-
-def _name(value: Any) -> str:
-    return _text(value)[:200] if isinstance(value, str) else ""
-
-
-def _text(value: str) -> str:
-    """A text that can be written to a file: a lone surrogate is legal JSON, but it has no UTF-8."""
-    return value.encode("utf-8", "replace").decode("utf-8")

@@ -14,6 +14,7 @@ from autograder.grading.classes.configuration import limits_of
 from autograder.grading.classes.seeds import seed_for
 from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.rebuilding.demonstrations import are_run, demonstrations_of
+from autograder.grading.rebuilding.desk import read_notebook
 from autograder.grading.rebuilding.master import check_of
 from autograder.grading.rebuilding.rebuild import (
     grade_id,
@@ -22,7 +23,7 @@ from autograder.grading.rebuilding.rebuild import (
     rebuild,
     rebuild_unreadable,
 )
-from autograder.grading.rebuilding.submission import UnreadableSubmission, parse, read_bytes
+from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.grading.running import sandboxing
 from autograder.grading.task import Task
 
@@ -77,7 +78,7 @@ def _rebuilt(
     """Return the notebook that represents the submitted file, and why it was not used (empty if it was)."""
     path = submission.folder / f"{notebook}{SUFFIX}"
     try:
-        cells, left_out = parse(read_bytes(path))
+        cells, left_out = read_notebook(read_bytes(path))
         if is_of_another(master, cells):
             raise UnreadableSubmission(
                 f"The cells of {path.name} are those of another assignment: the notebook of this one is missing."

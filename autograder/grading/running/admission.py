@@ -1,6 +1,7 @@
-"""Check the answers of workers, on this machine as on others, before anything of them is used.
+"""Check the answers of desks and of workers, on this machine as on others, before anything of them is used.
 
-A worker executes students' programs, so one of them may have taken it over. An admitted answer has the form of an
+A desk parses a student's file, and a worker executes students' programs, so a student may have taken either over. An
+admitted document of a desk is one that some notebook could have. An admitted answer of a worker has the form of an
 execution of the task that was asked for, points within the limits of its checks, and outputs without anything that a
 browser would run.
 """
@@ -13,7 +14,14 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder.boxes.execution import Execution
-from autograder.boxes.outputs import Budget, OutputCollector
+from autograder.boxes.outputs import IMAGES, Budget, OutputCollector
+from autograder.grading.rebuilding.parsing import BASE64
+from autograder.grading.rebuilding.submission import (
+    MAX_BYTES,
+    MAX_CHARACTERS,
+    ReadNotebook,
+    Unreadable,
+)
 from autograder.grading.running.orders import LARGEST_ANSWER, Offer
 from autograder.verdict import State
 
@@ -24,6 +32,8 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 LARGEST_OFFER = 4_000
+LARGEST_DOCUMENT = MAX_BYTES + 14_000_000
+"""Limit of a desk's document in bytes. Pictures are as long as in the file; a character of a text has up to 6 bytes."""
 _MOST_SLOTS = 1_000
 _LONGEST_WORDS = 1_000
 _CLOSING_LINE = 200
@@ -31,7 +41,7 @@ _CLOSING_LINE = 200
 
 
 class Forged(ValueError):
-    """The answer of a worker is not possible; the message says why."""
+    """The answer of a worker or a desk is not possible; the message says why."""
 
 
 def admitted_offer(data: bytes) -> Offer:
@@ -49,6 +59,28 @@ def admitted_offer(data: bytes) -> Offer:
     if not 1 <= offer.slots <= _MOST_SLOTS:
         raise Forged(f"it offers to execute {offer.slots} notebooks at once")
     return offer
+
+
+def admitted_notebook(data: bytes) -> ReadNotebook | Unreadable:
+    """Return the document of a desk, checked.
+
+    Raises:
+        Forged: The data is not such a document.
+    """
+    if len(data) > LARGEST_DOCUMENT:
+        raise Forged(f"its document has {len(data)} bytes")
+    try:
+        document = msgspec.json.decode(data, type=ReadNotebook | Unreadable)
+    except (msgspec.MsgspecError, RecursionError, UnicodeError) as error:
+        raise Forged(f"its document is not valid: {error}") from error
+    if isinstance(document, Unreadable):
+        return Unreadable(printable(document.reason))
+    if sum(len(cell.source) for cell in document.cells) > MAX_CHARACTERS:
+        raise Forged("its document has too many characters")
+    for _, kind, picture in (one for cell in document.cells for one in cell.pictures):
+        if kind not in IMAGES or not BASE64.fullmatch(picture):
+            raise Forged("its document has a picture that is not a bitmap")
+    return document
 
 
 def admitted(data: bytes, task: Task) -> Execution:

@@ -9,8 +9,9 @@ from autograder.boxes.execution import CellType
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.errors import MasterUnusable
 from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding.desk import read_notebook
 from autograder.grading.rebuilding.rebuild import grade_id, is_answer
-from autograder.grading.rebuilding.submission import NotAFile, UnreadableSubmission, parse, read_bytes
+from autograder.grading.rebuilding.submission import NotAFile, UnreadableSubmission, read_bytes
 
 if TYPE_CHECKING:
     from nbformat import NotebookNode
@@ -88,7 +89,7 @@ def read_answers(
     for submission in submissions:
         who = f"{submission.student}/{assignment}"
         try:
-            cells, left_out = parse(read_bytes(submission.folder / f"{notebook}{SUFFIX}"))
+            cells, left_out = read_notebook(read_bytes(submission.folder / f"{notebook}{SUFFIX}"))
         except NotAFile:
             continue  # it is among what the class refuses
         except UnreadableSubmission as error:

@@ -11,8 +11,9 @@ import pytest
 from nbformat import NotebookNode
 
 from autograder.boxes.execution import CellType
+from autograder.grading.rebuilding.parsing import parse
 from autograder.grading.rebuilding.rebuild import rebuild
-from autograder.grading.rebuilding.submission import SubmittedCell, parse
+from autograder.grading.rebuilding.submission import SubmittedCell
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -8,7 +8,8 @@ import pytest
 
 from autograder.boxes.execution import CellType
 from autograder.grading.rebuilding import submission
-from autograder.grading.rebuilding.submission import SubmittedCell, UnreadableSubmission, parse, read_bytes
+from autograder.grading.rebuilding.parsing import parse
+from autograder.grading.rebuilding.submission import SubmittedCell, UnreadableSubmission, read_bytes
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -1,0 +1,210 @@
+"""Read what students handed in: each file is parsed by a desk, a process of its own in a box.
+
+.. code-block:: python
+
+    cells, left_out = read_notebook(read_bytes(path))
+
+Code that has taken over a desk decides only what is said of this one file. The document that comes out is checked
+(:func:`autograder.grading.running.admission.admitted_notebook`). An impossible document or a desk that fails is the
+fault of the file. A machine without namespaces for a box still has the process, its limits and its filter of system
+calls.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import os
+import shutil
+import signal
+import threading
+from typing import TYPE_CHECKING
+
+from autograder.boxes.boxed_processes import ForkedProcess
+from autograder.boxes.channel import ChannelClosed
+from autograder.boxes.entering import Entrance
+from autograder.boxes.environment import base_environment
+from autograder.boxes.fork_server import BESIDE, FOLDER_PREFIX, INSIDE, SUPERVISOR_MODULE, ForkServer
+from autograder.boxes.sandbox import Enclosure, NoSandbox
+from autograder.grading.errors import GradingError
+from autograder.grading.rebuilding.submission import Unreadable, UnreadableSubmission
+from autograder.grading.running.admission import LARGEST_DOCUMENT, Forged, admitted_notebook
+from autograder.temporary_folders import HeldFolder
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from autograder.boxes.box import Box
+    from autograder.grading.rebuilding.submission import SubmittedCell
+
+MODULE = "autograder.grading.rebuilding.desk_process"
+MEMORY_BYTES = 700_000_000
+"""Limit of a desk's address space. A file of 50 MB with a picture and an emoji in it takes two thirds of that."""
+CPU_SECONDS = 20
+"""Limit of a desk's processor time; a file of 50 MB takes two seconds."""
+_SAMPLE = b'{"nbformat": 4, "metadata": {}, "cells": [{"cell_type": "code", "source": "x"}]}'
+_WALL_SECONDS = 600.0
+"""Limit in seconds. A desk cannot sleep, so only a machine that was stopped takes so long."""
+_ATTEMPTS = 3
+_AS_SAVED = "Save the notebook in JupyterLab and hand in that file."
+_TOO_LONG = f"To read the file takes far more time than to read a notebook. {_AS_SAVED}"
+_NOT_READ = f"The file is not a notebook: the program that reads notebooks failed on it. {_AS_SAVED}"
+
+
+class DeskFailed(GradingError):
+    """No file can be read here. It is not the fault of a file; the message says what to do."""
+
+
+class Desk:
+    """The fork server of desks and the box that they enter; both end with this object or with this process.
+
+    Args:
+        module: The program of a desk.
+        extra: More variables of its environment.
+
+    """
+
+    def __init__(self, module: str = MODULE, extra: Mapping[str, str] | None = None) -> None:
+        self._open = contextlib.ExitStack()
+        folder = HeldFolder(FOLDER_PREFIX)
+        self._open.callback(folder.remove)
+        server = ForkServer(INSIDE, module, folder.path / "desks", extra=extra)
+        self._open.callback(server.stop)
+        self._address = server.address
+        self._box = self._box_in(folder.path)
+
+    @property
+    def is_boxed(self) -> bool:
+        """True if a box could be made here."""
+        return self._box is not None
+
+    def answer(self, data: bytes) -> bytes:
+        """Let a new desk read the bytes of a file, and return its document, unchecked.
+
+        Raises:
+            UnreadableSubmission: The desk failed, and the file is the reason.
+            ChannelClosed: There is no answer, and the file is not the reason.
+        """
+        with contextlib.ExitStack() as stack:
+            source, answer = (os.memfd_create(name) for name in ("handed-in", "answer"))
+            stack.callback(os.close, source)
+            stack.callback(os.close, answer)
+            if os.pwrite(source, data, 0) < len(data):
+                raise ChannelClosed("the file does not fit into memory")
+            place = [self._box.pidfd] if self._box else []
+            process = ForkedProcess(self._address, self._entrance(), [*place, source, answer])
+            stack.callback(process.end)
+            if not process.wait(_WALL_SECONDS) or process.status is None:
+                raise ChannelClosed("the process that reads files was lost")
+            code = os.waitstatus_to_exitcode(process.status)
+            if code == -signal.SIGKILL:
+                # A desk cannot kill itself, so the system has killed it, mostly because memory is short.
+                raise ChannelClosed("the process that reads files was killed")
+            if code:
+                raise UnreadableSubmission(_TOO_LONG if code == -signal.SIGXCPU else _NOT_READ)
+            return os.pread(answer, min(os.fstat(answer).st_size, LARGEST_DOCUMENT + 1), 0)
+
+    def close(self) -> None:
+        """End all desks; may be called twice."""
+        self._open.close()
+
+    def _box_in(self, folder: Path) -> Box | None:
+        if shutil.which("bwrap") is None:
+            return None
+        supervisors = ForkServer(BESIDE, SUPERVISOR_MODULE, folder / "supervisors")
+        self._open.callback(supervisors.stop)
+        with contextlib.suppress(NoSandbox):
+            return self._open.enter_context(Enclosure(supervisors.address, folder / "box")).box(
+                "desk", scratch=False
+            )
+        return None
+
+    def _entrance(self) -> Entrance:
+        return Entrance(
+            cwd="/",
+            environment=base_environment(),
+            boxed=self.is_boxed,
+            rlimits={"RLIMIT_AS": MEMORY_BYTES, "RLIMIT_FSIZE": LARGEST_DOCUMENT + 1, "RLIMIT_CORE": 1},
+            reader_seconds=CPU_SECONDS,
+        )
+
+
+_changing = threading.Lock()
+_desks: list[Desk] = []
+
+
+def read_notebook(data: bytes) -> tuple[Sequence[SubmittedCell], int]:
+    """Return the cells of a file that was handed in, and the number of those that were left out.
+
+    Raises:
+        UnreadableSubmission: The file is not a notebook; the message is a sentence for the student.
+        DeskFailed: No file can be read here.
+    """
+    return checked(_answer(data))
+
+
+def checked(document: bytes) -> tuple[Sequence[SubmittedCell], int]:
+    """Return the cells of a desk's document, and the number of those that were left out; raises as read_notebook."""
+    try:
+        read = admitted_notebook(document)
+    except Forged as error:
+        raise UnreadableSubmission(_NOT_READ) from error
+    if isinstance(read, Unreadable):
+        raise UnreadableSubmission(read.reason)
+    return read.cells, read.left_out
+
+
+def why_unreadable(data: bytes) -> str:
+    """Return the reason why these bytes cannot be taken as a notebook, for the student; empty if they can be."""
+    try:
+        read_notebook(data)
+    except UnreadableSubmission as error:
+        return str(error)
+    return ""
+
+
+def _answer(data: bytes) -> bytes:
+    reason = ""
+    for _ in range(_ATTEMPTS):
+        desk = None
+        try:
+            desk = _desk()
+            return desk.answer(data)
+        except (ChannelClosed, NoSandbox, OSError) as error:
+            reason = str(error)
+            _forget(desk)
+    raise DeskFailed(
+        f"No file that was handed in can be read here: {reason}. Mostly the machine is short of memory: end other "
+        "programs, and type the command again."
+    )
+
+
+def _desk() -> Desk:
+    """Return the desks of this process, which are started at the first need."""
+    with _changing:
+        if not _desks:
+            desk = Desk()
+            try:
+                checked(
+                    desk.answer(_SAMPLE)
+                )  # before the first student: what fails here is not a file's fault
+            except UnreadableSubmission as error:
+                desk.close()
+                raise ChannelClosed(f"not even a sample ({error})") from error
+            _desks.append(desk)
+        return _desks[0]
+
+
+def _forget(desk: Desk | None) -> None:
+    with _changing:
+        if desk in _desks:
+            _desks.remove(desk)
+            desk.close()
+
+
+@atexit.register
+def _close() -> None:
+    """End what was started."""
+    for desk in _desks:
+        desk.close()

@@ -1,0 +1,135 @@
+"""Parse a notebook into typed cells, believing nothing but the text of the cells.
+
+For the desk, and for the class's own notebooks. What students hand in is parsed by a desk alone
+(:func:`autograder.grading.rebuilding.desk.read_notebook`).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import re2
+
+from autograder.boxes.execution import CellType
+from autograder.boxes.outputs import IMAGES
+from autograder.grading.rebuilding.submission import (
+    LONGEST_NAME,
+    MAX_CELL_CHARACTERS,
+    MAX_CELLS,
+    MAX_CHARACTERS,
+    Picture,
+    SubmittedCell,
+    UnreadableSubmission,
+)
+
+BASE64 = re2.compile(r"[A-Za-z0-9+/=\s]+")
+_CELL_TYPES = tuple(CellType)
+
+
+def parse(data: bytes) -> tuple[list[SubmittedCell], int]:
+    """The cells of a submitted notebook.
+
+    Returns:
+        The cells, and the number of those that were left out because they had not the form of a cell.
+
+    Raises:
+        UnreadableSubmission: The file is not a notebook.
+    """
+    notebook = _decoded(data)
+    if not isinstance(notebook, Mapping) or not isinstance(notebook.get("nbformat"), int):
+        raise UnreadableSubmission("The file is JSON, but not a Jupyter notebook.")
+    cells = _raw_cells(notebook)
+    if len(cells) > MAX_CELLS:
+        raise UnreadableSubmission(f"The notebook has {len(cells)} cells; the limit is {MAX_CELLS}.")
+    taken = [cell for cell in map(_cell, cells) if cell is not None]
+    characters = sum(len(cell.source) for cell in taken)
+    if characters > MAX_CHARACTERS:
+        raise UnreadableSubmission(
+            f"The cells of the notebook have {characters} characters; the limit is {MAX_CHARACTERS}."
+        )
+    return taken, len(cells) - len(taken)
+
+
+def _decoded(data: bytes) -> Any:
+    if not data.strip(b"\0 \t\r\n"):
+        raise UnreadableSubmission(
+            f"The file is empty: {len(data)} bytes, and no text. Save the notebook in JupyterLab and hand in that file."
+        )
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise UnreadableSubmission(
+            f"The file is not a notebook: it is not UTF-8 text (byte {error.start}). "
+            "Save the notebook in JupyterLab and hand in that file."
+        ) from None
+    try:
+        return json.loads(text)
+    except RecursionError:
+        raise UnreadableSubmission("The file is not a notebook: its JSON is nested too deeply.") from None
+    except ValueError as error:
+        raise UnreadableSubmission(
+            f"The file is not a notebook: it is not JSON ({error}). "
+            "Save the notebook in JupyterLab and hand in that file."
+        ) from None
+
+
+def _raw_cells(notebook: Mapping[str, Any]) -> list[Any]:
+    if notebook["nbformat"] == 3 and isinstance(notebook.get("worksheets"), list):
+        sheets = [sheet.get("cells") for sheet in notebook["worksheets"] if isinstance(sheet, Mapping)]
+        return [_from_version_3(cell) for cells in sheets if isinstance(cells, list) for cell in cells]
+    cells = notebook.get("cells")
+    if notebook["nbformat"] != 4 or not isinstance(cells, list):
+        raise UnreadableSubmission(
+            f"This is not a notebook of format 4 (the file says format {str(notebook['nbformat'])[:20]})."
+        )
+    return cells
+
+
+def _from_version_3(cell: Any) -> Any:
+    if not isinstance(cell, Mapping):
+        return cell
+    return {**cell, "source": cell.get("input", cell.get("source"))}
+
+
+def _cell(cell: Any) -> SubmittedCell | None:
+    if not isinstance(cell, Mapping) or cell.get("cell_type") not in _CELL_TYPES:
+        return None
+    source = cell.get("source")
+    if isinstance(source, list) and all(isinstance(line, str) for line in source):
+        source = "".join(source)
+    if not isinstance(source, str) or len(source) > MAX_CELL_CHARACTERS:
+        return None
+    metadata = cell.get("metadata")
+    marks = metadata.get("nbgrader") if isinstance(metadata, Mapping) else None
+    marks = marks if isinstance(marks, Mapping) else {}
+    return SubmittedCell(
+        CellType(cell["cell_type"]),
+        _text(source),
+        _name(marks.get("grade_id")),
+        _name(cell.get("id")),
+        marks.get("grade") is True,
+        tuple(_pictures(cell)),
+    )
+
+
+def _pictures(cell: Mapping[str, Any]) -> Iterator[Picture]:
+    """The attached bitmaps; a drawing that may hold a script is none of them."""
+    attached = cell.get("attachments")
+    for name, kinds in attached.items() if isinstance(attached, Mapping) else ():
+        for kind in IMAGES if isinstance(kinds, Mapping) else ():
+            data = kinds.get(kind)
+            data = "".join(data) if isinstance(data, list) and all(isinstance(x, str) for x in data) else data
+            if isinstance(data, str) and BASE64.fullmatch(data):
+                yield _name(name), kind, data
+                break
+
+
+def _name(value: Any) -> str:
+    return _text(value)[:LONGEST_NAME] if isinstance(value, str) else ""
+
+
+def _text(value: str) -> str:
+    """A text that can be written to a file: a lone surrogate is legal JSON, but it has no UTF-8."""
+    return value.encode("utf-8", "replace").decode("utf-8")

@@ -1,0 +1,184 @@
+"""A file is read by a desk of its own: whatever takes it over decides only what is said of this one file."""
+
+from __future__ import annotations
+
+import json
+import random
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+from conftest import LISTENER, TALKER, FakeEngine, TinyClass
+
+from autograder.boxes.channel import ChannelClosed
+from autograder.boxes.sandbox import why_impossible
+from autograder.grading.rebuilding import desk
+from autograder.grading.rebuilding.desk import Desk, DeskFailed, checked, read_notebook, why_unreadable
+from autograder.grading.rebuilding.desk_process import answer_to
+from autograder.grading.rebuilding.parsing import parse
+from autograder.grading.rebuilding.submission import MAX_CELL_CHARACTERS, UnreadableSubmission
+from tests.grading.rebuilding.hostile_desk import CRAFTED, SCRIPT
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+ROOT = Path(__file__).resolve().parents[3]
+HOSTILE = "tests.grading.rebuilding.hostile_desk"
+FAILED_ON_IT = "the program that reads notebooks failed on it"
+FAULTS = {
+    "at_random 1": FAILED_ON_IT,
+    "at_random 2": FAILED_ON_IT,
+    "endless": "far more time",
+    "endless_answer": "far more time",
+    "crash": FAILED_ON_IT,
+    "leave": FAILED_ON_IT,
+    "late": "nothing waits",
+    "reach": "reached: ",
+    **{f"crafted {number}": FAILED_ON_IT for number in range(len(CRAFTED))},
+}
+"""A function of the hostile program, and a part of the sentence about the submission that names it."""
+
+
+@pytest.fixture(scope="module")
+def hostile() -> Iterator[Desk]:
+    made = Desk(HOSTILE, {"PYTHONPATH": str(ROOT)})
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def taken_over(hostile: Desk, monkeypatch: pytest.MonkeyPatch) -> Desk:
+    """The desk of this process is one whose program students can choose."""
+    monkeypatch.setattr(desk, "_desks", [hostile])
+    monkeypatch.setattr(desk, "CPU_SECONDS", 1)
+    return hostile
+
+
+def notebook(act: str) -> bytes:
+    cell = {"cell_type": "code", "source": "x = 1", "metadata": {}}
+    return json.dumps({"nbformat": 4, "metadata": {"do": f"hostile: {act}"}, "cells": [cell]}).encode()
+
+
+def submit_hostile(tiny: TinyClass, student: str, act: str) -> None:
+    path = tiny.submit(student, 4, 4)
+    text = json.loads(path.read_text())
+    text["metadata"]["do"] = f"hostile: {act}"
+    path.write_text(json.dumps(text))
+
+
+def test_a_desk_reads_what_its_parser_reads() -> None:
+    for path in sorted((ROOT / "chapters").glob("**/*.ipynb"))[:3]:
+        data = path.read_bytes()
+        cells, left_out = read_notebook(data)
+        assert (list(cells), left_out) == parse(data)
+
+
+def test_a_desk_is_in_a_box_if_one_can_be_had() -> None:
+    read_notebook(desk._SAMPLE)
+    assert desk._desks[0].is_boxed is not bool(why_impossible())
+
+
+@pytest.mark.parametrize("act", FAULTS)
+def test_hostile_code_at_a_desk_is_the_fault_of_its_own_file(taken_over: Desk, act: str) -> None:
+    said = why_unreadable(notebook(act))
+    assert FAULTS[act] in said
+    assert said.isprintable()
+    assert why_unreadable(b"[]") == "The file is JSON, but not a Jupyter notebook."
+    assert desk._desks == [taken_over], "the others need no new desk"
+
+
+def test_a_desk_reaches_nothing_not_even_without_a_box(
+    taken_over: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert why_unreadable(notebook("reach")) == "reached: "
+    which = shutil.which
+    monkeypatch.setattr(shutil, "which", lambda name: None if name == "bwrap" else which(name))
+    plain = Desk(HOSTILE, {"PYTHONPATH": str(ROOT)})
+    try:
+        assert not plain.is_boxed
+        with pytest.raises(UnreadableSubmission, match=r"^reached: $"):
+            checked(plain.answer(notebook("reach")))
+    finally:
+        plain.close()
+
+
+def test_no_other_student_loses_or_gains_anything(
+    tiny: TinyClass, fake_engine: FakeEngine, taken_over: Desk
+) -> None:
+    honest = {"ada": (7, 8), "zoe": (10, 2)}
+    for student, points in honest.items():
+        tiny.submit(student, *points)
+    tiny.grade(feedback=True)
+    before = everything_of(tiny, honest)
+    acts = ["endless", "crash", "crafted 3", "in_ada_s_name", "script", "script_in_the_reason", "reach"]
+    for place, act in enumerate(acts):
+        submit_hostile(tiny, f"eve{place}", act)
+    report = tiny.grade(feedback=True, again=True)
+    assert not report.problems
+    assert everything_of(tiny, honest) == before
+    for place, act in enumerate(acts):
+        taken = {TALKER: {"in_ada_s_name": 1, "script": 3}.get(act, 0), LISTENER: 0}
+        assert tiny.scores(f"eve{place}") == taken, act
+        page = (tiny.path / "feedback" / f"eve{place}" / "lab_1_2" / "lab_1_2.html").read_text()
+        assert "<script>fired" not in page
+        assert "<img src=x" not in page
+    reasons = {row.student: row.reason for row in report.rows if row.diagnosis == "unreadable"}
+    assert sorted(reasons) == ["eve0", "eve1", "eve2", "eve5", "eve6"]
+    assert all(reason.isprintable() for reason in reasons.values())
+
+
+def everything_of(tiny: TinyClass, students: dict[str, tuple[int, int]]) -> dict[str, bytes]:
+    """Points, notebooks and pages of students in the class."""
+    files = [path for name in students for path in tiny.path.glob(f"*/{name}/*/*.*")]
+    points = {name: repr(tiny.scores(name)).encode() for name in students}
+    return {**points, **{str(path.relative_to(tiny.path)): path.read_bytes() for path in files}}
+
+
+def test_ten_thousand_mutated_documents_are_refused_or_harmless() -> None:
+    chance = random.Random(1)
+    cells = [
+        {"cell_type": "code", "source": "def Talker():\n    return 10", "id": "talker", "metadata": {}},
+        {"cell_type": "markdown", "source": SCRIPT, "attachments": {"a.png": {"image/png": "aGVsbG8="}}},
+    ]
+    whole = answer_to(json.dumps({"nbformat": 4, "cells": cells}).encode())
+    refused = 0
+    for _ in range(10_000):
+        document = bytearray(whole)
+        for _ in range(chance.randint(1, 4)):
+            place = chance.randrange(len(document))
+            document[place : place + chance.randint(0, 3)] = chance.randbytes(chance.randint(0, 3))
+        try:
+            taken, left_out = checked(bytes(document))
+        except UnreadableSubmission:
+            refused += 1
+            continue
+        assert 0 <= left_out <= 2_000
+        assert all(len(cell.source.encode()) <= MAX_CELL_CHARACTERS for cell in taken)
+    assert 5_000 < refused < 10_000
+
+
+def test_a_lost_desk_is_no_file_s_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    lost = [ChannelClosed("killed")] * 2
+
+    def answer(self: Desk, data: bytes) -> bytes:
+        if lost:
+            raise lost.pop()
+        return answer_to(data)
+
+    monkeypatch.setattr(Desk, "answer", answer)
+    assert read_notebook(notebook(""))[1] == 0
+    lost = [ChannelClosed("killed")] * 9
+    with pytest.raises(DeskFailed, match=r"killed.*short of memory"):
+        read_notebook(notebook(""))
+
+
+def test_a_desk_that_cannot_read_a_sample_reads_no_student_s_file(
+    hostile: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(desk, "_SAMPLE", notebook("crash"))
+    monkeypatch.setattr(desk, "_desks", [])
+    monkeypatch.setattr(desk, "Desk", lambda: hostile)
+    monkeypatch.setattr(hostile, "close", lambda: None)
+    with pytest.raises(DeskFailed, match="not even a sample"):
+        read_notebook(notebook(""))
