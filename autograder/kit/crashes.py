@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import dropwhile
 from typing import TYPE_CHECKING
 
 import re2
@@ -58,14 +59,12 @@ def _recogniser(crash: Crash | Elsewhere) -> Mistake:
 
 def what_and_where(traceback: str) -> str:
     """The exception that was raised, and the line of the student's that led to it."""
-    # pybind11 says below its error what the function was called with.
-    told = (line for line in traceback.splitlines() if not line.startswith("Invoked with: "))
-    last = [line for line in told if line[:1].strip()][-1:]
+    line = raised_line(traceback)
     frames = [found for found in _FRAME.finditer(traceback) if not is_a_library(found["file"])]
     where = f" (line {frames[-1]['line']}, in {frames[-1]['function']})" if frames else ""
-    if not last or last[0].startswith("Traceback"):
+    if not line or line.startswith("Traceback"):
         return f"another of its threads ended it before it had said which{where}"
-    return f"{last[0].strip()}{where}"
+    return f"{line.strip()}{where}"
 
 
 def raised(how: str, traceback: str) -> Advice:
@@ -150,7 +149,7 @@ def _went_on_without_it(part: Part) -> bool:
         return False
     if "rclpy/executors.py" in part.traceback:
         return False  # it waited in a callback: the spinning was not what was missing
-    outputs = (e for e in part.of("output") if last_line_of(part.traceback) in e.data["text"])
+    outputs = (e for e in part.of("output") if raised_line(part.traceback) in e.data["text"])
     return next(outputs, part.ending).t > given.t + LEFT_LYING
 
 
@@ -221,15 +220,23 @@ SLIPS = ("AttributeError", "TypeError", "NameError", "UnboundLocalError", "KeyEr
 """Exceptions that nobody raises in order to say something."""
 
 
-def last_line_of(traceback: str) -> str:
-    """The exception in a traceback; empty where there is none."""
-    return next(filter(str.strip, reversed(traceback.splitlines())), "")
+def raised_lines(traceback: str) -> list[str]:
+    """Return the lines of the exception at the end of a traceback: type, message (of one line or more), notes."""
+    lines = traceback.rstrip().splitlines()
+    frames = [place for place, line in enumerate(lines) if _FRAME.match(line)]
+    behind = lines[frames[-1] + 1 :] if frames else lines[-1:]
+    return [line for line in dropwhile(lambda line: not line[:1].strip(), behind) if line.strip()]
+
+
+def raised_line(traceback: str) -> str:
+    """Return the type of the exception in a traceback with the first line of its message, or an empty string."""
+    return next(iter(raised_lines(traceback)), "")
 
 
 def on_purpose(traceback: str) -> bool:
     """True if a program ended with an exception that it raised itself, or with one that is no slip."""
-    last = last_line_of(traceback)
-    return bool(last) and (meant(traceback) or not last.startswith(SLIPS))
+    line = raised_line(traceback)
+    return bool(line) and (meant(traceback) or not line.startswith(SLIPS))
 
 
 def meant(traceback: str) -> bool:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.crashes import last_line_of, on_purpose
+from autograder.kit.crashes import on_purpose, raised_lines
 from autograder.kit.goals_seen import STATUS
 from autograder.kit.model import Advice
 
@@ -90,8 +90,8 @@ class Outcome:
 
 def all_lines(part: Part) -> list[str]:
     """Return all that a program said in a run: logged, printed, returned, and raised on purpose."""
-    raised = last_line_of(part.traceback) if on_purpose(part.traceback) else ""
-    return [line for line in (*part.said(), raised) if line.strip()]
+    raised = raised_lines(part.traceback) if on_purpose(part.traceback) else []
+    return [line for line in (*part.said(), *raised) if line.strip()]
 
 
 def shape(line: str) -> str:

@@ -55,6 +55,16 @@ def test_what_is_returned_or_raised_on_purpose_is_said() -> None:
     assert not REJECTED.reported(run(traceback="print(names[text])\nKeyError: 'rejected'"), [])
 
 
+def test_each_line_of_an_exception_is_said_whether_of_its_message_or_of_its_notes() -> None:
+    raised = (
+        'Traceback (most recent call last):\n  File "a.py", line 4, in run\n    raise RuntimeError(text)\n'
+    )
+    assert REJECTED.reported(run(traceback=f"{raised}RuntimeError: rejected\nIs it too large?"), [])
+    assert REJECTED.reported(run(traceback=f"{raised}RuntimeError: sorry\n\nIt was rejected.\nWhy?\n"), [])
+    slip = raised.replace("raise RuntimeError(text)", "names[text]")
+    assert not REJECTED.reported(run(traceback=f"{slip}KeyError: 'rejected'\nlook at the names"), [])
+
+
 @pytest.mark.parametrize("value", ["None", "[]", "0", "''"])
 def test_a_value_without_the_word_says_nothing(value: str) -> None:
     assert REJECTED.missing(run(returned=value), []) == "nothing was said of it"

@@ -23,7 +23,7 @@ from exercise_1_3._cancel_evidence import (
 
 from autograder.kit import goal_mistakes
 from autograder.kit.common_mistakes import AWAITS_IN_VAIN, only_if_ended, went_deaf
-from autograder.kit.crashes import LEFT_LYING, last_line_of, meant, what_and_where
+from autograder.kit.crashes import LEFT_LYING, meant, raised_line, what_and_where
 from autograder.kit.hangs import HANGS
 from autograder.kit.in_words import counted
 from autograder.kit.model import Advice, Mistake
@@ -174,9 +174,9 @@ def status_not_reported(evidence: Evidence) -> Advice | None:
         )
     result, ending = part.first("result"), part.ending
     was_there = result is not None and ending is not None and result.t + LEFT_LYING < ending.t
-    if was_there and last_line_of(part.traceback).startswith("TimeoutError"):
+    if was_there and raised_line(part.traceback).startswith("TimeoutError"):
         return Advice(
-            f"The server sent the result, and your client ended without it: {last_line_of(part.traceback)}.",
+            f"The server sent the result, and your client ended without it: {raised_line(part.traceback)}.",
             "Where on_feedback, or another callback, waits or spins, leave that out: it takes the node away from the "
             "spin that waits for the result. Go on in a function that you give to the future's add_done_callback(...).",
         )
