@@ -104,8 +104,7 @@ def _returns_another_each_time(evidence: Evidence) -> str | None:
 
 
 def _says_the_answer(part: Part) -> bool:
-    said = replace(part, events=[event for event in part.events if event is not part.ending])
-    return mentions(said.said(after=part.of("response")[-1]), answers(part)[-1])
+    return mentions(part.said(after=part.of("response")[-1]), answers(part)[-1])
 
 
 NOT_RETURNED = mistake(

@@ -20,6 +20,7 @@ from autograder.kit.recipes.service_client import Run, answering, has_spoken, is
 from autograder.kit.service_calls import (
     ABSENT,
     BIASED,
+    CALLED,
     LATE,
     Client,
     braces_left,
@@ -27,6 +28,7 @@ from autograder.kit.service_calls import (
     gives_up_in_time,
     reports,
 )
+from autograder.kit.service_mistakes import NOT_RETURNED
 from autograder.kit.texts_said import mentions
 
 SEEDS = range(60)
@@ -174,6 +176,17 @@ def test_a_function_that_returns_something_returns_the_sum_whatever_it_logs(
     said = ("output", "notebook log", {"text": "1 + 2 = -4321"})
     part = seen_of(LATE, answered(-4321), said, ("subject", "returned", {"value": value, "traceback": ""}))
     assert reports(part) is right
+
+
+@pytest.mark.parametrize("value", ["'1 + 2 = -4321'", "AddTwoInts_Response(sum=-4321)"])
+def test_a_function_that_returns_the_sum_among_other_words_is_told_to_return_the_number(value: str) -> None:
+    parts = [
+        seen_of(name, answered(-4321), ("subject", "returned", {"value": value, "traceback": ""}))
+        for name in CALLED
+    ]
+    advice = NOT_RETURNED.recognise(Evidence(parts, Reference("x", {})))
+    assert advice is not None
+    assert value in advice.text
 
 
 def _reported(*after: Event) -> Part:
