@@ -451,7 +451,8 @@ NOTHING_THERE = (
             "{} node of yours appeared on the graph.",
             "In a program, call rclpy.init() in main(), then make your node (of your class, or with create_node) and "
             "spin it, which keeps the program running. In a notebook, make the node in your function (start_ros() has "
-            "started ROS) and do all of the work before the function returns.",
+            "started ROS) and do all of the work before the function returns. If your code does that already, leave "
+            "out domain_id and ROS_DOMAIN_ID: the judge looks for your node in the domain in which it was started.",
             certain=found is _surely_without_node,
         )
         for found in (_surely_without_node, _without_node)
