@@ -244,7 +244,7 @@ RUNNING: Sequence[Row] = (
     (
         r"Invalid(?:Topic|Service|Node|Namespace)\w*NameException|InvalidNamespaceException",
         "A name in ROS has letters, digits and underscores only, no digit at its beginning, and no slash at its end.",
-        "Change the name: my_topic, in place of `my topic` or `my-topic`.",
+        "Change the name: my_name instead of `my name` or `my-name`.",
     ),
     (
         r"^IndexError: (?P<kind>list|string|tuple|array) (?:assignment )?index out of range",

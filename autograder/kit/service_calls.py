@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import re2
+
 from autograder.kit import giving_up
 from autograder.kit.evidence import Evidence
 from autograder.kit.in_words import counted
@@ -163,6 +165,8 @@ def reports_the_sum(evidence: Evidence) -> Finding:
     # The answer to an earlier call is not the sum.
     wanted = f"{given[-1]} said at the end" if len(given) >= calls else "the final sum, in each run"
     lines = silent.said(after=silent.of("response")[-1]) if given else silent.said()
+    # A message of Python's may end with a line that only marks a character of the one above.
+    lines = [line for line in lines if re2.search(r"[\pL\pN]", line)]
     wrong = [line for line in lines if given and not mentions([line], given[-1])] or lines
     return Finding(False, wanted, f"“{wrong[-1]}”" if wrong else "nothing was said")
 
@@ -198,7 +202,7 @@ def how_it_went(part: Part) -> str:
         return "not reached"
     ending = part.ending
     if ending is None:
-        return f"neither done nor ended, and silent for {HANGS_AFTER:g} s"
+        return "it made no call, and did not end"
     return f"it {ending.name} after {counted(len(requests(part)), 'call')}"
 
 
