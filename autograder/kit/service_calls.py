@@ -174,14 +174,22 @@ def reports_the_sum(evidence: Evidence) -> Finding:
 def gives_up_in_time(evidence: Evidence) -> Finding:
     """Without a service it gives up, or goes on, as the one rule for all clients says."""
     part = evidence.part(ABSENT)
-    numbers = part.inputs.get("numbers", ())
-    # Who names the sum has not given up, but added up by itself; a sum that is one of the numbers shows nothing.
-    if numbers and sum(numbers) not in numbers and mentions(part.said(), sum(numbers)):
+    if own_sum(part) is not None:
         wrong = "named a sum that no service gave"
     else:
         wrong = giving_up.objection(part, served_otherwise(evidence), "client")
     seen = "says again and again that it waits" if giving_up.goes_on_waiting(part) else "it did"
     return Finding(not wrong, f"says {giving_up.NOT_AVAILABLE} and ends by itself", wrong or seen)
+
+
+def own_sum(part: Part) -> int | None:
+    """Return the sum of the inputs if a client said it in the run without a service: it added up by itself.
+
+    A sum that is one of the inputs shows nothing.
+    """
+    numbers = part.inputs.get("numbers", ())
+    total = sum(numbers)
+    return total if numbers and total not in numbers and mentions(part.said(), total) else None
 
 
 def served_otherwise(evidence: Evidence) -> list[Part]:

@@ -17,6 +17,7 @@ from autograder.kit.service_calls import (
     ended_before_its_answer,
     gives_up_in_time,
     new_words,
+    own_sum,
     pair,
     reports,
     requests,
@@ -173,6 +174,11 @@ def _silent_end(evidence: Evidence) -> Advice | None:
             f"When the service is not there, your function returns the exception {value}, and does not raise it.",
             "Write raise in place of return before it: only an exception that is raised reaches who called your "
             "function.",
+        )
+    if (total := own_sum(part)) is not None:
+        return Advice(
+            f"When the service is not there, your client says the sum {total}, which no service gave.",
+            "Leave out what adds up: only the service knows its answer. Say `not available` and end.",
         )
     return giving_up.silent_end(part, served_otherwise(evidence), "service")
 
