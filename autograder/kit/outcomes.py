@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 
     from autograder.kit.evidence import Part
 
-_STATUS_NUMBER = re2.compile(r"(?i)(status\D*)([0-6])\b")
+_STATUS = re2.compile(r"(?i)status")
+_STATUS_NUMBER = re2.compile(r"(^\D*|[:=]\s*|\bis )([0-6])\b")
+"""A number behind the word ``status``: the first one, or one behind a colon or its like, as in ``status of goal 1: 6``."""
 _NUMBERS = re2.compile(r"[\pL\pN_.+-]*\pN[\pL\pN_.+-]*|[\[\](){},;\s]+")
 """Numbers, words with a digit in them (such as a goal's id), and what stands between the numbers of a list."""
 
@@ -105,7 +107,11 @@ def shapes(parts: Iterable[Part]) -> set[str]:
 
 
 def _with_status_names(line: str) -> str:
-    return str(_STATUS_NUMBER.sub(lambda found: found[1] + STATUS[int(found[2])], line))
+    word = _STATUS.search(line)
+    if word is None:
+        return line
+    behind = _STATUS_NUMBER.sub(lambda found: found[1] + STATUS[int(found[2])], line[word.end() :])
+    return f"{line[: word.end()]}{behind}"
 
 
 def _most_telling(part: Part, others: Sequence[Part]) -> str:

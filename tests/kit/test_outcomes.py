@@ -85,3 +85,23 @@ def test_the_diagnosis_quotes_what_was_said_and_the_word() -> None:
 def test_a_number_behind_the_word_status_is_its_name() -> None:
     assert shape("Status of the goal: 6 [1, 2]") == "status of the goal: aborted"
     assert shape("6 numbers, status unknown") == "numbers status unknown"
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "status=5",
+        "Status of the goal of order 20: 5",
+        "status of goal #1 is 5",
+        "Status (4 is good) = 5",
+        "{'order': 20, 'status': 5, 'numbers': 12}",
+        "finished with status code 5.",
+    ],
+)
+def test_the_number_of_a_status_may_have_other_words_and_numbers_around_it(line: str) -> None:
+    assert CANCELED.is_said_in(line)
+
+
+@pytest.mark.parametrize("line", ["5 is the status", "status 15", "status ok, 15 numbers: 7", "result: 5"])
+def test_another_number_is_no_status(line: str) -> None:
+    assert not CANCELED.is_said_in(line)
