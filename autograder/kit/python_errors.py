@@ -242,7 +242,7 @@ RUNNING: Sequence[Row] = (
         "If ROS is to call {what} later, write its name alone, without parentheses.",
     ),
     (
-        r"Invalid(?:Topic|Service|Node|Namespace)\w*NameException|InvalidNamespaceException",
+        r"Invalid(?:Topic|Service|Node|Namespace)\w*NameException|InvalidNamespaceException|due to invalid topic name",
         "A name in ROS has letters, digits and underscores only, no digit at its beginning, and no slash at its end.",
         "Change the name: my_name instead of `my name` or `my-name`.",
     ),

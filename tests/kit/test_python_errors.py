@@ -52,6 +52,8 @@ SAID = {
     "TypeError: ActionServer.__init__() takes 5 positional arguments but 7 were given": "first line of ActionServer",
     "TypeError: spin() got an unexpected keyword argument 'nod'": "the same name left of each =",
     "rclpy.exceptions.InvalidTopicNameException: Invalid topic name": "no slash at its end",
+    "ValueError: Failed to create action client due to invalid topic name 'fibonacci/' : topic name must not contain "
+    "repeated '/'": "no slash at its end",
     "IndexError: pop from empty list": "no element left",
     "StopIteration": "no element left",
     "ValueError: invalid literal for int() with base 10: '{five}'": "'{five}' is not a number",
