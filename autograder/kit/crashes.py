@@ -190,6 +190,22 @@ def _never_iterated(evidence: Evidence) -> Advice | None:
     )
 
 
+_NO_FILE = re2.compile(r"^\S*python[\d.]*: can't (?:open file|find '__main__' module in) '(?P<file>[^'\n]*)'")
+
+
+def _file_not_found(evidence: Evidence) -> Advice | None:
+    """Python says that it cannot open the file of the command, so nothing of the student's has run."""
+    said = [line for part in evidence if part.ending and not part.had_node for line in part.said()]
+    found = next(filter(None, map(_NO_FILE.search, said)), None)
+    if found is None:
+        return None
+    return Advice(
+        f"Python does not find the program {found['file']}, so nothing of yours has run.",
+        "Write the path of your program behind python3. `ls` lists the files of the folder that the terminal is in, "
+        "and `cd FOLDER` goes to another folder.",
+    )
+
+
 _NO_PACKAGE = re2.compile(r"^Package (?:'(?P<name>[^']*)' )?not found")
 
 
@@ -221,6 +237,7 @@ CRASHES: tuple[Mistake, ...] = (
     Mistake(code_of_elsewhere.KEY, _never_awaited, certain=True),
     Mistake("not_returned", _never_iterated, certain=True),
     Mistake("cut_off", _cut_off, certain=True),
+    Mistake("module_not_found", _file_not_found, certain=True),
     Mistake("module_not_found", _package_not_found, certain=True),
 )
 """The known tracebacks, most telling first, a kernel that went away, and a package that ROS does not find."""

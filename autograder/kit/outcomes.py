@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 _STATUS = re2.compile(r"(?i)status")
 _STATUS_NUMBER = re2.compile(r"(^\D*|[:=]\s*|\bis )([0-6])\b")
-"""A number behind the word ``status``: the first one, or one behind a colon or its like, as in ``status of goal 1: 6``."""
+"""A number behind the word ``status``: the first one, or one behind a colon or an equals sign, or behind ``is``."""
 _NUMBERS = re2.compile(r"[\pL\pN_.+-]*\pN[\pL\pN_.+-]*|[\[\](){},;\s]+")
 """Numbers, words with a digit in them (such as a goal's id), and what stands between the numbers of a list."""
 

@@ -275,3 +275,11 @@ def test_a_traceback_that_was_cut_off_does_not_hide_a_whole_one_of_another_run()
     parts = [Part(text, {}, [Event(1.0, "subject", "raised", {"traceback": text})]) for text in ends]
     assert traceback_of(Evidence(parts, Reference("lab_9_1.server", {}))) == whole
     assert traceback_of(Evidence(parts[1:], Reference("lab_9_1.server", {}))) == ends[1]
+
+
+def test_a_program_that_python_does_not_find_is_named() -> None:
+    line = "/usr/bin/python3: can't open file '/home/me/talkr.py': [Errno 2] No such file or directory"
+    events = [_output(line), Event(2.0, "subject", "exited", {"code": 2})]
+    evidence = Evidence([Part("part", {}, events)], Reference("x", {}))
+    advice = next(filter(None, (mistake.recognise(evidence) for mistake in CRASHES)))
+    assert advice.text.startswith("Python does not find the program /home/me/talkr.py")
