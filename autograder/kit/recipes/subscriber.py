@@ -305,8 +305,9 @@ def _said_again(evidence: Evidence) -> Advice | None:
             "Call create_subscription once, in __init__, and not in a callback.",
         )
     if len(again) > 1 and min(again.values()) == times:
+        which = "each string" if again.keys() == set(sent) else "some strings"
         return Advice(
-            f"Your program says each string {times} times for one message, such as “{text}”.",
+            f"Your program says {which} {times} times for one message, such as “{text}”.",
             "One subscription is enough: is create_subscription called twice, or is there a second node, or a second "
             "log line? In a notebook, an earlier run of the cell may have left a node of its own.",
         )
@@ -355,7 +356,7 @@ def _not_logged(evidence: Evidence) -> Advice | None:
     silent = next(iter(_missing(evidence)), None)
     if silent is None or not subscribes(evidence).passed:
         return None
-    words = part.said(after=silent)
+    words = list(filter(str.strip, part.said(after=silent)))
     bytes_said = next((line for line in words if _text(silent) in line), None)
     if bytes_said is not None:
         return Advice(
@@ -367,7 +368,8 @@ def _not_logged(evidence: Evidence) -> Advice | None:
             f"“{_text(silent)}” was sent twice, one after the other, and your node said it once.",
             "Log every message that the callback is given, also one with the same string as the one before.",
         )
-    if silent is not sent[0] and len(part.said(after=sent[0])) == len(words):
+    first_words = list(filter(str.strip, part.said(after=sent[0])))
+    if silent is not sent[0] and len(first_words) == len(words):
         return Advice(
             f"When “{_text(silent)}” was sent, your node said “{words[0]}”: it says each string only when the next "
             "one arrives.",
@@ -378,11 +380,12 @@ def _not_logged(evidence: Evidence) -> Advice | None:
             f"Your node said the first strings, but not “{_text(silent)}”.",
             _LOG_EACH,
         )
-    if len(part.said(after=sent[0])) == 0:
+    if not first_words:
         return Advice(
             f"Your node is subscribed to {topic}, but when a string arrives it says nothing.",
             "In the callback, log the field data of the message that it is given, as in "
-            "self.get_logger().info(f'I heard: \"{message.data}\"').",
+            "self.get_logger().info(f'I heard: \"{message.data}\"'). If you print it, leave out end=...: a line counts "
+            "when it has ended.",
         )
     later = next((event for event in sent[1:] if is_said(_text(event), part)), None)
     if later is not None:
@@ -391,9 +394,8 @@ def _not_logged(evidence: Evidence) -> Advice | None:
             _LOG_EACH,
         )
     return Advice(
-        f"When “{_text(sent[0])}” was sent, your node said “{part.said(after=sent[0])[0]}”: the string that arrived is "
-        "not in it.",
-        _put_it_there(part.said(after=sent[0])[0]),
+        f"When “{_text(sent[0])}” was sent, your node said “{first_words[0]}”: the string that arrived is not in it.",
+        _put_it_there(first_words[0]),
     )
 
 
