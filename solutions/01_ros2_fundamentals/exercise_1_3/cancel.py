@@ -121,7 +121,7 @@ def reports_the_status(evidence: Evidence) -> Finding:
         return Finding(False, expected, f"asked for the result {asked} times")
     if unreported := unreported_end(evidence):
         outcome, where, others = unreported
-        return Finding(False, expected, f"{outcome.missing(where, others)} where {where.name}")
+        return Finding(False, expected, f"where {where.name}: {outcome.missing(where, others)}")
     said = after_result(part)
     return Finding(True, expected, f"“{said[-1]}”" if said else "it did")
 
