@@ -27,6 +27,7 @@ from autograder.kit.goal_reports import (
     left_at_once,
     refused_as_seen,
     reports_result,
+    returned_instead,
     said_of_result,
     unshown_feedback,
 )
@@ -258,6 +259,27 @@ def _abort_not_reported(evidence: Evidence) -> Advice | None:
 
 
 ABORT_NOT_REPORTED = Mistake("abort_not_reported", _abort_not_reported)
+
+
+def _returns_another_value(evidence: Evidence) -> Advice | None:
+    """The advice for a notebook's function that returns anything but its goal's sequence, or an empty list."""
+    late, refused = evidence.part(LATE), evidence.part(REFUSED)
+    result = late.first("result")
+    if result and (value := returned_instead(late, result.data["fields"]["sequence"])):
+        return Advice(
+            f"Your function returns {value}, and not the sequence of its goal's result as a list.",
+            "End with `return list(...)` of the sequence in the result. A string, a whole result or nothing is not a "
+            "list.",
+        )
+    if refused.first("goal") and (value := returned_instead(refused, [])):
+        return Advice(
+            f"When its goal is rejected, your function returns {value}, and not an empty list.",
+            "Where `accepted` of the goal handle is False, say so, and end with `return []`.",
+        )
+    return None
+
+
+NOT_RETURNED = Mistake("not_returned", _returns_another_value)
 SILENT_END = Mistake(
     "silent_end",
     lambda evidence: (

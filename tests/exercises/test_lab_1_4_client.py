@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from autograder.kit.evidence import INTERRUPTED, Event, Evidence, Part, Reference
+from autograder.kit.goal_mistakes import NOT_RETURNED
 from autograder.kit.goal_reports import (
     ABORTED,
     LATE,
@@ -44,6 +45,26 @@ def evidence(success: str, *others: Part) -> Evidence:
     answered = Event(0.0, "goal_answered", "/fibonacci")
     end = [ASKED, result("succeeded", NUMBERS), say(success), ENDED]
     return Evidence([Part(LATE, {}, [GOAL, say("goal sent"), answered, *end]), *others], REFERENCE)
+
+
+def returned(name: str, value: str, *events: Event) -> Part:
+    return Part(name, {}, [GOAL, *events, Event(0.0, "subject", "returned", {"value": value})])
+
+
+@pytest.mark.parametrize(
+    ("value", "rejected", "words"),
+    [
+        (str(NUMBERS), "[]", ""),
+        (f"'{NUMBERS}'", "[]", "and not the sequence of its goal's result as a list"),
+        ("3", "[]", "returns 3"),
+        (str(NUMBERS), "None", "When its goal is rejected, your function returns None"),
+        (str(NUMBERS), "[0]", "returns [0], and not an empty list"),
+    ],
+)
+def test_a_function_that_returns_another_value_is_told_which(value: str, rejected: str, words: str) -> None:
+    late = returned(LATE, value, ASKED, result("succeeded", NUMBERS))
+    advice = NOT_RETURNED.recognise(Evidence([late, returned(REFUSED, rejected)], REFERENCE))
+    assert (words in advice.text) if advice else not words
 
 
 @pytest.mark.parametrize(

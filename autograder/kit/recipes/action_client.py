@@ -316,4 +316,5 @@ def sends_goals() -> ActionClient:
         *map(common.only_if_ended, _WHAT_IS_SAID),
         goals.STAYS_AFTER_REFUSAL,
         *_WHAT_IS_SAID,
+        goals.NOT_RETURNED,
     )
