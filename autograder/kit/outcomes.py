@@ -41,8 +41,8 @@ class Outcome:
     other: str = ""
 
     def is_said_in(self, line: str) -> bool:
-        """Return whether a line has the word."""
-        named = _with_status_names(line).lower()
+        """Return whether a line has the word; any kind of space, and any number of them, is a space."""
+        named = " ".join(_with_status_names(line).lower().split())
         return self.word in named or bool(self.other and self.other in named)
 
     def lines(self, part: Part) -> list[str]:

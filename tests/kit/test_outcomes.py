@@ -102,6 +102,13 @@ def test_the_number_of_a_status_may_have_other_words_and_numbers_around_it(line:
     assert CANCELED.is_said_in(line)
 
 
+@pytest.mark.parametrize(
+    "line", ["NOT  available", "is not\tavailable", "not\u00a0Available", "not\navailable"]
+)
+def test_spaces_of_any_kind_are_spaces(line: str) -> None:
+    assert Outcome("not available").is_said_in(line)
+
+
 @pytest.mark.parametrize("line", ["5 is the status", "status 15", "status ok, 15 numbers: 7", "result: 5"])
 def test_another_number_is_no_status(line: str) -> None:
     assert not CANCELED.is_said_in(line)
