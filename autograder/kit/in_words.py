@@ -39,6 +39,14 @@ def shortened(text: str) -> str:
     return str(_LONG_LIST.sub(lambda found: f"[{found[1]}, …, {found[2]}]", text))
 
 
+def visible(text: str) -> str:
+    """Return the text with Python's escapes for spaces that look like another one, such as a line end."""
+    return "".join(
+        character.encode("unicode_escape").decode() if character.isspace() and character != " " else character
+        for character in text
+    )
+
+
 def of_its_kind(text: str, in_a_notebook: bool) -> str:
     """The text without the sentences for the other kind of answer.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.kit.in_words import counted, first_difference, of_its_kind, shortened
+from autograder.kit.in_words import counted, first_difference, of_its_kind, shortened, visible
 
 LINE = "Hello, ROS 2! From SimpleNode."
 
@@ -34,6 +34,10 @@ def test_the_first_difference_is_quoted_from_both(said: str, words: str) -> None
     told = first_difference(said, LINE)
     assert told.startswith(words)
     assert bool(told) == bool(words)
+
+
+def test_a_space_that_looks_like_another_is_shown_by_its_escape() -> None:
+    assert visible("Hello,\u00a0world! é 日\n\t") == "Hello,\\xa0world! é 日\\n\\t"
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from autograder.judge.verdicts.delivery import NOT_DELIVERED, NotDelivered, deli
 from autograder.judge.verdicts.exercise_code import of_exercise
 from autograder.judge.verdicts.misnamed import misnamed
 from autograder.kit.evidence import Evidence, Reference
-from autograder.kit.in_words import of_its_kind, shortened
+from autograder.kit.in_words import of_its_kind, shortened, visible
 from autograder.kit.model import Advice, Exercise, Finding, Mistake, Pace
 from autograder.kit.workspace_mistakes import changed_since_build
 from autograder.verdict import Criterion, Diagnosis, State, Verdict
@@ -262,7 +262,7 @@ def diagnose(exercise: Exercise, evidence: Evidence) -> tuple[Diagnosis, str]:
         mistake, advice = found
         in_a_notebook = evidence.in_a_notebook
         text, next_step = (
-            _cut(of_its_kind(shortened(words), in_a_notebook), 2 * MAX_WORDS)
+            _cut(of_its_kind(shortened(visible(words)), in_a_notebook), 2 * MAX_WORDS)
             for words in (advice.text, advice.next_step)
         )
         return Diagnosis(mistake.key, text, next_step), advice.traceback
