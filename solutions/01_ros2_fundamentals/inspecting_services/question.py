@@ -339,7 +339,14 @@ question.knows(
 
 @question.mistake("wrong_service", certain=True)
 def wrong_service(seen: Evidence, _: Evidence) -> Advice | None:
-    """It names a service of another type."""
+    """It names a service of another type, or only a part of the right one's name."""
+    for name in (LATE, OTHER):
+        end = seen.part(name).inputs.get("right", "").rpartition("/")[2]
+        if end and not named(seen.part(name)) and end in " ".join(seen.part(name).said()[-1:]):
+            return Advice(
+                f"Your answer, {end}, is only a part of the name {seen.part(name).inputs['right']}.",
+                "Return the whole name, with all its slashes, as get_service_names_and_types() gives it.",
+            )
     for part in seen:
         told = named_for_none(seen) if part.name == ABSENT else named(part)
         others = [name for name in told if name != part.inputs["right"]]
