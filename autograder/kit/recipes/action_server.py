@@ -92,6 +92,13 @@ class SendsGoals(SeenAsItIs):
         unread = long.cancelled_too_late and long.unread >= MANY
         if long.cancel_accepted is not False or unread or is_quick(long):
             return None
+        if long.cancelled_too_late and long.sent_after(long.cancel_answered_at):
+            return Advice(
+                "Your server ended the goal before its work was done: the request to cancel was refused because the "
+                "goal had ended, and feedback went on.",
+                "Call succeed(), canceled() or abort() of the goal handle once, as the last thing before you return "
+                "the result.",
+            )
         return Advice(
             "Your server refuses to cancel: rclpy does so where the ActionServer has no cancel_callback, or one that "
             "returns anything but CancelResponse.ACCEPT.",
