@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from autograder.kit.draft import Draft
 from autograder.kit.model import Advice, Finding
 from autograder.kit.recipes.launch_file import Launched, LaunchFile
 from autograder.kit.runners import Launches
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 OLD_NAME = "chatter"
 """The topic's name in the code of the programs."""
@@ -76,6 +81,19 @@ def by_the_launch(seen: Launched, _: Launched) -> Finding:
     )
 
 
+RELATIVE = "the target of your rule is relative, so the namespace came in front of it."
+
+
+def in_a_namespace(seen: Launched, topics: Iterable[str]) -> str:
+    """Return the first of the topics that is the new one with a namespace in front of it; empty if there is none."""
+    return next((name for name in sorted(topics) if name.endswith(seen.topic)), "")
+
+
+def slash_first(seen: Launched) -> str:
+    """Return the next step for a target that is relative."""
+    return f"Write the target with a slash at its front: {seen.topic}."
+
+
 @remap.mistake("only_one_remapped", certain=lambda seen: seen.all_are_there)
 def only_one_remapped(seen: Launched, _: Launched) -> Advice | None:
     """One end was moved, the other stayed behind."""
@@ -83,9 +101,13 @@ def only_one_remapped(seen: Launched, _: Launched) -> Advice | None:
     if not (seen.publishers and seen.subscriptions) or talks == listens:
         return None
     moved, left = ("talker", "listener") if talks else ("listener", "talker")
-    there = names(seen.subscriptions if talks else seen.publishers)
+    others = seen.subscriptions if talks else seen.publishers
+    if near := in_a_namespace(seen, others):
+        return Advice(
+            f"The {moved} is on {seen.topic}, but the {left} is on {near}: {RELATIVE}", slash_first(seen)
+        )
     return Advice(
-        f"The {moved} is on {seen.topic}, but the {left} is still on {there}: the two do not meet.",
+        f"The {moved} is on {seen.topic}, but the {left} is still on {names(others)}: the two do not meet.",
         f"Give the {left}'s node in the launch file the same remapping. A rule holds only for the node that it is "
         "given to.",
     )
@@ -97,12 +119,8 @@ def not_remapped(seen: Launched, _: Launched) -> Advice | None:
     there = seen.publishers | seen.subscriptions
     if not (seen.publishers and seen.subscriptions) or seen.topic in there:
         return None
-    near = next((name for name in seen.elsewhere if name.endswith(seen.topic)), "")
-    if near:
-        return Advice(
-            f"Your nodes are on {near}: the target of your rule is relative, so the namespace came in front of it.",
-            f"Write the target with a slash at its front: {seen.topic}.",
-        )
+    if near := in_a_namespace(seen, seen.elsewhere):
+        return Advice(f"Your nodes are on {near}: {RELATIVE}", slash_first(seen))
     why = f"Your nodes use {names(there)}; the task asks for {seen.topic}."
     lost = [old for old in seen.rules if any(name != old and name.endswith(old) for name in there)]
     if lost and lost[0].startswith("/"):
