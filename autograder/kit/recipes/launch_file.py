@@ -354,8 +354,8 @@ _TODO = (
     ),
     (
         r"Node\.__init__\(\) (?:takes|missing)",
-        'Write the name of each value before it: Node(package="{package}", executable="...", output="screen"). Names on '
-        "older pages, such as node_executable, have changed.",
+        'Write the name of each value before it: Node(package="{package}", executable="...", output="screen"). Names '
+        "on older pages, such as node_executable, have changed.",
     ),
     (r"keyword argument", "Compare the names of the arguments with those in the example, letter by letter."),
     (r"^NameError", "Compare the name with the imports at the top of the file, letter by letter."),

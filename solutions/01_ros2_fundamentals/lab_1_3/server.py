@@ -102,8 +102,8 @@ server.knows(
     "field_typo",
     lambda seen, _: bool(seen.answers) and not any(answer["sum"] for answer in seen.answers.values()),
     "Every answer is 0: in the response that your method returns, the field sum was never filled.",
-    "Set the field sum of the response that you were given, as in response.sum = request.a + request.b, and return this "
-    "response. A misspelt keyword in AddTwoInts.Response(...) is ignored silently.",
+    "Set the field sum of the response that you were given, as in response.sum = request.a + request.b, and return "
+    "this response. A misspelt keyword in AddTwoInts.Response(...) is ignored silently.",
     certain=True,
 )
 
