@@ -89,9 +89,6 @@ class SendsGoals(SeenAsItIs):
     def _cancel_refused(self, evidence: Evidence) -> Advice | None:
         """The cancel request was answered with no."""
         long = self.canceled(evidence)
-        unread = long.cancelled_too_late and long.unread >= MANY
-        if long.cancel_accepted is not False or unread or is_quick(long):
-            return None
         if long.cancelled_too_late and long.sent_after(long.cancel_answered_at):
             return Advice(
                 "Your server ended the goal before its work was done: the request to cancel was refused because the "
@@ -99,6 +96,9 @@ class SendsGoals(SeenAsItIs):
                 "Call succeed(), canceled() or abort() of the goal handle once, as the last thing before you return "
                 "the result.",
             )
+        unread = long.cancelled_too_late and long.unread >= MANY
+        if long.cancel_accepted is not False or unread or is_quick(long):
+            return None
         return Advice(
             "Your server refuses to cancel: rclpy does so where the ActionServer has no cancel_callback, or one that "
             "returns anything but CancelResponse.ACCEPT.",
