@@ -8,6 +8,7 @@ import traceback
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from rclpy._rclpy_pybind11 import InvalidHandle
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from std_msgs.msg import Empty
@@ -71,13 +72,17 @@ class SubjectRun:
         return not self._thread.is_alive()
 
     def _live(self) -> None:
+        others = set(threading.enumerate())
         try:
             if inspect.isclass(self._subject):
-                self._make_and_spin()
+                self._spin(self._made(), others)
+                return
+            accepted = _accepted(self._subject, self._options)
+            self._tell(Started(self._number, sorted(accepted)))
+            value = self._subject(*self._arguments, **accepted)
+            if isinstance(value, Node) and not self._arguments and _is_alive(value):
+                self._spin(value, others)  # a function in place of a class
             else:
-                accepted = _accepted(self._subject, self._options)
-                self._tell(Started(self._number, sorted(accepted)))
-                value = self._subject(*self._arguments, **accepted)
                 self._tell(Returned(self._number, None if value is None else repr(value)[:MAX_TEXT]))
         except ExternalShutdownException:
             pass
@@ -85,13 +90,15 @@ class SubjectRun:
             if not (self._stopping.is_set() and isinstance(error, SystemExit)):
                 self._tell(Raised(self._number, formatted(error)))
 
-    def _make_and_spin(self) -> None:
-        others = set(threading.enumerate())
+    def _made(self) -> Node:
         node = self._subject(*self._arguments)
         if not isinstance(node, Node):
             raise TypeError(
                 f"{self._subject.__name__} is not a Node: write class {self._subject.__name__}(Node)"
             )
+        return node
+
+    def _spin(self, node: Node, others: set[threading.Thread]) -> None:
         goes_on = any(node.timers) or not others.issuperset(threading.enumerate())
         name = node.get_name()
         twin = name if node.get_node_names().count(name) > 1 else ""
@@ -112,6 +119,14 @@ class SubjectRun:
         # In a program, rclpy.spin ends with the first exception of a callback; so does the subject here.
         if not self._stopping.is_set():
             self._tell(Raised(self._number, formatted(failure.error)))
+
+
+def _is_alive(node: Node) -> bool:
+    try:
+        node.get_name()
+    except InvalidHandle:
+        return False
+    return True
 
 
 def formatted(error: BaseException) -> str:
