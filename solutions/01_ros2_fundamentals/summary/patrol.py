@@ -50,7 +50,8 @@ def switches_the_lamp(seen: Part, expected: Part) -> Finding:
     """One call of the service with the reference's request, after the last command."""
     wanted, asked, driven = lamps(expected), lamps(seen), before_the_lamp(seen)
     a_round = before_the_lamp(expected)
-    told = f"{counted(len(asked), 'call')} ({', '.join(map(str, asked))}) after {counted(driven, 'command')}"
+    which = ", ".join(dict.fromkeys(map(str, asked)))
+    told = f"{counted(len(asked), 'call')} ({which}) after {counted(driven, 'command')}"
     expects = f"1 call (True) after {counted(a_round, 'command')}"
     return Finding(asked == wanted and driven == a_round, expects, told if asked else "no call")
 
@@ -58,7 +59,9 @@ def switches_the_lamp(seen: Part, expected: Part) -> Finding:
 @patrol.criterion("door", 2, "Walks to the door when the lamp has answered")
 def walks_to_the_door(seen: Part, expected: Part) -> Finding:
     """One goal, the reference's, and not before the lamp's answer."""
-    told = " / ".join(f"x = {goal['x']:.6g}, y = {goal['y']:.6g}" for goal in goals(seen)) or "no goal"
+    sent = [f"x = {goal['x']:.6g}, y = {goal['y']:.6g}" for goal in goals(seen)]
+    count = f"{counted(len(sent), 'goal')}: " if len(sent) > 1 else ""
+    told = count + (" / ".join(dict.fromkeys(sent)) or "no goal")
     early = ", before the lamp's answer" if too_soon(seen, expected) else ""
     wanted = goals(expected)
     return Finding(
