@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import dropwhile
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import re2
 
@@ -195,8 +195,7 @@ _NO_FILE = re2.compile(r"^\S*python[\d.]*: can't (?:open file|find '__main__' mo
 
 def _file_not_found(evidence: Evidence) -> Advice | None:
     """Python says that it cannot open the file of the command, so nothing of the student's has run."""
-    said = [line for part in evidence if part.ending and not part.had_node for line in part.said()]
-    found = next(filter(None, map(_NO_FILE.search, said)), None)
+    found = _said_without_a_node(evidence, _NO_FILE)
     if found is None:
         return None
     return Advice(
@@ -211,8 +210,7 @@ _NO_PACKAGE = re2.compile(r"^Package (?:'(?P<name>[^']*)' )?not found")
 
 def _package_not_found(evidence: Evidence) -> Advice | None:
     """`ros2` says that it knows no such package, and ends: nothing of the student's has run."""
-    said = [line for part in evidence if part.ending and not part.had_node for line in part.said()]
-    found = next(filter(None, map(_NO_PACKAGE.search, said)), None)
+    found = _said_without_a_node(evidence, _NO_PACKAGE)
     if found is None:
         return None
     return Advice(
@@ -221,6 +219,12 @@ def _package_not_found(evidence: Evidence) -> Advice | None:
         "In the folder of your workspace type `colcon build`, then `source install/setup.bash`, and check again in the "
         "same terminal. Each new terminal needs the second line again.",
     )
+
+
+def _said_without_a_node(evidence: Evidence, pattern: Any) -> Any:
+    """Return the first match in what a program said that ended and had no node; None if there is none."""
+    said = [line for part in evidence if part.ending and not part.had_node for line in part.said()]
+    return next(filter(None, map(pattern.search, said)), None)
 
 
 def _only_slips(mistake: Mistake) -> Mistake:
