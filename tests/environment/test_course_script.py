@@ -197,6 +197,11 @@ def test_lab_is_the_autograders_own(course: Course) -> None:
     assert course.ran()[1] == "autograder [lab] [--no-browser]"
 
 
+def test_jupyter_is_jupyter_itself(course: Course) -> None:
+    assert course.run("jupyter", "lab", "--no-browser").returncode == 0
+    assert course.ran()[1] == "jupyter [lab] [--no-browser]"
+
+
 def test_test_runs_every_check_and_the_tests_last(course: Course, tmp_path: Path) -> None:
     done = course.run("test", "-x", cwd=tmp_path)
     assert done.returncode == 0
