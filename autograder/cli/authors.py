@@ -150,8 +150,7 @@ def try_exercise(
     help="The folder of the pages. The default is site/.",
 )
 @click.option("--quick", is_flag=True, help="Do not execute the notebooks: the pages have no outputs.")
-@click.option("--files", default="", metavar="URL", help="Where readers find the files of the repository.")
-def site(edition: str, folder: Path | None, quick: bool, files: str) -> None:
+def site(edition: str, folder: Path | None, quick: bool) -> None:
     """Make the course, its guides and known mistakes one book of HTML pages, which needs no server and no network."""
     from autograder import course
     from autograder.authoring.site.building import build_site
@@ -162,7 +161,7 @@ def site(edition: str, folder: Path | None, quick: bool, files: str) -> None:
     if folder.exists() and any(folder.iterdir()) and not (folder / "searchindex.js").is_file():
         fail(f"{folder} is not empty and is not a site: name another folder with --to")
     try:
-        problems = build_site(root, folder, edition, outputs=not quick, repository=files, tell=click.echo)
+        problems = build_site(root, folder, edition, outputs=not quick, tell=click.echo)
     except CannotHandOut as error:
         fail(str(error))
     click.echo(f"written    {folder / 'index.html'}")

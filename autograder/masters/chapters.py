@@ -1,4 +1,4 @@
-"""Build every chapter notebook and solution file from its master, or report which are out of date."""
+"""Build chapter notebooks, solution files and the README's badges, or report which are out of date."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from autograder.course import SOLUTION
 from autograder.masters.check_cells import exercise_points
 from autograder.masters.layout import chapter_notebooks, chapter_path, masters
 from autograder.masters.master_errors import MasterError
+from autograder.masters.readme import NAME, readme
 from autograder.masters.release import release_text
 from autograder.masters.solutions import solution_files
 from autograder.masters.source import Points, named_cells, notebook_of
@@ -28,7 +29,7 @@ NOTEBOOK = ".ipynb"
 
 @dataclass(frozen=True)
 class BuildReport:
-    """The result of a build, or of a check without writing: chapter notebooks, then solution files.
+    """The result of a build, or of a check without writing: chapter notebooks, solution files, README.
 
     Attributes:
         written: Files that were written.
@@ -68,6 +69,9 @@ def build(root: Path, *, check: bool = False, points: Points = exercise_points) 
     texts = {chapter_path(root, master): release_text(notebook_of(named)) for master, named in cells.items()}
     for master, named in cells.items():
         texts |= solution_files(master, named)
+    front = readme(root, chapter_path(root, next(iter(cells))))
+    if front is not None:
+        texts[root / NAME] = front
     found: dict[str, list[Path]] = {"written": [], "unchanged": [], "stale": [], "edited": []}
     for path, text in texts.items():
         found[_settle(path, text, check=check)].append(path)

@@ -52,9 +52,7 @@ SETTINGS: dict[str, Any] = {
 }
 
 
-def build_site(
-    root: Path, folder: Path, edition: str, *, outputs: bool, repository: str, tell: Callable[[str], None]
-) -> int:
+def build_site(root: Path, folder: Path, edition: str, *, outputs: bool, tell: Callable[[str], None]) -> int:
     """Build the book of a course.
 
     Args:
@@ -62,7 +60,6 @@ def build_site(
         folder: The folder of the pages; the pages of an earlier build in it are replaced.
         edition: One of ``autograder.authoring.site.pages.EDITIONS``.
         outputs: Whether the notebooks are executed first.
-        repository: The address below which a reader finds the files of the course; empty if there is none.
         tell: Prints a line.
 
     Returns:
@@ -75,7 +72,9 @@ def build_site(
         write_sources(root, sources, edition, executed)
         shutil.copyfile(Path(__file__).with_name(STYLE), sources / STATIC / STYLE)
         title = next(iter(course.chapters(root))).title
-        settings = SETTINGS | {"project": title, "html_title": title, "course_files": repository}
+        address = course.repository(root)
+        files = f"{address}/blob/{course.BRANCH}" if address else ""
+        settings = SETTINGS | {"project": title, "html_title": title, "course_files": files}
         with (held.path / "warnings").open("w+", encoding="utf-8") as warnings:
             app = Sphinx(
                 sources, None, pages, held.path / "trees", "html", settings, status=None, warning=warnings

@@ -10,10 +10,12 @@ from xml.etree import ElementTree
 import pytest
 from nbformat.v4 import new_code_cell, new_notebook, new_output
 
+from autograder import course
 from autograder.authoring.site.building import LARGEST, course_of
 from autograder.authoring.site.outputs import moving_picture, show_as_a_students
 from autograder.authoring.site.pages import CLASS, EDITIONS, SELF, SUMMARY, book_page
 from autograder.course import SOLUTION
+from autograder.masters.first_cell import links
 from autograder.masters.layout import masters
 from autograder.masters.source import source_notebook
 from environment.python_child import python_child
@@ -73,6 +75,15 @@ def test_no_output_shows_a_class_what_a_solution_has_written() -> None:
         for edition in EDITIONS
     }
     assert shown == {SELF: [solved.source, "a plain line"], CLASS: ["a plain line"]}
+
+
+def test_a_page_of_a_public_course_opens_its_notebook_in_a_browser(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(course, "repository", lambda _: "https://github.com/ada/ros")
+    for master in masters(ROOT):
+        text = str(book_page(source_notebook(master), SELF))
+        notebook = f"chapters/{master.parents[1].name}/{master.parent.name}.ipynb"
+        for link in links("https://github.com/ada/ros", notebook).values():
+            assert f"]({link})" in text
 
 
 def test_the_cards_of_a_classes_book_offer_no_solution(tmp_path: Path) -> None:

@@ -1,0 +1,72 @@
+"""The badges of a README, which lead to the public repository where there is one."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+from typing import TYPE_CHECKING
+from urllib.parse import parse_qs, urlsplit
+
+from autograder.course import repository
+from autograder.masters.chapters import build
+from autograder.masters.readme import NAME
+
+if TYPE_CHECKING:
+    from autograder.masters.source import Points
+
+ROOT = Path(__file__).parents[2]
+TEXT = """\
+# A course
+
+<!-- badges -->
+<!-- end of badges -->
+
+$ git clone ADDRESS course && cd course
+"""
+NOTEBOOK = "chapters/01_first/lab_9_1.ipynb"
+BADGE = re.compile(r"^\[!\[[^\]]+\]\((\S+)\)\]\((\S+)\)$", re.MULTILINE)
+
+
+def test_with_an_address_a_build_writes_the_badges_and_without_one_it_takes_them_back(
+    course: Path, ten_points: Points
+) -> None:
+    readme, settings = course / NAME, course / "pyproject.toml"
+    readme.write_text(TEXT)
+    assert readme not in build(course, points=ten_points).written
+    settings.write_text('[project.urls]\nRepository = "https://github.com/ada/ros-2.x.git/"\n')
+    assert readme in build(course, check=True, points=ten_points).stale
+    assert readme in build(course, points=ten_points).written
+    written = readme.read_text()
+    assert "$ git clone https://github.com/ada/ros-2.x course && cd course" in written
+    pictures, links = zip(*BADGE.findall(written), strict=True)
+    assert pictures[0] == "https://github.com/ada/ros-2.x/actions/workflows/ci.yml/badge.svg"
+    tests, colab, codespaces, binder = map(urlsplit, links)
+    assert {one.scheme for one in map(urlsplit, [*pictures, *links])} == {"https"}
+    assert (tests.netloc, tests.path) == ("github.com", "/ada/ros-2.x/actions/workflows/ci.yml")
+    assert colab.netloc == "colab.research.google.com"
+    assert colab.path == f"/github/ada/ros-2.x/blob/main/{NOTEBOOK}"
+    assert (codespaces.netloc, codespaces.path) == ("codespaces.new", "/ada/ros-2.x")
+    assert (binder.netloc, binder.path) == ("mybinder.org", "/v2/gh/ada/ros-2.x/main")
+    assert parse_qs(binder.query) == {"urlpath": [f"lab/tree/{NOTEBOOK}"]}
+    settings.unlink()
+    build(course, points=ten_points)
+    assert readme.read_text() == TEXT
+
+
+def test_a_readme_without_a_place_for_badges_is_left_alone(course: Path, ten_points: Points) -> None:
+    (course / NAME).write_text("# Mine\n\n$ git clone SOMETHING else\n")
+    (course / "pyproject.toml").write_text('[project.urls]\nRepository = "https://github.com/ada/ros"\n')
+    assert course / NAME not in build(course, points=ten_points).written
+
+
+def test_the_workflows_name_the_repository_if_nobody_has(tmp_path: Path) -> None:
+    shutil.copy(ROOT / "pyproject.toml", tmp_path)
+    for owner in ("ada", "ben"):
+        script = [ROOT / ".ci" / "address", f"https://github.com/{owner}/ros"]
+        subprocess.run(script, cwd=tmp_path, check=True)
+        assert repository(tmp_path) == "https://github.com/ada/ros"
+    for name in ("site", "release"):
+        workflow = (ROOT / ".github" / "workflows" / f"{name}.yml").read_text()
+        assert '.ci/address "$GITHUB_SERVER_URL/$GITHUB_REPOSITORY"' in workflow
