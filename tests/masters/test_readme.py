@@ -64,7 +64,7 @@ def test_a_readme_without_a_place_for_badges_is_left_alone(course: Path, ten_poi
 def test_the_workflows_name_the_repository_if_nobody_has(tmp_path: Path) -> None:
     shutil.copy(ROOT / "pyproject.toml", tmp_path)
     for owner in ("ada", "ben"):
-        script = [ROOT / ".ci" / "address", f"https://github.com/{owner}/ros"]
+        script = [str(ROOT / ".ci" / "address"), f"https://github.com/{owner}/ros"]
         subprocess.run(script, cwd=tmp_path, check=True)
         assert repository(tmp_path) == "https://github.com/ada/ros"
     for name in ("site", "release"):

@@ -12,6 +12,7 @@ from nbformat.v4 import new_code_cell, new_markdown_cell
 
 from autograder import course
 from autograder.authoring.site.outputs import MOVING
+from autograder.masters.first_cell import NAME as SET_UP_CELL
 from autograder.masters.layout import chapter_path, lab_name, masters
 from autograder.masters.release import release_text
 from autograder.masters.source import source_notebook
@@ -113,8 +114,9 @@ def book_page(source: NotebookNode, edition: str, outcomes: tuple[str, ...] = ()
     secret = _lines_of_solutions(source, page) if edition == CLASS else frozenset[str]()
     cells = []
     for solved, cell in zip(source.cells, page.cells, strict=True):
-        if _WAYS.match(cell.source):
-            continue  # the book has its own links to the pages before and after
+        # The book has its own links to the pages before and after, and nobody runs a page.
+        if _WAYS.match(cell.source) or cell.get("id") == SET_UP_CELL:
+            continue
         changed = solved.source != cell.source
         outputs = [one for one in solved.get("outputs", []) if secret.isdisjoint(_printed(one))]
         cell.metadata = {}

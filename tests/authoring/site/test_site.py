@@ -57,6 +57,7 @@ def test_solutions_are_folded_or_absent(book: tuple[str, Path]) -> None:
     page = (folder / "chapters/01_ros2_fundamentals/lab_1_2.html").read_text(encoding="utf-8")
     text = re.sub(r"<[^>]*>", "", page)
     assert "Learning Outcomes" in text
+    assert "Set the course up, outside of" not in text
     assert (SUMMARY in text) == (edition == SELF)
     assert ("create_timer(0.5, self.say_hello)" in text) == (edition == SELF)
     assert "TODO: make the publisher and the timer here" in text
