@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -14,6 +15,7 @@ import nbformat
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
+LINK = re.compile(r"\]\(([^)]+)\)")
 UV = Path(sys.prefix) / "bin" / "uv"
 
 
@@ -40,17 +42,8 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     shutil.copytree(
         ROOT, copy, ignore=shutil.ignore_patterns(".git", ".venv", "tests", "__pycache__", "*.egg-info")
     )
-    command = [
-        UV,
-        "build",
-        "--wheel",
-        "--no-build-isolation",
-        "--python",
-        sys.executable,
-        "--out-dir",
-        copy / "dist",
-    ]
-    subprocess.run(list(map(str, command)), cwd=copy, check=True, capture_output=True)
+    command = [sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "-w", "dist", "."]
+    subprocess.run(command, cwd=copy, check=True, capture_output=True)
     return next((copy / "dist").glob("*.whl"))
 
 
@@ -70,7 +63,7 @@ def add(folder: Path, wheel: Path, extra: str) -> None:
     constraints.write_text(
         "".join(
             f"{line.removesuffix(chr(92)).strip()}\n"
-            for lock in ("course", "ros")
+            for lock in ("course", "ros", "site")
             for line in (locks / f"{lock}.lock").read_text().splitlines()
             if "==" in line and not line.startswith((" ", "#"))
         )
@@ -121,6 +114,25 @@ def test_an_exercise_is_made_tried_checked_and_a_class_of_two_is_graded(installe
     graded = run(autograder, "grade", class_, "--json", cwd=installed)
     points = {one["student"]: one["score"] for one in printed_json(graded)["submissions"]}
     assert points == {"ada": 10, "ben": 0}
+
+    handed_out = installed / "handed-out"
+    run(autograder, "hand-out", handed_out, cwd=inside)
+    assert "BEGIN SOLUTION" not in "".join(path.read_text() for path in handed_out.rglob("*.*"))
+    readme = (handed_out / "README.md").read_text()
+    assert 'pip install "ros2-course-autograder[ros,notebooks]"' in readme
+    assert "./course" not in readme
+    assert not [target for target in LINK.findall(readme) if not (handed_out / target).exists()]
+    assert "0 of 10 points" in run(autograder, "progress", cwd=handed_out)
+    judged = run(autograder, "check", "lab_1_1.battery", "--json", "--", "python3", program, cwd=handed_out)
+    assert printed_json(judged)["score"] == 10
+
+    assert "pip install 'ros2-course-autograder[site]'" in run(autograder, "site", cwd=mine, code=2)
+    add(installed, wheel, "site")
+    run(autograder, "site", cwd=inside)
+    page = (mine / "site" / "chapters" / "01_first" / "lab_1_1.html").read_text()
+    assert "Solution (click to expand)" in page
+    assert "10 of 10 points" in page
+    assert "battery" in (mine / "site" / "index.html").read_text()
 
 
 def test_a_folder_of_a_student_is_no_course_to_a_command_for_a_class(tmp_path: Path) -> None:

@@ -20,7 +20,8 @@ GROUPS = {
     "Authors": authors.COMMANDS,
 }
 """The commands by the people who type them, in the order of the help."""
-IN_A_COURSE = {str(command.name) for command in (instructors.new_class, *authors.COMMANDS)}
+_HERE = (instructors.new_class, instructors.hand_out, students.lab, students.progress, students.reset)
+IN_A_COURSE = {str(command.name) for command in (*_HERE, *authors.COMMANDS)}
 """The commands that work on the course around the current folder, besides `check` of one's own program. Every other
 command for a class uses the course that `new-class` recorded: students' work could hold a course of their own."""
 

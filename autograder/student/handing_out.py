@@ -21,7 +21,7 @@ from autograder.exercises import REFERENCE
 from autograder.masters.chapters import holds_work
 from autograder.masters.layout import relinked
 from autograder.regular_files import write_whole
-from environment.installation import COMMAND
+from environment.installation import COMMAND, PACKAGE
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
@@ -52,8 +52,19 @@ README = """\
 
 Notebooks about ROS 2 in which a judge checks your nodes: it is a ROS node itself, and looks at what yours do.
 
-You need Linux on x86-64 (or Windows with WSL 2) and Python 3.11 or newer. Then:
+You need Linux on x86-64 (or Windows with WSL 2) and Python 3.11 or newer. Then, in this folder:
 
+{begin}
+
+| you want to | |
+| --- | --- |
+{guide}| see how far you are, or begin a notebook anew | that map; or `{command} progress` and `{command} reset` |
+| check a program of your own in a terminal | `{command} check`, which lists the exercises |
+{mistakes}| see what is missing on your machine | `{command} doctor` |
+"""
+_OF_A_CLONE = {
+    "command": "./course",
+    "begin": """\
 ```console
 $ ./course lab
 ```
@@ -62,16 +73,26 @@ The first time this sets everything up, in one to three minutes, or longer where
 busy. It opens a map of all notebooks; press *Begin*.
 
 On a Mac, on Windows without WSL or on an ARM computer, use Docker: `environment/jazzy.Dockerfile` begins with the two
-commands to type. Or open this folder in VS Code, choose *Reopen in Container*, and type `./course lab --no-browser`.
+commands to type. Or open this folder in VS Code, choose *Reopen in Container*, and type
+`./course lab --no-browser`.""",
+    "guide": "| know how to work with the notebooks | [the student's guide](docs/students-guide.md) |\n",
+    "mistakes": "| know what a diagnosis means | [known mistakes](docs/mistakes.md) |\n",
+}
+_OF_A_WHEEL = {
+    "command": "autograder",
+    "begin": f"""\
+```console
+$ python3 -m venv .venv
+$ . .venv/bin/activate
+$ pip install "{PACKAGE}[ros,notebooks]"
+$ autograder lab
+```
 
-| you want to | |
-| --- | --- |
-| know how to work with the notebooks | [the student's guide](docs/students-guide.md) |
-| see how far you are, or begin a notebook anew | that map; or `./course progress` and `./course reset` |
-| check a program of your own in a terminal | `./course check`, which lists the exercises |
-| know what a diagnosis means | [known mistakes](docs/mistakes.md) |
-| see what is missing on your machine | `./course doctor` |
-"""
+The last line opens a map of all notebooks; press *Begin*.""",
+    "guide": "",
+    "mistakes": "",
+}
+"""A course of its own has neither ``./course`` nor these pages: its students install the wheel."""
 
 
 class CannotHandOut(Exception):
@@ -124,7 +145,8 @@ def hand_out(
     if not chapters:
         raise CannotHandOut(f"{root} has no notebook yet: there is nothing to hand out")
     files = dict(_files(root, chapters, with_solutions=with_solutions))
-    files["README.md"] = README.format(title=chapters[0].title).encode()
+    words = _OF_A_CLONE if "course" in files else _OF_A_WHEEL
+    files["README.md"] = README.format(title=chapters[0].title, **words).encode()
     write = _pack if as_zip else _copy
     write(place, files)
     sizes = [

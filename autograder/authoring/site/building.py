@@ -7,8 +7,8 @@ import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import sphinx.addnodes
 from docutils import nodes
-from sphinx import addnodes
 from sphinx.application import Sphinx
 
 from autograder import course
@@ -113,7 +113,7 @@ def _settle_what_is_elsewhere(app: Sphinx, tree: nodes.document) -> None:
     for picture in list(tree.findall(nodes.image)):
         if str(picture["uri"]).startswith(("http:", "https:")):
             picture.replace_self(nodes.Text(picture.get("alt", "")))
-    for link in list(tree.findall(addnodes.pending_xref)):
+    for link in list(tree.findall(sphinx.addnodes.pending_xref)):
         target = str(link["reftarget"]).partition("#")[0]
         file = os.path.normpath(Path(link["refdoc"]).parent / target)
         if link.get("reftype") != "myst" or not target or Path(file).parts[0] == "..":

@@ -71,7 +71,9 @@ def write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str,
         executed: The executed source notebooks by the names of their labs; a lab without one has no outputs.
     """
     (folder / STATIC).mkdir()
-    shutil.copytree(root / "docs", folder / "docs", ignore=shutil.ignore_patterns("*.py", "*.json"))
+    if (root / "docs").is_dir():
+        shutil.copytree(root / "docs", folder / "docs", ignore=shutil.ignore_patterns("*.py", "*.json"))
+    (folder / "index.md").write_text(f"# {course.chapters(root)[0].title}{_contents(root)}", encoding="utf-8")
     for page in root.glob("*.md"):
         name = "index.md" if page.name == "README.md" else page.name
         text = page.read_text(encoding="utf-8")
