@@ -151,7 +151,7 @@ def test_the_course_is_cloned_and_brought_up_to_date(tmp_path: Path) -> None:
     if not (ROOT / ".git").exists():
         pytest.skip("this is not a git clone")
     clone = next(one for one in documented() if one.words[:2] == ("git", "clone"))
-    words = [str(ROOT) if word == "ADDRESS" else word for word in clone.words]
+    words = [*clone.words[:2], str(ROOT), *clone.words[3:]]
     subprocess.run(words, cwd=tmp_path, check=True, capture_output=True)
     folder = tmp_path / words[-1]
     subprocess.run(["git", "pull"], cwd=folder, check=True, capture_output=True)

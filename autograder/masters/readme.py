@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 NAME = "README.md"
-TO_FILL_IN = "ADDRESS"
+TO_FILL_IN = "ADDRESS_OF_THIS_REPOSITORY"
 """The word in a README for the address of a repository that is not public yet."""
 TESTS = ".github/workflows/ci.yml"
 PICTURES = {
@@ -30,7 +30,7 @@ _CLONE = re2.compile(r"(git clone )\S+( )")
 
 
 def badges(address: str, notebook: str) -> str:
-    """Return the Markdown of a repository's badges: its tests, and the services that open a notebook.
+    """Return the Markdown of a repository's badges, for its tests and for the services that open a notebook.
 
     Args:
         address: The repository, as :func:`autograder.course.repository` returns it.
@@ -39,7 +39,7 @@ def badges(address: str, notebook: str) -> str:
     tests = f"{address}/actions/workflows/{TESTS.rpartition('/')[2]}"
     shown = [f"[![Tests]({tests}/badge.svg)]({tests})"]
     for name, link in links(address, notebook).items():
-        shown.append(f"[![Open the first notebook in {name}]({PICTURES[name]})]({link})")
+        shown.append(f"[![Open in {name}]({PICTURES[name]})]({link})")
     return "\n".join(shown)
 
 

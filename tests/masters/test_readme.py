@@ -23,7 +23,7 @@ TEXT = """\
 <!-- badges -->
 <!-- end of badges -->
 
-$ git clone ADDRESS course && cd course
+$ git clone ADDRESS_OF_THIS_REPOSITORY course && cd course
 """
 NOTEBOOK = "chapters/01_first/lab_9_1.ipynb"
 BADGE = re.compile(r"^\[!\[[^\]]+\]\((\S+)\)\]\((\S+)\)$", re.MULTILINE)
