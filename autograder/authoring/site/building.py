@@ -125,8 +125,18 @@ def _settle_what_is_elsewhere(app: Sphinx, tree: nodes.document) -> None:
             link.replace_self(shown)
 
 
+def _let_the_keyboard_move_tables(
+    _app: Sphinx, _page: str, _template: str, context: dict[str, Any], _tree: nodes.document | None
+) -> None:
+    """A table that is wider than a phone is moved sideways, which has to be possible by its arrow keys, too."""
+    context["body"] = context.get("body", "").replace(
+        '<table class="table"', '<table class="table" tabindex="0"'
+    )
+
+
 def setup(app: Sphinx) -> dict[str, Any]:
     """Register this module as an extension of Sphinx."""
+    app.connect("html-page-context", _let_the_keyboard_move_tables)
     app.add_config_value("course_files", "", "html")
     app.connect("doctree-read", _settle_what_is_elsewhere)
     return {"parallel_read_safe": True}

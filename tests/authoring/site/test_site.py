@@ -52,6 +52,11 @@ def test_every_lab_has_a_page_and_every_page_is_small_and_loads_nothing(book: tu
     assert not [page.name for page in pages if ELSEWHERE.search(page.read_text(encoding="utf-8"))]
 
 
+def test_a_table_that_is_wider_than_a_phone_is_moved_by_the_keyboard(book: tuple[str, Path]) -> None:
+    tables = re.findall(r'<table class="table"[^>]*>', (book[1] / "index.html").read_text(encoding="utf-8"))
+    assert set(tables) == {'<table class="table" tabindex="0">'}
+
+
 def test_solutions_are_folded_or_absent(book: tuple[str, Path]) -> None:
     edition, folder = book
     page = (folder / "chapters/01_ros2_fundamentals/lab_1_2.html").read_text(encoding="utf-8")
