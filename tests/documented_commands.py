@@ -165,11 +165,11 @@ def _parser_of(command: Words, pytest_parser: Any) -> Callable[[Words], object]:
 
 
 def _click(name: str, words: Words) -> None:
-    command = cli.commands.get(name)
+    command, rest = (cli, [name, *words]) if name.startswith("-") else (cli.commands.get(name), list(words))
     if command is None:
         raise NotUnderstood(f"there is no command {name}")
     try:
-        command.make_context(name, list(words))
+        command.make_context(name, rest)
     except click.exceptions.Exit:
         pass  # --help
     except click.ClickException as error:

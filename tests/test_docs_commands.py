@@ -39,6 +39,7 @@ _PICTURES = "grading/day/test_pictures.py::"
 _SCRIPT = "environment/test_course_script.py::"
 GROUPS = {name for name, command in COMMANDS.items() if command.verbs}
 RUN_BY = {
+    "./course --help": "test_cli.py::test_the_help_lists_each_command_once_with_a_whole_sentence",
     "./course appeal": GUIDE,
     "./course attempts": GUIDE,
     "./course benchmark": "benchmarks/test_short_run.py::test_every_figure_is_measured",

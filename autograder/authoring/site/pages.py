@@ -42,6 +42,7 @@ _PARTS = {
         "robot",
         "ros2-command",
         "fairness",
+        "accuracy",
     ),
     "For instructors": ("instructors-guide", "instructor/*", "course-text", "environment", "scale"),
     "For authors": (

@@ -15,6 +15,7 @@ from autograder.authoring.site.building import LARGEST, course_of
 from autograder.authoring.site.outputs import moving_picture, show_as_a_students
 from autograder.authoring.site.pages import CLASS, EDITIONS, SELF, SUMMARY, book_page
 from autograder.course import SOLUTION
+from autograder.masters.first_cell import NAME as SET_UP_CELL
 from autograder.masters.first_cell import links
 from autograder.masters.layout import masters
 from autograder.masters.source import source_notebook
@@ -73,7 +74,7 @@ def test_solutions_are_folded_or_absent(book: tuple[str, Path]) -> None:
 def test_no_output_shows_a_class_what_a_solution_has_written() -> None:
     source = source_notebook(next(one for one in masters(ROOT) if one.parent.name == "lab_1_3"))
     solved = next(cell for cell in source.cells if "BEGIN SOLUTION" in cell.source)
-    given = next(cell for cell in source.cells if cell.cell_type == "code" and cell is not solved)
+    given = next(cell for cell in source.cells if cell.id.startswith("given-") and cell.id != SET_UP_CELL)
     for text in (solved.source, "a plain line"):
         given.outputs.append(new_output("stream", text=text))
     shown = {
