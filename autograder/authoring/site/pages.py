@@ -33,33 +33,8 @@ _NOTEBOOK_LINK = re2.compile(r"\]\(([\w./-]*\.ipynb)#([^)]+)\)")
 _README_PICTURE = re2.compile(r"!\[[^\]]*\]\(docs/images/[^)]+\)")
 _WAYS = re2.compile(r"^(← Previous: |Next: )")
 _OUTCOME = re2.compile(r"(?m)^\| ([^|]+) \| [^|]+ \| .*/([\w-]+)\.ipynb\) \|$")
-_PARTS = {
-    "For students": (
-        "students-guide",
-        "mistakes",
-        "glossary",
-        "learning-outcomes",
-        "robot",
-        "ros2-command",
-        "fairness",
-        "accuracy",
-    ),
-    "For instructors": ("instructors-guide", "instructor/*", "course-text", "environment", "scale"),
-    "For authors": (
-        "writing-a-master",
-        "adding-an-exercise",
-        "your-own-repository",
-        "exercise-reference",
-        "what-ros-does",
-        "../CONTRIBUTING",
-        "architecture",
-        "decisions",
-        "boxes",
-        "workspaces",
-        "testing",
-    ),
-    "About": ("comparison", "security", "performance", "../CHANGELOG", "../SECURITY", "README"),
-}
+_READER = re2.compile(r"(?m)^\*\*(.+)\*\*$")
+_TARGET = re2.compile(r"\]\(([^)#:]+)[^)]*\)")
 
 
 def write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str, NotebookNode]) -> None:
@@ -190,11 +165,28 @@ def _contents(root: Path) -> str:
     trees = {}
     for chapter in course.chapters(root):
         trees[chapter.title] = [f"chapters/{chapter.folder.name}/{lab.name}" for lab in chapter.labs]
-    for title, names in _PARTS.items():
-        found = [page for name in names for page in sorted((root / "docs").glob(f"{name}.md"))]
-        trees[title] = [str(page.resolve().relative_to(root.resolve()).with_suffix("")) for page in found]
+    for title, pages in _guides(root.resolve()).items():
+        trees[title] = [str(page.relative_to(root.resolve()).with_suffix("")) for page in pages]
     return "".join(
         f'\n\n```{{toctree}}\n:hidden:\n:caption: "{title}"\n\n' + "\n".join(pages) + "\n```\n"
         for title, pages in trees.items()
         if pages
     )
+
+
+def _guides(root: Path) -> dict[str, list[Path]]:
+    """The pages by their readers, as the list in ``docs/README.md`` has them; pages that it does not name come last."""
+    index = root / "docs" / "README.md"
+    _, *parts = _READER.split(index.read_text(encoding="utf-8") if index.is_file() else "")
+    left = {*root.glob("*.md"), *(root / "docs").rglob("*.md")} - {root / "README.md"}
+    found = {}
+    for reader, listed in zip(parts[::2], parts[1::2], strict=True):
+        places = [(index.parent / target).resolve() for target in _TARGET.findall(listed)]
+        pages = [
+            page for place in places for page in (sorted(place.glob("*.md")) if place.is_dir() else [place])
+        ]
+        found[f"For {reader[:1].lower()}{reader[1:]}"] = [
+            page for page in dict.fromkeys(pages) if page in left
+        ]
+        left.difference_update(pages)
+    return found | {"About": sorted(left)}
