@@ -1,6 +1,6 @@
 """What a course's README says of its public repository: badges, and the address to clone.
 
-Without an address there are no badges, and the line to clone names it as something to fill in.
+With no address known, the place of the badges stays empty, and the line to clone has a word to fill in.
 """
 
 from __future__ import annotations

@@ -92,7 +92,7 @@ def book_page(source: NotebookNode, edition: str, outcomes: tuple[str, ...] = ()
     secret = _lines_of_solutions(source, page) if edition == CLASS else frozenset[str]()
     cells = []
     for solved, cell in zip(source.cells, page.cells, strict=True):
-        # The book has its own links to the pages before and after, and nobody runs a page.
+        # The book has its own links to the pages before and after, and a page is read, not run.
         if _WAYS.match(cell.source) or cell.get("id") == SET_UP_CELL:
             continue
         changed = solved.source != cell.source
