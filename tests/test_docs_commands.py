@@ -180,8 +180,9 @@ def test_a_student_is_added_by_hand(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     from nbgrader.apps.dbapp import DbStudentAddApp
 
     monkeypatch.chdir(tmp_path)
-    DbStudentAddApp.launch_instance(["ada"])
-    DbStudentAddApp.clear_instance()
+    application = DbStudentAddApp()
+    application.initialize(["ada"])
+    application.start()
     with Gradebook("sqlite:///gradebook.db") as gradebook:
         assert [student.id for student in gradebook.students] == ["ada"]
 
