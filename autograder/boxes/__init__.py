@@ -1,1 +1,1 @@
-"""The execution of a submission's notebook: a kernel of its own, limits on everything, nothing left behind."""
+"""The execution of a submission's notebook: a kernel for it alone, limits on every resource, no process left behind."""

@@ -1,4 +1,4 @@
-"""A box, and the conversation with its supervisor in which it is made and ended."""
+"""A box, and the channel to the supervisor that makes and ends it."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 ANSWER_SECONDS = 30.0
-"""Seconds of wall time in which the supervisor of the boxes answers."""
+"""Seconds of wall time within which a supervisor has to answer."""
 
 
 class NoSandbox(RuntimeError):
-    """There is no box here; the message says why, and what to do about it."""
+    """No box can be made here; the message gives the reason and what to do about it."""
 
 
 @dataclass(frozen=True)
 class Box:
-    """A box that is there.
+    """A running box.
 
     Attributes:
-        name: Its name among the boxes of its supervisor.
-        pid: Its first process, as the host counts.
-        pidfd: Stands for that process: hand it to a fork server to enter the box. Belongs to the supervision; -1 for a
-            command that has ended at once.
-        guarded: What enters it has the limits of the guard.
-        supervision: Ends it.
+        name: The name of this box among the boxes of its supervisor.
+        pid: The box's first process, as the host counts.
+        pidfd: A descriptor of that process. Send it to a fork server to enter the box. The supervision closes it; -1
+            for a command that ended at once.
+        guarded: True if the guard's limits apply to every process that enters the box.
+        supervision: The supervision that ends this box.
     """
 
     name: str
@@ -40,14 +40,14 @@ class Box:
 
     @property
     def lost(self) -> bool:
-        """True if its supervisor is gone, and the box with it: then no end of a process says anything."""
+        """True if the supervisor, and so the box, is gone: then an exit code tells nothing about the student's code."""
         return self.supervision.lost
 
     def end(self) -> int:
-        """Kill the box and wait until no process of it is alive; may be called twice.
+        """Kill the box and wait until none of its processes is alive; may be called twice.
 
         Returns:
-            The exit code of bubblewrap: that of the command, 128 and more for a signal.
+            The exit code of bubblewrap: that of the command, or 128 plus the number of a signal.
 
         Raises:
             ChannelClosed: The supervisor is gone.
@@ -55,20 +55,20 @@ class Box:
         return self.supervision.end(self.name)
 
     def wait_end(self) -> int:
-        """Wait until the box has ended of its own; as :meth:`end`.
+        """Wait until the box ends by itself; returns the same as :meth:`end`.
 
         Raises:
-            ChannelClosed: It did not end in time, or the supervisor is gone.
+            ChannelClosed: The box did not end in time, or the supervisor is gone.
         """
         return self.supervision.wait_end(self.name)
 
 
 class Supervision:
-    """A conversation with a supervisor of its own. Threads take turns.
+    """A connection to one supervisor process; safe to call from several threads.
 
     Args:
-        supervisors: Where the fork server of supervisors listens.
-        words: What :mod:`autograder.boxes.supervisor` is to know of the scratch.
+        supervisors: The socket address of the fork server that starts supervisors.
+        words: What :mod:`autograder.boxes.supervisor` needs to mount the scratch folder.
 
     Raises:
         NoSandbox: The supervisor could not make the namespaces.
@@ -88,16 +88,17 @@ class Supervision:
     def start(
         self, name: str, descriptors: Sequence[int] = (), *, guarded: bool = False, **words: Any
     ) -> Box:
-        """Make a box.
+        """Start a box.
 
         Args:
-            name: Not yet used here.
-            descriptors: Standard input, output and error of its command, where it has one; they stay open here.
+            name: A name that no other box of this supervisor has.
+            descriptors: Standard input, output and error for the box's command, if it has one; the caller keeps its
+                copies.
             guarded: See :class:`Box`.
-            words: What the supervisor is to know of the box.
+            words: The other arguments of the supervisor's `_start`.
 
         Raises:
-            NoSandbox: It could not be made.
+            NoSandbox: The supervisor could not make the box.
         """
         with self._turn:
             message, received = self._ask("started", descriptors, say="start", name=name, **words)
@@ -107,18 +108,18 @@ class Supervision:
 
     @property
     def lost(self) -> bool:
-        """True if the supervisor is gone, and all boxes with it."""
+        """True if the supervisor is gone, and with it all its boxes."""
         return self._channel.hung_up
 
     def end(self, name: str) -> int:
-        """Implements :meth:`Box.end`."""
+        """Kill the box of this name; see :meth:`Box.end`."""
         with self._turn:
             if name not in self._ended:
                 self._channel.send({"say": "kill", "name": name})
             return self.wait_end(name)
 
     def wait_end(self, name: str) -> int:
-        """Implements :meth:`Box.wait_end`."""
+        """Wait for the box of this name; see :meth:`Box.wait_end`."""
         with self._turn:
             while name not in self._ended:
                 self._take(*self._channel.receive(ANSWER_SECONDS))
@@ -133,7 +134,7 @@ class Supervision:
             for name in list(self._boxes):
                 self.end(name)
         except ChannelClosed:
-            pass  # the supervisor is gone, and with it what it kept
+            pass  # the supervisor is gone, and its boxes with it
         finally:
             self._channel.close()
             close_all([box.pidfd for box in self._boxes.values()])

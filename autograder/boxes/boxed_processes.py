@@ -1,4 +1,4 @@
-"""The processes of a box, seen from who has started them: a fork of a fork server, or a command."""
+"""The processes of a box as their starter sees them: a child of a fork server, or a command."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ if TYPE_CHECKING:
 
 _START_SECONDS = 60.0
 _CLOSING_SECONDS = 10.0
-"""Seconds from the end of a command's output to its own."""
+"""Seconds that a command may go on after it closed its output."""
 _ITS_TIME = 1e6
-"""Seconds, more than any check lasts: a program runs as long as the judge wants it to."""
+"""Seconds; longer than any check lasts, because the judge decides how long a program runs."""
 
 
 class ForkedProcess:
     """A process that a fork server has forked for us.
 
-    It is killed when this object's channel is closed, in whatever way.
+    It is killed as soon as this object's channel is closed, even if this process crashes.
 
     Args:
-        address: Where the fork server listens.
-        entrance: How the process begins.
-        descriptors: What it is given. They stay open here.
-        box: The box that it enters and ends with; None where it is in none.
+        address: The socket address of the fork server.
+        entrance: The settings with which the process begins.
+        descriptors: File descriptors for the process. The caller keeps its copies.
+        box: The box that the process enters, and that ends with it; None if it runs outside any box.
 
     Raises:
         ChannelClosed: The fork server is gone, or the child could not enter its box.
@@ -56,37 +56,37 @@ class ForkedProcess:
             self._channel.close()
             raise
         self.pid = int(message["pid"])
-        """As the host counts."""
+        """The process id, as the host counts."""
 
     def fileno(self) -> int:
-        """Readable when the process has ended."""
+        """The descriptor that becomes readable when the process has ended."""
         return self._channel.fileno()
 
     @property
     def alive(self) -> bool:
-        """True if it still runs."""
+        """True if the process still runs."""
         self._look(0.0)
         return self._status is None and not self._lost
 
     @property
     def status(self) -> int | None:
-        """Its wait status (wait(2)); None while it runs, and where nobody can tell any more."""
+        """The process's wait status (wait(2)); None while it runs, or if the status is lost."""
         self._look(0.0)
         return self._status
 
     @property
     def lost(self) -> bool:
-        """True if who watched over it is gone, or its box went away under it: then its end says nothing of it."""
+        """True if its supervisor or box disappeared first: then its exit tells nothing about the student's code."""
         self._look(0.0)
         return self._lost or (self._box is not None and self._box.lost)
 
     def interrupt(self) -> None:
-        """SIGINT to it and to its process group."""
+        """Send SIGINT to the process and its process group."""
         if self.alive:
             signal_group(self.pid, signal.SIGINT)
 
     def wait(self, within: float) -> bool:
-        """Wait for its end; whether it came.
+        """Wait for the process to end. Return True if it has ended.
 
         Args:
             within: Seconds.
@@ -95,13 +95,13 @@ class ForkedProcess:
         return self._status is not None or self._lost
 
     def end_box(self) -> None:
-        """Kill all that is in its box, and keep its status."""
+        """Kill every process in the box, and keep the status of this one."""
         if self._box is not None:
             with contextlib.suppress(OSError):
                 self._box.end()
 
     def end(self) -> None:
-        """Kill it, and with its box all that it has started; may be called twice."""
+        """Kill the process and everything that it started in its box; may be called twice."""
         self.end_box()
         if self._channel.fileno() < 0:
             return
@@ -124,14 +124,13 @@ class ForkedProcess:
 
 @dataclass(frozen=True)
 class Finished:
-    """The end of a command in a box.
+    """The result of a command in a box.
 
     Attributes:
-        returncode: As :class:`subprocess.Popen` has it: the exit code; negative for a signal. None where it was
-            ended at its limit.
-        output: What it said on standard output and standard error, in that order of arrival, at most the allowed
-            number of bytes.
-        cut: Whether it said more.
+        returncode: As in :class:`subprocess.Popen`: the exit code; negative for a signal. None if the command was
+            stopped at its time limit.
+        output: Standard output and standard error, in the order of arrival, cut at the allowed number of bytes.
+        cut: True if there was more output.
     """
 
     returncode: int | None
@@ -140,7 +139,7 @@ class Finished:
 
 
 class Running:
-    """A command that runs in a box; leaving the context ends it and all that it has started."""
+    """A command that runs in a box; leaving the context ends it and everything that it started."""
 
     def __init__(self, box: Box, output: int, most: int) -> None:
         self._box, self._output, self._most = box, output, most
@@ -151,10 +150,10 @@ class Running:
         """The first process of the box, as the host counts."""
 
     def read(self, within: float) -> bool:
-        """Take up what it says; False once it has ended.
+        """Read available output. Return False once the command has ended.
 
         Args:
-            within: Seconds to wait for something to read.
+            within: Seconds to wait for output.
         """
         piece = self.next_output(max(0.0, within))
         if piece is None:
@@ -166,14 +165,14 @@ class Running:
 
     @property
     def said(self) -> bytes:
-        """Its output so far, as far as it was read and is kept."""
+        """The output that has been read and kept so far."""
         return bytes(self._kept)
 
     def wait(self, limit: float) -> Finished:
-        """Wait until it ends, and end it at its limit.
+        """Wait until the command ends; stop it at the limit.
 
         Args:
-            limit: Seconds of wall time from its start.
+            limit: Seconds of wall time since the command started.
         """
         deadline = self._began + limit
         running = True
@@ -185,29 +184,30 @@ class Running:
         return Finished(returncode, self.said, self._cut)
 
     def next_output(self, within: float) -> bytes | None:
-        """Its output since the last call, which is not kept; None for nothing yet, no bytes at its end.
+        """Return the output since the last call, without keeping it: None if there is none yet, b"" once it has ended.
 
         Args:
-            within: Seconds to wait for something.
+            within: Seconds to wait for output.
         """
         if not select.select([self._output], [], [], within)[0]:
             return None
         return os.read(self._output, 1 << 16)
 
     def exit_code(self) -> int | None:
-        """Wait for the end of the box, once there is no more output; as ``Finished.returncode``."""
+        """Wait for the box to end, once there is no more output. Return the same as ``Finished.returncode``."""
         return self.wait(_ITS_TIME).returncode
 
     def interrupt(self) -> None:
-        """Ctrl-C, as a terminal sends it: to all of the process group at once.
+        """Send Ctrl-C as a terminal does: to the whole process group at once.
 
-        One after the other, a program might have ended, and `ros2 run` with it, before Ctrl-C came to `ros2 run`. The
-        first process of the box, which leads the group, takes no notice: it has no handler (pid_namespaces(7)).
+        If each process got it in turn, a program could end, and `ros2 run` with it, before Ctrl-C reached `ros2 run`.
+        The first process of the box leads the group and ignores the signal, because it has no handler
+        (pid_namespaces(7)).
         """
         signal_group(self.pid, signal.SIGINT)
 
     def end(self) -> None:
-        """Kill it and all that it has started; may be called twice."""
+        """Kill the command and everything that it started; may be called twice."""
         if self._output >= 0:
             self._box.end()
             os.close(self._output)
@@ -224,8 +224,8 @@ class WarmCommand:
     """A command that a fork server has forked into a box of its own.
 
     Args:
-        process: The command; its box ends with it.
-        output: What it says, readable.
+        process: The process of the command; the box ends with it.
+        output: A descriptor from which the command's output is read.
         pid: The first process of the box, as the host counts.
     """
 
@@ -233,17 +233,17 @@ class WarmCommand:
         self._process, self._output, self.pid = process, output, pid
 
     def next_output(self, within: float) -> bytes | None:
-        """See :meth:`Running.next_output`. What the command has started and left ends with it."""
+        """See :meth:`Running.next_output`. Processes that the command left behind end with it."""
         process = self._process.fileno()
         ready = select.select([self._output, process], [], [], within)[0]
         if process in ready:
-            self._process.end_box()  # what is left of it may hold its output, or say more without end
+            self._process.end_box()  # processes left behind may hold the output open, or write for ever
         return os.read(self._output, 1 << 16) if ready else None
 
     def exit_code(self) -> int | None:
-        """Its exit code, once there is no more output; as ``Finished.returncode``, None where nobody can tell it."""
+        """Return the exit code, once there is no more output, as ``Finished.returncode``; None if it is lost."""
         if not self._process.wait(_CLOSING_SECONDS):
-            self._process.end_box()  # it has closed its output and goes on, where nobody could end it any more
+            self._process.end_box()  # it closed its output but goes on; this is the last chance to stop it
             self._process.wait(ANSWER_SECONDS)
         status = self._process.status
         if status is None:
@@ -252,11 +252,11 @@ class WarmCommand:
         return _returncode(code) if code >= 0 else code
 
     def interrupt(self) -> None:
-        """Ctrl-C, as a terminal sends it to all of a process group."""
+        """Send Ctrl-C as a terminal does: to the whole process group."""
         self._process.interrupt()
 
     def end(self) -> None:
-        """Kill it and all that it has started; may be called twice."""
+        """Kill the command and everything that it started; may be called twice."""
         if self._output >= 0:
             self._process.end()
             os.close(self._output)
@@ -264,5 +264,5 @@ class WarmCommand:
 
 
 def _returncode(status: int) -> int:
-    """As :class:`subprocess.Popen` has it, where a signal's number comes as 128 and more."""
+    """The return code as :class:`subprocess.Popen` has it, from one in which a signal is 128 plus its number."""
     return status if status < 128 else 128 - status

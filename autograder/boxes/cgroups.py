@@ -1,7 +1,7 @@
-"""A cgroup for each submission, where the host lets us make one: it counts what nobody can hide, and has one share.
+"""A cgroup for each submission, if the host allows it: exact counts, and an equal share of processors.
 
-Version 1 (one hierarchy for each controller) and version 2 (one for all) are both in use. Whether a process may be put
-into a new group is found out by putting one there, because permissions, delegation and read-only mounts all have a say.
+Version 1 (one hierarchy for each controller) and version 2 (one for all) are both in use. Permissions, delegation and
+read-only mounts decide together whether a process can be put into a new group, so this is tried with a real process.
 See cgroups(7), and ``cgroup-v1/memory`` and ``cgroup-v2`` in the kernel's documentation.
 """
 
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 _KINDS = ("memory", "pids", "cpu", "cpuacct")
-"""Version 2 has no ``cpuacct``: every group of it counts its processor time."""
+"""Version 2 has no ``cpuacct``: each of its groups counts processor time."""
 _PREFIX = "autograder-"
 _SURELY_LEFT = 60.0
-"""Seconds after which an empty group is nobody's any more."""
+"""Seconds after which an empty group has certainly been left behind."""
 _numbers = itertools.count()
 
 
 @dataclass(frozen=True)
 class Controller:
-    """A place where groups of a controller can be made.
+    """A controller for which groups can be made.
 
     Attributes:
-        base: The folder in which a group is a new folder.
+        base: The folder in which a new folder is a new group.
         version: 1 or 2.
     """
 
@@ -42,12 +42,12 @@ class Controller:
 
 
 class Group:
-    """The groups of one submission. Together its processes have as much of the processors as one other group has.
+    """The groups of one submission. Its processes together get the same share of the processors as any other group.
 
     Args:
-        memory_bytes: What all its processes may have together, files in memory included.
-        processes: How many processes and threads there may be.
-        controllers: Where groups can be made; found out where None.
+        memory_bytes: The limit for all its processes together, files in memory included.
+        processes: The limit on processes and threads.
+        controllers: The controllers for which groups can be made; None to find them.
     """
 
     def __init__(
@@ -65,33 +65,33 @@ class Group:
 
     @property
     def procs(self) -> list[str]:
-        """The files into which a process writes 0 to become a member, with all that it starts later."""
+        """The files into which a process writes 0 to join, together with everything that it starts later."""
         return sorted({str(folder / "cgroup.procs") for folder in self._folders.values()})
 
     @property
     def ran_out_of_memory(self) -> bool:
-        """True if the kernel has ended a member because all of them together had too much."""
+        """True if the kernel killed a member because all members together used too much memory."""
         return self._counted("memory", "memory.oom_control", "memory.events", "oom_kill")
 
     @property
     def ran_out_of_processes(self) -> bool:
-        """True if a member was refused a further process or thread."""
+        """True if a member was refused another process or thread."""
         return self._counted("pids", "pids.events", "pids.events", "max")
 
     @property
     def cpu_seconds(self) -> float | None:
-        """Processor time of all that were ever members, whoever has waited for them; None where nobody counts it."""
+        """Processor time of every process that was ever a member, in seconds; None if it is not counted here."""
         with contextlib.suppress(OSError, ValueError, IndexError):
             if "cpuacct" in self._folders:
                 return int((self._folders["cpuacct"] / "cpuacct.usage").read_text()) / 1e9
             for kind, folder in self._folders.items():
                 if self._controllers[kind].version == 2:
-                    # Its first line is usage_usec.
+                    # The first line is usage_usec.
                     return int((folder / "cpu.stat").read_text().split()[1]) / 1e6
         return None
 
     def close(self) -> None:
-        """Take the groups away again, when no process is in them any more; may be called twice."""
+        """Remove the groups, once no process is in them; may be called twice."""
         for folder in set(self._folders.values()):
             with contextlib.suppress(OSError):
                 folder.rmdir()
@@ -117,22 +117,22 @@ class Group:
 
 
 def memberships(procs: Iterable[str]) -> list[int]:
-    """The files of :attr:`Group.procs`, opened where they can be seen, for :func:`join`."""
+    """Open the files of :attr:`Group.procs` while their paths are visible, for :func:`join`."""
     return [os.open(file, os.O_WRONLY | os.O_CLOEXEC) for file in procs]
 
 
 def join(opened: Iterable[int]) -> None:
-    """Become a member of groups, with all that this process starts later; the descriptors are closed."""
+    """Join groups, with everything that this process starts later; the descriptors are closed."""
     for group in opened:
-        os.write(group, b"0")  # cgroups(7): 0 stands for whoever writes
+        os.write(group, b"0")  # cgroups(7): 0 stands for the process that writes
         os.close(group)
 
 
 @functools.cache
 def usable() -> Mapping[str, Controller]:
-    """The controllers of ``_KINDS`` as far as groups can be made here, each with its place.
+    """Return the controllers of ``_KINDS`` for which groups can be made here.
 
-    Takes away what an earlier grader left that was killed.
+    Also removes groups that a killed grader left behind.
     """
     found = {}
     for kind in _KINDS:
@@ -150,7 +150,7 @@ def _settings(kind: str, version: int, memory_bytes: int, processes: int) -> Ite
     if kind in ("cpu", "cpuacct"):
         return []  # a new group has the same share as each other one: cpu.shares of 1024, cpu.weight of 100
     if version == 1:
-        # Swap counts too, where it is counted at all; that limit may not be below the other one.
+        # Swap counts too, if the kernel counts it at all; this limit may not be below the one on memory.
         return [
             ("memory.limit_in_bytes", str(memory_bytes)),
             ("memory.memsw.limit_in_bytes", str(memory_bytes)),
@@ -159,13 +159,13 @@ def _settings(kind: str, version: int, memory_bytes: int, processes: int) -> Ite
 
 
 def _write(file: Path, value: str) -> None:
-    # What counts swap is not there everywhere.
+    # Not every kernel has the file that limits swap.
     if file.exists():
         file.write_text(value)
 
 
 def _candidates(kind: str, own: str, mounts: str) -> list[Controller]:
-    """The places where a group could be made, the nearest to our own first.
+    """Return the folders in which a group could be made, the nearest to our own group first.
 
     Args:
         kind: The controller.
@@ -186,20 +186,20 @@ def _candidates(kind: str, own: str, mounts: str) -> list[Controller]:
             found.append(Controller(_inside(place, root, paths[kind]), 1))
         elif filesystem == "cgroup2" and "" in paths and kind in _text(f"{place}/cgroup.controllers").split():
             nearest = _inside(place, root, paths[""])
-            # A group of version 2 that has members cannot have groups with limits in it, but for the topmost one.
+            # In version 2, a group with members cannot have subgroups with limits; only the topmost group can.
             above = [folder for folder in (nearest, *nearest.parents) if folder.is_relative_to(place)]
             found += [Controller(folder, 2) for folder in above]
     return found
 
 
 def _inside(place: str, root: str, path: str) -> Path:
-    """The folder of the group ``path`` where its hierarchy is mounted from ``root`` on."""
+    """Return the folder of the group ``path``, given that its hierarchy is mounted from ``root`` on."""
     inside = os.path.relpath(path, root)
     return Path(place) if inside.startswith("..") else Path(place) / inside
 
 
 def _can_hold_a_process(kind: str, controller: Controller) -> bool:
-    """Put a process into a new group with a limit, and take both away."""
+    """Try it: put a process into a new group with a limit, then remove both."""
     try:
         if controller.version == 2:
             enabled = controller.base / "cgroup.subtree_control"
@@ -218,11 +218,11 @@ def _can_hold_a_process(kind: str, controller: Controller) -> bool:
 
 
 def _sweep(base: Path) -> None:
-    """Take away empty groups of graders that are gone."""
+    """Remove empty groups of graders that have ended."""
     with contextlib.suppress(OSError):
         for folder in base.glob(f"{_PREFIX}*"):
             pid = folder.name.removeprefix(_PREFIX).partition("-")[0]
-            # Its age, because a grader in another PID namespace may be making it just now.
+            # Only old ones: a grader in another PID namespace may be making a new one right now.
             old = time.time() - folder.stat().st_mtime > _SURELY_LEFT
             if pid.isdecimal() and old and not Path(f"/proc/{pid}").exists():
                 with contextlib.suppress(OSError):

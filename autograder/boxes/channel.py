@@ -1,6 +1,6 @@
-"""Messages between the grader's own processes: JSON with file descriptors beside it, over a Unix socket.
+"""Messages between the grader's own processes: JSON and file descriptors over a Unix socket.
 
-No box has an end of such a socket. One message is one packet, so that none is ever read in part.
+No process in a box holds an end of such a socket. Each message is one packet, so a message always arrives whole.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Self
 if TYPE_CHECKING:
     from collections.abc import Sequence
 LARGEST = 200_000
-"""Bytes of one message; what Linux lets a packet have by default is a little more."""
+"""The largest message in bytes; Linux allows slightly more in a packet by default."""
 _MOST_DESCRIPTORS = 32
 
 
@@ -37,25 +37,25 @@ class Channel:
             address: The path of its socket.
 
         Raises:
-            ChannelClosed: Nobody listens there.
+            ChannelClosed: Nothing listens at this address.
         """
         connection = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         try:
             connection.connect(address)
         except OSError as error:
             connection.close()
-            raise ChannelClosed(f"nobody listens on {address}: {error}") from error
+            raise ChannelClosed(f"no process listens on {address}: {error}") from error
         return cls(connection)
 
     def fileno(self) -> int:
-        """Readable when a message has come or the other end is gone."""
+        """The descriptor that is readable when a message has come or the other end is gone."""
         return self._socket.fileno()
 
     def send(self, message: dict[str, Any], descriptors: Sequence[int] = ()) -> None:
         """Send one message; the descriptors stay open here.
 
         Raises:
-            ChannelClosed: Nobody is there to read it.
+            ChannelClosed: The other end is gone.
         """
         try:
             socket.send_fds(self._socket, [json.dumps(message).encode()], list(descriptors))
@@ -66,13 +66,13 @@ class Channel:
         """Wait for a message.
 
         Args:
-            within: Seconds to wait; for ever where it is None.
+            within: Seconds to wait; None to wait without a limit.
 
         Returns:
             The message and the descriptors that came with it, which now belong to the caller.
 
         Raises:
-            ChannelClosed: The other end is gone, or says nothing in time.
+            ChannelClosed: The other end is gone, or sent nothing in time.
         """
         if within is not None and not select.select([self._socket], [], [], within)[0]:
             raise ChannelClosed(f"no answer within {within:g} s")
@@ -90,7 +90,7 @@ class Channel:
 
     @property
     def hung_up(self) -> bool:
-        """True if the other end is gone, though there may be words of it that nobody has read yet."""
+        """True if the other end is gone, even if messages from it are still unread."""
         if self._socket.fileno() < 0:
             return False
         poll = select.poll()
@@ -98,7 +98,7 @@ class Channel:
         return bool(poll.poll(0))
 
     def close(self) -> None:
-        """Hang up; may be called twice."""
+        """Close the connection; may be called twice."""
         self._socket.close()
 
     def __enter__(self) -> Self:
@@ -109,7 +109,7 @@ class Channel:
 
 
 def close_all(descriptors: Sequence[int]) -> None:
-    """Close descriptors that nobody needs any more."""
+    """Close descriptors that are no longer needed."""
     for descriptor in descriptors:
         with contextlib.suppress(OSError):
             os.close(descriptor)

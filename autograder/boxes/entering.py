@@ -1,4 +1,4 @@
-"""From a fork of a fork server into a box: its namespaces, then without a right that a student must not have."""
+"""How a fork of a fork server enters a box: joins its namespaces, then gives up what a student must not have."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from autograder.boxes.seccomp_filter import filter_for_boxes, filter_for_readers
 from autograder.process_trees import adopt_orphans, die_with_parent, end_descendants
 
 Run = Callable[[Mapping[str, Any], Sequence[int]], None]
-"""The work of a child: called with the request's ``call`` and its descriptors."""
+"""What a child runs: called with the request's ``call`` and its descriptors."""
 
 _ALL_NAMESPACES = (
     syscalls.CLONE_NEWUSER | syscalls.CLONE_NEWNS | syscalls.CLONE_NEWPID | syscalls.CLONE_NEWNET
@@ -30,15 +30,15 @@ _ALL_NAMESPACES = (
 
 @dataclass(frozen=True)
 class Entrance:
-    """The start of a child.
+    """The settings with which a child starts.
 
     Attributes:
-        cwd: Its folder, as it is called in the box.
-        environment: Its whole environment.
-        boxed: Enter the box whose first process's pidfd is the request's first descriptor. Else the child stays
-            where it is, which only a course's own notebooks and ``--unsafe-no-sandbox`` do.
-        cgroups: Files ``cgroup.procs`` to be entered into, outside of the box.
-        rlimits: Limits of each process, by the name that :mod:`resource` gives them.
+        cwd: The working folder, as a path inside the box.
+        environment: All environment variables.
+        boxed: True to enter the box whose first process's pidfd is the request's first descriptor. Otherwise the
+            child stays outside, which only a course's own notebooks and ``--unsafe-no-sandbox`` do.
+        cgroups: The ``cgroup.procs`` files to join, as paths outside the box.
+        rlimits: Limits on each process, by their names in :mod:`resource`.
         hidden_memory: See :func:`autograder.boxes.seccomp_filter.filter_for_boxes`.
         call: What ``run`` is told.
         reader_seconds: Limit in seconds of processor time for a process that may only read its descriptors and write
@@ -56,21 +56,21 @@ class Entrance:
 
 
 def enter(channel: Channel, run: Run) -> None:
-    """Serve one request in the child of a fork server: fork into the box, watch over what is there.
+    """Serve one request in the child of a fork server: fork into the box, then watch over the process there.
 
     The answer is ``{"pid": …}`` as the host counts, and when that process has ended ``{"status": …}``, its wait
-    status. When the other end hangs up before, the process is killed.
+    status. If the other end hangs up first, the process is killed.
     """
     die_with_parent()
     message, descriptors = channel.receive()
     entrance = Entrance(**message)
-    # Opened here, where they can be seen; but only the child goes in, so that a box without memory costs nobody who
-    # watches over it.
+    # Opened here, while the paths are visible. Only the child joins, so that a box that is out of memory cannot take
+    # this watching process with it.
     groups = memberships(entrance.cgroups)
     if entrance.boxed:
         syscalls.setns(descriptors[0], _ALL_NAMESPACES)
     else:
-        # Without a PID namespace to take all along, daemons become our children, and we end them.
+        # Without a PID namespace, daemons that a student's code starts become our children, and we end them.
         adopt_orphans()
     pid = os.fork()
     if pid == 0:
@@ -88,19 +88,19 @@ def enter(channel: Channel, run: Run) -> None:
 
 
 def _end_of(pid: int, channel: Channel) -> int:
-    """Wait for the process's end, or bring it about when the other end of the channel is gone."""
+    """Wait for the process to end, or kill it when the other end of the channel is gone."""
     end = os.pidfd_open(pid)
     watched: list[Any] = [end, channel]
     ready, _, _ = select.select(watched, [], [])
     if end not in ready:
-        # Nothing is ever said to us again: this is the other end's end.
+        # No further message is expected: a readable channel means that the other end is gone.
         os.kill(pid, signal.SIGKILL)
     _, status = os.waitpid(pid, 0)
     return status
 
 
 def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
-    """The rest of the life of the process in the box."""
+    """Run everything that the process in the box does after its fork."""
     code = 1
     try:
         os.setsid()
@@ -149,13 +149,13 @@ def _become_a_reader(seconds: int) -> None:
 
 
 def take_limits(cgroups: Sequence[str], rlimits: Mapping[str, int]) -> None:
-    """Take the limits of a box that bubblewrap is to make: for the process that becomes bubblewrap."""
+    """Apply the limits of a box to the process that is about to become bubblewrap."""
     join(memberships(cgroups))
     apply_rlimits(rlimits)
 
 
 def apply_rlimits(limits: Mapping[str, int]) -> None:
-    """Set limits of this process and its children, as far as higher authorities allow them."""
+    """Set limits of this process and its children, as far as the system allows."""
     for name, value in limits.items():
         kind = getattr(resource, name)
         _, hard = resource.getrlimit(kind)

@@ -1,4 +1,4 @@
-"""The environment variables of a submission's kernel: what Python and ROS need, and nothing of the host's."""
+"""The environment variables of a submission's kernel: what Python and ROS need, and nothing from the host."""
 
 from __future__ import annotations
 
@@ -34,15 +34,18 @@ _KEPT_PREFIXES = (
     "_ROS_WHEELS_",
 )
 _NO_THREADS = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
-"""numpy's libraries start threads when they are loaded. A fork has none of them, and in a program that ROS has import
-numpy they wait in a loop for work that never comes."""
+"""numpy's libraries start threads when they are loaded.
+
+A fork loses these threads, and a program in which ROS imports numpy would then wait in a busy loop for work that
+never comes.
+"""
 
 
 def base_environment(given: Mapping[str, str] | None = None) -> dict[str, str]:
-    """The environment of a fork server and of every box: what Python and ROS need, nothing else.
+    """Return the environment of a fork server and of every box: what Python and ROS need, nothing else.
 
     Args:
-        given: The environment; this process's where None.
+        given: The environment to choose from; None for that of this process.
     """
     found = (os.environ if given is None else given).items()
     kept = {name: value for name, value in found if name in _KEPT or name.startswith(_KEPT_PREFIXES)}
@@ -53,10 +56,10 @@ def base_environment(given: Mapping[str, str] | None = None) -> dict[str, str]:
 def box_environment(
     extra: Mapping[str, str] | None = None, given: Mapping[str, str] | None = None
 ) -> dict[str, str]:
-    """The whole environment of a process in a box.
+    """Return the whole environment of a process in a box.
 
     Args:
-        extra: Variables that hold whatever the host says.
+        extra: Variables to set, whatever their values on the host.
         given: See :func:`base_environment`.
     """
     return {
@@ -72,11 +75,11 @@ def box_environment(
 
 
 def kernel_environment(scratch: Path, extra: Mapping[str, str]) -> dict[str, str]:
-    """The whole environment of a kernel whose home, temporary and log folders are in ``scratch``.
+    """Return the whole environment of a kernel that has its home, temporary and log folders in ``scratch``.
 
     Args:
-        scratch: Made before; the folders in it are made here.
-        extra: Variables that hold whatever the host says.
+        scratch: An existing folder; the folders inside it are made here.
+        extra: Variables to set, whatever their values on the host.
     """
     kept = {
         name: value for name, value in os.environ.items() if name in _KEPT or name.startswith(_KEPT_PREFIXES)

@@ -1,4 +1,4 @@
-"""The input and the result of the execution of a notebook, as plain data that travels as JSON."""
+"""The input and the result of executing a notebook, as plain data that travels as JSON."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ class Check:
 
     Attributes:
         exercise: The exercise's id, such as ``"lab_1_2.talker"``.
-        title: The exercise's name for a person.
-        points: Points the judge gives at most.
-        worth: Points the cell carries in the gradebook; the judge's score is scaled to it.
-        limit: Seconds of wall time that the judge allows itself.
-        asserts: Whether the cell's own tests decide, by the rules of nbgrader, and not the judge.
+        title: The exercise's name as people see it.
+        points: The most points that the judge gives.
+        worth: The cell's points in the gradebook; the judge's score is scaled to them.
+        limit: The judge's time limit in seconds of wall time.
+        asserts: True if the cell's own tests decide, by nbgrader's rules, instead of the judge.
     """
 
     exercise: str
@@ -46,8 +46,8 @@ class Cell:
         source: The text of the cell.
         kind: Only code cells are executed.
         check: Set on a check cell.
-        name: The grade_id, or empty for a cell of the student's own.
-        own: Whether a student wrote the text.
+        name: The grade_id; empty for a cell that the student added.
+        own: True if a student wrote the text.
     """
 
     source: str
@@ -58,7 +58,7 @@ class Cell:
 
 
 class Ended(StrEnum):
-    """The end of a cell's run."""
+    """How the run of a cell ended."""
 
     DONE = "done"
     RAISED = "raised"
@@ -71,7 +71,7 @@ class Ended(StrEnum):
     TOO_MANY_LOCKS = "too_many_locks"
     TOO_MUCH_OUTPUT = "too_much_output"
     NOT_RUN = "not_run"
-    """The kernel was gone, or the notebook's time was up, before the cell's turn."""
+    """The kernel was gone, or the notebook's time was up, before this cell could run."""
 
 
 @dataclass(frozen=True)
@@ -80,9 +80,9 @@ class CellRun:
 
     Attributes:
         ended: How it ended.
-        outputs: nbformat outputs, capped and stripped of what a browser would execute.
-        error: ``"NameError: name 'x' is not defined"`` for a cell that raised, else empty. The student's own
-            words.
+        outputs: nbformat outputs, limited in size and without anything that a browser would execute.
+        error: ``"NameError: name 'x' is not defined"`` for a cell that raised, else empty. The text comes from the
+            student's code.
         seconds: Wall time.
     """
 
@@ -97,16 +97,16 @@ class Execution:
     """The result of a notebook.
 
     Attributes:
-        cells: One for each cell that went in, in order.
+        cells: One result for each cell that was given, in order.
         verdicts: By index of the check cell; every check cell has one.
-        trouble: What went wrong on the grader's own side, empty when all was well. Then no result is final.
-        seconds: Wall time, start of the kernel included.
-        start_seconds: Of these, until kernel and judge were ready.
-        as_typed: The places of the cells whose text is too costly to be rendered on a page.
-        crowded_out: It came to a limit, or failed, where it may well do better with nothing beside it: it says nothing.
-        cpu_seconds: Processor time of what was in the student's boxes; 0 where nobody counts it.
-        evidence: What the judge's verdicts follow from, by exercise, as the judge has packed it. Nothing looks into it
-            while a class is graded.
+        trouble: A failure of the grader itself; empty if there was none. With a failure, no result is final.
+        seconds: Wall time, the start of the kernel included.
+        start_seconds: The part of it until kernel and judge were ready.
+        as_typed: The indexes of the cells whose text is too costly to render on a page.
+        crowded_out: True if it failed or reached a limit perhaps only because other work ran at the same time.
+        cpu_seconds: Processor time used in the student's boxes; 0 if it is not counted.
+        evidence: What the judge's verdicts follow from, by exercise, as the judge packed it. It is not opened while a
+            class is graded.
     """
 
     cells: tuple[CellRun, ...]
@@ -121,5 +121,5 @@ class Execution:
 
     @property
     def says_nothing(self) -> bool:
-        """True if it is to be executed once more, alone: others have perhaps used up what it was short of."""
+        """True if it should be executed again, alone: other work may have used up what it lacked."""
         return bool(self.trouble) or self.crowded_out

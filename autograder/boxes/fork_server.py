@@ -1,13 +1,13 @@
-"""Fork servers: processes that have imported what is slow to import, and fork a child for each connection.
+"""Fork servers: processes that have done the slow imports, and fork a child for each connection.
 
-``python -P -m autograder.boxes.fork_server MODE MODULE DESCRIPTOR [WORD...]``, where ``MODULE`` offers ``prepare``,
-called once with the words, and ``run``, called in each child. In the mode ``inside`` the child first enters the box
-that is named (:mod:`autograder.boxes.entering`); in the mode ``beside`` ``run`` gets the connection itself.
+``python -P -m autograder.boxes.fork_server MODE MODULE DESCRIPTOR [WORD...]``: ``MODULE`` has ``prepare``, called
+once with the words, and ``run``, called in each child. In the mode ``inside`` the child first enters the box named in
+the request (:mod:`autograder.boxes.entering`); in the mode ``beside`` ``run`` gets the connection itself.
 
-This process starts with a clean environment, makes no thread and no ROS context, so that a fork is safe (LTTng, which
-rclpy loads, has two threads of its own that sleep until there is a tracing daemon), and never reads what it is asked:
-the child does. So nothing of one submission is ever in the memory that the next one's kernel begins with. It ends when
-its standard input does, and its children with it.
+A fork is safe because this process starts with a clean environment and makes no thread and no ROS context (LTTng,
+which rclpy loads, has two threads that sleep until there is a tracing daemon). It never reads a request: the child
+does. So no data of one submission is ever in the memory with which the next kernel begins. It ends, and its children
+with it, when its standard input ends.
 """
 
 from __future__ import annotations
@@ -40,10 +40,12 @@ if TYPE_CHECKING:
 
 BESIDE, INSIDE = "beside", "inside"
 FOLDER_PREFIX = "autograder-held-"
-"""The beginning of the names of fork servers' folders. Older versions used another word and no lock: theirs are left
-alone."""
+"""The beginning of the names of fork servers' folders.
+
+Older versions used another name and no lock; their folders are left alone.
+"""
 _LIBRARY_FOLDERS = 8
-"""More packages with libraries than a workspace of the course has."""
+"""More packages with libraries than any workspace of the course has."""
 SUPERVISOR_MODULE = "autograder.boxes.supervisor"
 KERNEL_MODULE = "autograder.boxes.kernel_process"
 PROGRAM_MODULE = "autograder.boxes.program_process"
@@ -75,13 +77,14 @@ _MIDDLEWARE = "librmw_fastrtps_cpp.so"
 
 
 def library_folders(address: str) -> list[Path]:
-    """The folders in which the forks of a fork server look for libraries first: the loader reads their names but once.
+    """Return the folders in which the forks of a fork server look for libraries first.
 
-    Where the fork server runs they are empty. In a box they are links to the folders of the box that hold libraries,
-    which a student may have made: what enters a box loads nothing by name before it has given up its rights.
+    They are fixed because the loader reads the list only once. Outside a box they are empty. In a box they are links
+    to the box's folders with libraries, which a student may have made: a process that enters a box loads nothing by
+    name before it has given up its rights.
 
     Args:
-        address: Where the fork server listens.
+        address: The socket address of the fork server.
     """
     return [Path(f"{address}.libraries-{number}") for number in range(_LIBRARY_FOLDERS)]
 
@@ -90,7 +93,7 @@ def main(arguments: list[str]) -> None:
     """Serve until standard input ends.
 
     Args:
-        arguments: The mode, the module, the descriptor of the listening socket, and what the module is told.
+        arguments: The mode, the module, the descriptor of the listening socket, and the words for the module.
     """
     raise_own()
     mode, name, descriptor, *words = arguments
@@ -98,9 +101,9 @@ def main(arguments: list[str]) -> None:
     module = importlib.import_module(name)
     module.prepare(*words)
     gc.collect()
-    # What is here stays as it is in every child, so that their memory remains shared.
+    # Objects made so far are not collected in the children, so their memory remains shared.
     gc.freeze()
-    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # no zombie is left, and nobody asks how a child ended
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # the exit status of a child is not needed, so no zombie is kept
     while True:
         watched: list[Any] = [listener, 0]
         ready, _, _ = select.select(watched, [], [])
@@ -115,7 +118,7 @@ def main(arguments: list[str]) -> None:
 
 
 def _tidy(address: str) -> None:
-    """Take the socket away, and its folder where that was made for such sockets: its maker may have been killed."""
+    """Remove the socket, and its folder if that was made for it: the process that made it may have been killed."""
     socket_file = Path(address)
     with contextlib.suppress(OSError):
         socket_file.unlink(missing_ok=True)
@@ -127,7 +130,7 @@ def _tidy(address: str) -> None:
 
 
 def _child(mode: str, module: Any, listener: socket.socket, connection: socket.socket) -> None:
-    """A child's whole life."""
+    """Run a child from its fork to its exit."""
     code = 1
     try:
         listener.close()
@@ -150,14 +153,14 @@ def _child(mode: str, module: Any, listener: socket.socket, connection: socket.s
 
 
 def preload(modules: Iterable[str]) -> None:
-    """Import modules; what is not there is left to who needs it to miss."""
+    """Import modules, and skip a missing one: the code that needs it will report it."""
     for name in modules:
         with contextlib.suppress(Exception):
             importlib.import_module(name)
 
 
 def preload_ros(interfaces: Iterable[str]) -> None:
-    """Load the type support of interfaces, and what the first node and the first log line load.
+    """Load the type support of interfaces, and everything that the first node and the first log line load.
 
     Args:
         interfaces: Modules with generated interfaces.
@@ -169,24 +172,24 @@ def preload_ros(interfaces: Iterable[str]) -> None:
                 if load is not None:
                     load()
     with contextlib.suppress(OSError):
-        # rclpy.init loads it, and finds it here already.
+        # rclpy.init loads it; in a child it is then loaded already.
         ctypes.CDLL(_MIDDLEWARE)
     with contextlib.suppress(ImportError):
         # A first log line looks for its caller among the files of all modules (rclpy/impl/rcutils_logger.py, and
-        # inspect.getmodule, which remembers them): 46 ms of processor time in each kernel, 8 where it was done here.
+        # inspect.getmodule, which remembers them): 46 ms of processor time in each kernel, 8 if it was done here.
         importlib.import_module("rclpy.impl.rcutils_logger").CallerId()
 
 
 class ForkServer:
-    """A fork server that was started here; it ends with this object or with this process.
+    """A fork server that this process started; it ends with this object or with this process.
 
     Args:
         mode: ``BESIDE`` or ``INSIDE``, see :mod:`autograder.boxes.fork_server`.
-        module: What it serves.
-        address: The path of the socket to be made. No box may see it.
-        log: Takes what it says on standard error; dropped where there is none.
-        extra: More variables of its environment, and so of the environment in which modules are imported.
-        words: What the module's ``prepare`` is told. Its children can read these words, and its environment, too.
+        module: The module that it serves.
+        address: The path of the socket to make. It must not be visible in any box.
+        log: The descriptor for its standard error; None to drop it.
+        extra: More environment variables, which are set while modules are imported.
+        words: The arguments for the module's ``prepare``. The children can read them, and the environment.
     """
 
     def __init__(
@@ -201,7 +204,7 @@ class ForkServer:
         self.address = str(address)
         with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as listener:
             listener.bind(self.address)
-            # From here on one can connect: whoever comes while the process warms up is served when it is warm.
+            # Clients can connect from now on; they are served when the imports are done.
             listener.listen(128)
             arguments = ("-m", "autograder.boxes.fork_server", mode, module, str(listener.fileno()), *words)
             variables = {**base_environment(), "PYDEVD_DISABLE_FILE_VALIDATION": "1", **(extra or {})}
@@ -210,22 +213,21 @@ class ForkServer:
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL if log is None else log,
                 pass_fds=(listener.fileno(),),
-                # Ctrl-C goes to the grader, which then ends its boxes in good order.
+                # Ctrl-C is for the grader, which then ends its boxes in good order.
                 start_new_session=True,
             )
 
     @property
     def alive(self) -> bool:
-        """True if it still runs."""
+        """True if the process still runs."""
         return self._process.poll() is None
 
     @property
     def pid(self) -> int:
-        """Its process id."""
         return self._process.pid
 
     def stop(self) -> None:
-        """End it and all that it has forked; may be called twice."""
+        """End the server and all its children; may be called twice."""
         assert self._process.stdin is not None
         with contextlib.suppress(OSError):
             self._process.stdin.close()
@@ -236,13 +238,13 @@ class ForkServer:
 
 @dataclass(frozen=True)
 class Addresses:
-    """The addresses of the fork servers; travels to a worker on its command line.
+    """The addresses of the fork servers; sent to a worker on its command line.
 
     Attributes:
-        supervisors: For :class:`autograder.boxes.sandbox.Enclosure`. Empty where there is no sandbox.
+        supervisors: For :class:`autograder.boxes.sandbox.Enclosure`. Empty without a sandbox.
         kernels: For :class:`autograder.boxes.kernel.Kernel`.
         judges: For the judge.
-        programs: For :meth:`autograder.boxes.sandbox.Enclosure.ros2`. Empty where there is no sandbox.
+        programs: For :meth:`autograder.boxes.sandbox.Enclosure.ros2`. Empty without a sandbox.
     """
 
     supervisors: str
@@ -255,13 +257,13 @@ class ForkServers:
     """The fork servers of a batch, started together.
 
     Args:
-        judge_module: What the judges' process serves; it is named here because boxes know no judge.
-        boxed: Start those for supervisors and for programs, too.
-        log: Takes what they say on standard error.
-        environment: More variables for the processes of all but supervisors. Libraries read some when they are loaded.
-        of_judges: More variables for the processes of judges alone, such as where the course is.
-        interfaces: The modules with the course's interfaces, which a kernel finds imported. It is told no more of the
-            course.
+        judge_module: The module that the judges' server serves; a parameter, because boxes do not import the judge.
+        boxed: True to start those for supervisors and programs, too.
+        log: The descriptor for their standard error.
+        environment: More variables for all of them but the supervisors. Libraries read some when they are loaded.
+        of_judges: More variables for the judges alone, such as the course's folder.
+        interfaces: The modules of the course's interfaces, so that a kernel finds them imported. The kernel learns
+            nothing else about the course.
     """
 
     def __init__(
@@ -296,7 +298,7 @@ class ForkServers:
         return all(process.alive for process in self._all())
 
     def stop(self) -> None:
-        """End them with all boxes, kernels and judges that came from them; may be called twice."""
+        """End them with all boxes, kernels and judges that they started; may be called twice."""
         for process in self._all():
             process.stop()
         self._folder.remove()
@@ -313,7 +315,7 @@ class ForkServers:
 
 
 def _of_programs(address: Path, log: int | None, environment: Mapping[str, str] | None) -> ForkServer:
-    """Start the fork server of programs, with folders for the libraries of a workspace."""
+    """Start the fork server for programs, with folders for the libraries of a workspace."""
     folders = library_folders(str(address))
     for folder in folders:
         folder.mkdir()

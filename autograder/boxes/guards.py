@@ -1,10 +1,10 @@
-"""The guards of a box's limits: cgroups where the host lets us make them, else a look at the processes now and then.
+"""The guards of a box's limits: cgroups if the host allows them, otherwise regular checks of the processes.
 
-With cgroups the operating system itself refuses a process or ends one that has too much. Without them a watch counts
-what it sees in the box's ``/proc`` several times a second and ends the box; what is faster than that is kept in bounds
-by limits on each single process. How much memory a process has had at most is seen later, too, so that it is no chance
-which of the two meets a process first. The limit on processor time is always held by the watch: it does no harm to be
-late there.
+With cgroups the operating system itself refuses a process, or ends one, at a limit. Without them a watch reads the
+box's ``/proc`` several times a second and ends the box; limits on each single process contain whatever is faster than
+that. The watch can also see later how much memory a process once had, so the result does not depend on which of the
+two limits a process meets first. The watch always enforces the limit on processor time, because being late does no
+harm there.
 """
 
 from __future__ import annotations
@@ -30,22 +30,18 @@ if TYPE_CHECKING:
     from autograder.boxes.limits import Limits
 
 INTERVAL = 0.25
-"""Seconds from one look to the next."""
+"""Seconds between two checks."""
 _SIZE = re2.compile(r"(?m)^(\w+):[ \t]+(\d+) kB$")
 _TICKS = os.sysconf("SC_CLK_TCK")
 _PAGES = re2.compile(r"(?m)^(?:TCP|UDP): .*\bmem (\d+)$")
-"""What waits in the sockets of all networks, in pages; sockets of IPv6 and of UDP-Lite count there, too."""
+"""Memory that waits in the sockets of all networks, in pages; the lines include IPv6 and UDP-Lite sockets."""
 _PROTOCOLS = ("udp", "udp6", "tcp", "tcp6")
 _SOCKETS = re2.compile(r"(?m)^sockets: used (\d+)$")
 _PIECE = 1 << 16
 
 
 class BoxGuard:
-    """The guard of one submission's boxes. Close it when they have ended.
-
-    Args:
-        limits: The limits.
-    """
+    """The guard of one submission's boxes. Close it after they have ended."""
 
     def __init__(self, limits: Limits) -> None:
         self._limits = limits
@@ -63,12 +59,12 @@ class BoxGuard:
 
     @property
     def hidden_memory(self) -> bool:
-        """True if memory may be allowed that no process is seen to have."""
+        """True if the box may use memory that does not show up in any process."""
         return self._memory
 
     @property
     def rlimits(self) -> Mapping[str, int]:
-        """Limits of each single process (setrlimit(2))."""
+        """Limits on each single process (setrlimit(2))."""
         limits = {
             "RLIMIT_CORE": 1,  # 0 would still start a handler of core dumps (core(5))
             "RLIMIT_NOFILE": open_files_of_a_box(self._limits.open_files),
@@ -79,14 +75,14 @@ class BoxGuard:
             "RLIMIT_SIGPENDING": 1000,
         }
         if not self._memory:
-            # Address space that can be written to, the stacks of threads among it: more than is ever used.
+            # Writable address space, including the stacks of threads: it is always larger than the memory in use.
             limits["RLIMIT_DATA"] = 2 * self._limits.memory_bytes
         if not self._processes and os.geteuid() != 0:
             limits["RLIMIT_NPROC"] = self._limits.processes
         return limits
 
     def watch(self, first: int) -> None:
-        """Begin to look.
+        """Start checking the processes of a box.
 
         Args:
             first: The box's first process, as the host counts.
@@ -94,11 +90,11 @@ class BoxGuard:
         self._first = first
 
     def exceeded(self, *, at_once: bool = False) -> Ended | None:
-        """The limit that is exceeded, as the last look has shown; the box must be ended then.
+        """Return the limit that the last check found exceeded, or None; the caller must then end the box.
 
         Args:
-            at_once: Look again, however short the time since the last look is, where nothing else holds the limit on
-                memory; else every ``INTERVAL`` seconds.
+            at_once: Check again now if only this watch enforces the limit on memory; otherwise a check is made every
+                ``INTERVAL`` seconds.
         """
         now = time.monotonic()
         due = now >= self._next_look or (at_once and not self._memory)
@@ -108,7 +104,7 @@ class BoxGuard:
         return self._seen
 
     def reason(self) -> Ended | None:
-        """The limit that was exceeded, or that the operating system has refused or ended a process for."""
+        """The limit that was exceeded, or at which the system refused or killed a process; None without one."""
         if self._seen is None and self._group.ran_out_of_memory:
             return Ended.OUT_OF_MEMORY
         if self._seen is None and self._group.ran_out_of_processes:
@@ -117,24 +113,24 @@ class BoxGuard:
 
     @property
     def cpu_seconds(self) -> float:
-        """Processor time used until now; without a cgroup, until the last look."""
+        """Processor time used until now; without a cgroup, until the last check."""
         counted = self._group.cpu_seconds
         return self._seen_cpu if counted is None else counted
 
     def close(self) -> None:
-        """Take the cgroups away; may be called twice."""
+        """Remove the cgroups; may be called twice."""
         self._first = 0
         self._group.close()
 
     def _look(self) -> Ended | None:
-        # Which process the kernel kills is chance; that it had to kill one means that the memory was used up.
+        # Chance decides which process the kernel kills; that it killed any means that the memory was used up.
         if self._group.ran_out_of_memory:
             return Ended.OUT_OF_MEMORY
         use = use_of(self._first, None if self._memory else _memory_of)
         self._seen_cpu = max(self._seen_cpu, use.cpu_seconds)
         if self.cpu_seconds > self._limits.cpu_seconds:
             return Ended.OUT_OF_CPU
-        # Before the files: each process that was forked has open what its parent has.
+        # Before the open files, because each forked process has the open files of its parent.
         if not self._processes and use.threads > self._limits.processes:
             return Ended.TOO_MANY_PROCESSES
         if use.files > self._limits.all_open_files:
@@ -150,7 +146,7 @@ class BoxGuard:
             return Ended.OUT_OF_MEMORY
         files = 0 if self._memory else _scratch_of(self._first)
         if use.memory + files > self._limits.memory_now:
-            # Forks were counted with all that they share: look exactly before it has consequences.
+            # This counts shared memory several times. Measure exactly before ending the box.
             exactly = use_of(self._first, _exact_memory_of)
             return Ended.OUT_OF_MEMORY if exactly.memory + files > self._limits.memory_now else None
         return None
@@ -161,11 +157,11 @@ class Use:
     """The resources that the processes of a box use together.
 
     Attributes:
-        threads: How many there are, a process having at least one.
-        memory: Bytes that belong to no file; 0 where nobody looked.
-        most_memory: The same of one process alone, of that which has had most, at the time when it had most.
-        cpu_seconds: Processor time, that of children included which have ended and were waited for.
-        files: Open files, sockets and pipes. What waits in them and who is told of them belongs to no process.
+        threads: The number of threads; each process has at least one.
+        memory: Bytes that belong to no file; 0 if it was not measured.
+        most_memory: The largest such number of any one process at any time.
+        cpu_seconds: Processor time, including children that have ended and were waited for.
+        files: Open files, sockets and pipes. Data waiting in them and their event watches belong to no process.
     """
 
     threads: int
@@ -177,28 +173,28 @@ class Use:
 
 _NOTHING = Use(0, 0, 0, 0.0, 0)
 _MemoryOf = Callable[[str], tuple[int, int]]
-"""The memory of the process with this folder: bytes now, and at most until now."""
+"""Returns the memory of the process with this folder: bytes now, and the most bytes until now."""
 
 
 def use_of(first: int, memory_of: _MemoryOf | None) -> Use:
-    """Look at all processes of a PID namespace.
+    """Measure all processes of a PID namespace.
 
     Args:
-        first: Its first process, as the host counts; the namespace's own ``/proc`` is seen through it.
-        memory_of: Says how much memory a process has; None where nobody needs to know.
+        first: The first process of the namespace, as the host counts; its ``/proc`` shows the others.
+        memory_of: Measures the memory of a process; None to skip memory.
     """
     threads = memory = most_memory = files = 0
     seconds = 0.0
     try:
         own = f"/proc/{first}/root/proc"
         if Path(own).stat().st_dev == Path("/proc").stat().st_dev:
-            return _NOTHING  # it is on its way into the box and still sees the processes of the host
+            return _NOTHING  # it is about to enter the box and still sees the processes of the host
         processes = [entry for entry in os.scandir(own) if entry.name.isdecimal()]
     except OSError:
         return _NOTHING
     for process in processes:
         try:
-            # After the name of the program, which may hold anything (proc(5)).
+            # After the name of the program, which may contain any character (proc(5)).
             fields = Path(process.path, "stat").read_text(errors="replace").rpartition(")")[2].split()
             threads += int(fields[17])
             seconds += sum(map(int, fields[11:15])) / _TICKS
@@ -212,18 +208,21 @@ def use_of(first: int, memory_of: _MemoryOf | None) -> Use:
 
 
 def _files_of(process: str) -> int:
-    """Linux 6.2 and later say it as the folder's size (proc_pid_fd(5)); a process without any is rare."""
+    """Count open files.
+
+    Linux 6.2 and later give them as the folder's size (proc_pid_fd(5)); a process with none is rare.
+    """
     folder = f"{process}/fd"
     return os.stat(folder).st_size or len(os.listdir(folder))  # noqa: PTH116, PTH208 (several times a second)
 
 
 @dataclass(frozen=True)
 class _Network:
-    """What a box's network has that belongs to no process (proc_pid_net(5)), and often to no cgroup.
+    """The resources of a box's network that belong to no process (proc_pid_net(5)), and often to no cgroup.
 
     Attributes:
-        sockets: Sockets, those included that no process has open: a connection waits without a descriptor until the
-            program that listens accepts it.
+        sockets: The number of sockets, also those that no process has open: a connection waits without a descriptor
+            until the listening program accepts it.
         waiting: Bytes that wait in them.
     """
 
@@ -232,18 +231,18 @@ class _Network:
 
 
 def _network_of(first: int, most: int) -> _Network:
-    """Count the sockets of a box's network and what waits in them.
+    """Count the sockets of a box's network and the bytes waiting in them.
 
     Args:
         first: The box's first process, as the host counts.
-        most: Bytes that may wait there. Going through the tables of UDP and TCP takes ten milliseconds: they are left
-            out if all networks of the machine together have no more than this.
+        most: The allowed number of waiting bytes. Reading the tables of UDP and TCP takes ten milliseconds, so it is
+            skipped if all networks of the machine together have no more than this.
     """
     net = Path(f"/proc/{first}/net")
     sockets = waiting = 0
     try:
         if Path(f"/proc/{first}/ns/net").stat().st_ino == Path("/proc/self/ns/net").stat().st_ino:
-            return _Network()  # it is on its way into the box
+            return _Network()  # it is about to enter the box
         summary = (net / "sockstat").read_text()
         sockets = sum(map(int, _SOCKETS.findall(summary)))
         pages = sum(map(int, _PAGES.findall(summary)))
@@ -258,20 +257,20 @@ def _network_of(first: int, most: int) -> _Network:
 
 
 def _locks_of(first: int, most: int) -> int:
-    """Count the file locks of a box, and waiting ones: memory of the kernel that belongs to no process and no cgroup.
+    """Count held and waiting file locks of a box: kernel memory that belongs to no process and no cgroup.
 
-    A box's own ``/proc/locks`` has those of its own processes, and with -1 for a process those that belong to an open
-    file of whoever it is, which nobody in a box may make (:mod:`autograder.boxes.seccomp_filter`).
+    A box's ``/proc/locks`` shows the locks of its own processes and, with -1 for a process, those that belong to an
+    open file of any process, which no process in a box may make (:mod:`autograder.boxes.seccomp_filter`).
 
     Args:
         first: The box's first process, as the host counts.
-        most: Where there are more, reading ends: it takes the kernel the square of their number.
+        most: Reading stops above this number, because the kernel's time grows with its square.
     """
     locks, rest = 0, b""
     try:
         own = Path(f"/proc/{first}/root/proc")
         if own.stat().st_dev == Path("/proc").stat().st_dev:
-            return 0  # it is on its way into the box
+            return 0  # it is about to enter the box
         with (own / "locks").open("rb", buffering=0) as table:
             while locks <= most and (piece := table.read(_PIECE)):
                 *rows, rest = (rest + piece).split(b"\n")
@@ -282,7 +281,7 @@ def _locks_of(first: int, most: int) -> int:
 
 
 def _rows(table: Path) -> list[list[str]]:
-    """The fields of each line below the heading; none where the system does not know the protocol."""
+    """The fields of each line below the heading; empty if the system does not have the protocol."""
     return [line.split() for line in table.read_text().splitlines()[1:]] if table.exists() else []
 
 
@@ -296,7 +295,7 @@ def _scratch_of(first: int) -> int:
 
 
 def _memory_of(process: str) -> tuple[int, int]:
-    """Pages that are shared by a fork count in each process, and so do the tables of pages, which only reading fills.
+    """Measure memory. Pages that a fork shares count in each process, and so do page tables, which reading fills.
 
     ``VmHWM`` is the most that a process has had since it was forked or has become another program, pages of files
     included (proc_pid_status(5)).
@@ -307,32 +306,32 @@ def _memory_of(process: str) -> tuple[int, int]:
 
 
 def _exact_memory_of(process: str) -> tuple[int, int]:
-    """A page that several processes share counts once in all; takes the kernel a moment."""
+    """Measure memory, counting a page that several processes share only once; takes the kernel a moment."""
     try:
         sizes = _sizes_in(Path(process, "smaps_rollup"))
     except PermissionError:
-        # It has hidden itself (PR_SET_DUMPABLE, prctl(2)): then all that it shares counts, too.
+        # The process is hidden (PR_SET_DUMPABLE, prctl(2)): count its shared pages, too.
         return _memory_of(process)
     now = sizes["Pss_Anon"] + sizes["Pss_Shmem"] + _sizes_in(Path(process, "status"))["VmPTE"]
     return now, now
 
 
 def _sizes_in(file: Path) -> Counter[str]:
-    """Bytes by name, 0 for what the file does not name. A process may call itself anything: only whole lines count."""
+    """Return sizes by name, 0 for a missing name. A process may choose its name freely, so only whole lines count."""
     return Counter({name: int(size) * 1024 for name, size in _SIZE.findall(file.read_text(errors="replace"))})
 
 
 class NoGuard:
-    """The guard without a box: it counts nothing, and only the limits of time hold."""
+    """The guard without a box: it measures nothing, and only the time limits apply."""
 
     cpu_seconds = 0.0
 
     def exceeded(self, *, at_once: bool = False) -> Ended | None:  # noqa: ARG002  (as of BoxGuard)
-        """Nothing is counted."""
+        """Return None, because nothing is measured."""
         return None
 
     def reason(self) -> Ended | None:
-        """Nothing is known."""
+        """None, because nothing is measured."""
         return None
 
 
@@ -340,7 +339,7 @@ Guard = BoxGuard | NoGuard
 
 
 def guards() -> Mapping[str, str]:
-    """The guard that holds each limit on this host, for ``autograder doctor``: words by limit."""
+    """Return what enforces each limit on this host, by limit, for ``autograder doctor``."""
     watched = "looked at four times a second (no cgroup can be made here)"
     return {
         "memory": _cgroup("memory") or watched,

@@ -1,9 +1,9 @@
-"""Hangs in a student's code: waited for once at full length, and only a little after that.
+"""Hangs in a student's code: the first is given its full time, later ones only a little.
 
-A class with an endless loop hangs in each cell that uses it, and each of them would wait its whole limit again. Which
-name it is can be told where a cell of the master's, which comes to its end with any right answer, uses exactly one name
-that the student has defined. Where it uses several, or the student wrote the cell, nobody is blamed. A check is never
-left out: one that comes to its verdict as fast as usual counts as usual.
+In a class with an endless loop, each cell that uses it hangs, and each would wait for its whole limit. The guilty
+name is certain only if a cell of the master, which ends with any right answer, uses exactly one name that the student
+defined. If it uses several, or if the student wrote the cell, no name is blamed. A check is never left out: one that
+reaches its verdict at the usual speed counts as usual.
 """
 
 from __future__ import annotations
@@ -20,17 +20,19 @@ if TYPE_CHECKING:
     from autograder.boxes.limits import Limits
 
 AGAIN_SECONDS = 10.0
-"""Seconds for a cell without points that uses what has hung before."""
+"""Seconds for a cell without points that uses a name that hung before."""
 _SHARE_OF_A_CHECK = 0.25
-"""Share of the judge's limit for a check of what has hung before; a check takes about a twentieth of that limit."""
+"""Share of the judge's limit for a check of a name that hung before; a check normally takes a twentieth of the
+limit.
+"""
 
 
 @dataclass
 class Hangs:
-    """Names that have hung so far in a notebook.
+    """The names that have hung so far in a notebook.
 
     Args:
-        written: The classes and functions that the student has defined.
+        written: The names of the classes and functions that the student defined.
     """
 
     written: frozenset[str]
@@ -43,20 +45,20 @@ class Hangs:
         return cls(frozenset(name for source in own for name in _defined(source)))
 
     def note(self, cell: Cell, title: str) -> None:
-        """A cell was stopped at its limit.
+        """Note that a cell was stopped at its limit.
 
         Args:
             cell: The cell.
-            title: What it is called in messages.
+            title: The cell's name in messages.
         """
         used = [] if cell.own else self._used(cell)
         if len(used) == 1:
             self._hung.setdefault(used[0], title)
 
     def before(self, cell: Cell) -> tuple[str, str] | None:
-        """The name in a cell that has hung before, and the title of the cell in which it did."""
+        """Return a name in the cell that hung before, and the title of the cell in which it did; None without one."""
         if not self._hung:
-            return None  # as in nearly every notebook: no cell has to be parsed
+            return None  # as in nearly every notebook: then no cell has to be parsed
         return next(((name, self._hung[name]) for name in self._used(cell) if name in self._hung), None)
 
     def _used(self, cell: Cell) -> list[str]:
@@ -66,11 +68,11 @@ class Hangs:
 
 
 def seconds_again(cell: Cell, usual: float, limits: Limits) -> float:
-    """The limit of a cell that uses what has hung before, in seconds of wall time.
+    """Return the limit of a cell that uses a name that hung before, in seconds of wall time.
 
     Args:
         cell: The cell.
-        usual: How long it may take where nothing it uses has hung.
+        usual: The limit if no such name is used.
         limits: All limits.
     """
     if cell.check is None or cell.check.asserts:
@@ -85,7 +87,7 @@ def _defined(source: str) -> list[str]:
 
 
 def _parsed(source: str) -> ast.Module | None:
-    """Python, or None for what is none: a magic, a mistake, or text that nobody can read."""
+    """Parse Python. Return None for anything else: a magic, a syntax error, or unreadable text."""
     try:
         return ast.parse(source)
     except (SyntaxError, ValueError, RecursionError, MemoryError):

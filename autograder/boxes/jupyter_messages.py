@@ -1,7 +1,7 @@
-"""Messages of a Jupyter kernel as they travel: four signed frames of JSON.
+"""Jupyter kernel messages as they are sent: four signed frames of JSON.
 
-The form is that of the Jupyter messaging specification 5.4, "The Wire Protocol". ``jupyter_client.session`` does the
-same, and importing it takes half of the time in which a worker starts.
+The format is that of the Jupyter messaging specification 5.4, "The Wire Protocol". ``jupyter_client.session`` does
+the same, but importing it takes half the time in which a worker starts.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 _BEFORE = b"<IDS|MSG>"
-"""Parts before this one say who has sent a message and what it is about, for ZeroMQ alone."""
+"""The parts before this one hold routing data for ZeroMQ alone."""
 _FRAMES = ("header", "parent_header", "metadata", "content")
 
 
 class SignedMessages:
-    """The form of the messages between one kernel and the one who asks it.
+    """Writes and reads the messages between one kernel and its client.
 
     Args:
-        key: What the messages are signed with.
+        key: The key that signs the messages.
     """
 
     def __init__(self, key: str) -> None:
@@ -32,7 +32,7 @@ class SignedMessages:
         self._session = secrets.token_hex(16)
 
     def written(self, message_type: str, content: Mapping[str, Any]) -> tuple[str, list[bytes]]:
-        """A message's id and its parts."""
+        """Return a message's id and its parts."""
         header = {
             "msg_id": secrets.token_hex(16),
             "msg_type": message_type,
@@ -45,10 +45,10 @@ class SignedMessages:
         return header["msg_id"], [_BEFORE, self._signature(frames), *frames]
 
     def read(self, parts: Sequence[bytes]) -> dict[str, Any]:
-        """A message by the names of its frames, with its type as ``msg_type``.
+        """Return a message by the names of its frames, with its type as ``msg_type``.
 
         Raises:
-            ValueError: It has not the form of a message, or is not signed with the key.
+            ValueError: The message does not have this format, or is not signed with the key.
             KeyError: Its header has no type.
             RecursionError: It is nested too deeply.
         """

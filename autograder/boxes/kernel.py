@@ -1,9 +1,8 @@
-"""A Jupyter kernel in a process of its own, spoken to over Unix sockets with nothing but polling and deadlines.
+"""A Jupyter kernel in a process of its own, reached over Unix sockets with polling and deadlines.
 
-nbclient is made for notebooks one trusts: it keeps all output, believes each message's form and learns of a
-dead kernel from a heartbeat. Here every wait ends at a message, at the process's end or at a deadline,
-whichever is first, and what arrives is only looked at as far as it has the right form (Jupyter messaging
-specification 5.4).
+nbclient is made for trusted notebooks: it keeps all output, trusts the format of each message and learns of a dead
+kernel from a heartbeat. Here every wait ends at a message, at the end of the process or at a deadline, whichever
+comes first, and a message is read only as far as it has the right format (Jupyter messaging specification 5.4).
 """
 
 from __future__ import annotations
@@ -33,30 +32,30 @@ if TYPE_CHECKING:
     from autograder.boxes.limits import Limits
 
 Output = Callable[[str, str, Mapping[str, Any]], None]
-"""Called with the id of the request, the message type and the content of each output."""
+"""Called for each output with the request's id, the message type and the content."""
 
 _ASK_AGAIN_S = 0.5
 _LAST_OUTPUT_S = 2.0
-"""Seconds without anything new, after which a cell's last outputs are no longer waited for."""
+"""Seconds of silence after which a cell's last outputs are no longer expected."""
 SHELL, IOPUB = 1, 2
-"""The channels that are used, as they are numbered in the sockets' names."""
+"""The channels in use, by their numbers in the names of the sockets."""
 _TOO_LARGE = "\n[output that was too large was dropped]\n"
 
 
 class KernelFailed(RuntimeError):
-    """The kernel did not start or did not answer; the message says why."""
+    """The kernel did not start or did not answer; the message gives the reason."""
 
 
 @dataclass(frozen=True)
 class Channels:
-    """The channels that a kernel is started with.
+    """The channels with which a kernel starts.
 
     Attributes:
-        address: The path in the names of its sockets.
-        key: What its messages are signed with.
+        address: The path in the names of the sockets.
+        key: The key that signs the messages.
         shell: The listening socket for requests.
         iopub: The listening socket for outputs.
-        log: Where it writes what is no output of a cell; full after one pipe.
+        log: A pipe for what the kernel prints outside any cell; further text is dropped once the pipe is full.
     """
 
     address: str
@@ -73,11 +72,12 @@ class Kernel:
     """A running kernel.
 
     Args:
-        folder: For the sockets; a short path, since Unix socket names have at most 107 characters. No box sees it.
-        start: Starts the process.
-        limits: Of these ``start_seconds``, ``interrupt_grace``, ``message_bytes`` and ``flood_bytes``.
-        on_output: Gets every output; never called after :meth:`close`.
-        guard: Says when the box has exceeded another limit.
+        folder: The folder for the sockets. Its path must be short, as Unix socket names have at most 107 characters.
+            No box sees it.
+        start: Starts the kernel's process.
+        limits: ``start_seconds``, ``interrupt_grace``, ``message_bytes`` and ``flood_bytes`` are used.
+        on_output: Gets every output; it is never called after :meth:`close`.
+        guard: Reports that the box has exceeded another limit.
 
     Raises:
         KernelFailed: The process could not be started.
@@ -114,14 +114,14 @@ class Kernel:
 
     @property
     def lost(self) -> bool:
-        """True if the grader itself lost it: then its end says nothing about the notebook."""
+        """True if the grader itself lost the process: then its exit tells nothing about the notebook."""
         return self._process.lost
 
     def await_ready(self) -> None:
         """Wait until the kernel answers and its outputs reach us.
 
         Raises:
-            KernelFailed: It ended or did not answer within ``start_seconds``.
+            KernelFailed: The kernel ended, or did not answer within ``start_seconds``.
         """
         if not self._shake_hands(time.monotonic() + self._limits.start_seconds):
             if self.alive:
@@ -131,11 +131,11 @@ class Kernel:
     def execute(self, source: str, left: Left, request: Callable[[str], None] = lambda _: None) -> Ended:
         """Execute one cell.
 
-        A cell that is still running when its time is up is interrupted; a kernel that does not obey is killed.
+        A cell that is still running at its limit is interrupted; a kernel that does not react is killed.
 
         Args:
             source: The cell's text.
-            left: The seconds that it has left, whenever it is asked.
+            left: Returns the seconds that the cell has left.
             request: Called with the id of this request before any output of it arrives.
         """
         if not self.alive:
@@ -159,8 +159,8 @@ class Kernel:
         stopped_for = Ended.TOO_MUCH_OUTPUT if self._floods else self._guard.reason() or Ended.TIMED_OUT
         self._count_anew()
         self._process.interrupt()  # as JupyterLab's stop button does
-        # An interrupt that meets the kernel's own code, such as its flush of what was printed, takes the answer away.
-        # What is asked behind it is answered all the same.
+        # An interrupt can hit the kernel's own code, such as its flush of printed text; then the cell's answer is
+        # lost. A request that is sent after it is still answered.
         next_one = self._ask("kernel_info_request", {})
         grace = wall_time(self._limits.interrupt_grace)
         if self._await_reply(asked, grace, next_one) is None:
@@ -168,7 +168,7 @@ class Kernel:
         return stopped_for
 
     def kill(self) -> None:
-        """End the process and all that it started."""
+        """End the process and everything that it started."""
         self._process.end()
 
     def close(self) -> None:
@@ -182,12 +182,12 @@ class Kernel:
         self._iopub.close()
 
     def _await_reply(self, request: str, left: Left, next_one: str = "") -> Ended | None:
-        """The end of the cell, or None where it is still running when its time is up.
+        """Wait for the end of a cell. Return how it ended, or None if it is still running when its time is up.
 
         Args:
-            request: The id of the request that executes it.
-            left: The seconds that it has left.
-            next_one: The id of a request behind it, whose answer says as well that it has ended.
+            request: The id of the request that executes the cell.
+            left: Returns the seconds that the cell has left.
+            next_one: The id of a later request; an answer to it also shows that the cell has ended.
         """
         reply: Mapping[str, Any] | None = None
         idle = False
@@ -211,15 +211,15 @@ class Kernel:
             self.kill()
             return self._died()
         if self._guard.exceeded(at_once=True):
-            # It was over before the watch came by: it ends as it would have ended a moment later.
+            # The cell ended before the watch saw the excess: treat it as the watch would have done a moment later.
             self.kill()
             return self._died()
         return Ended.DONE if reply.get("status") == "ok" else Ended.RAISED
 
     def _await_idle(self, request: str, left: Left) -> None:
-        """The reply is there; the last outputs travel on the other socket and may be a little later.
+        """Wait for a cell's last outputs, which use another socket than the reply and may arrive after it.
 
-        On a crowded machine much later: an earlier cell's line of 100 MB may be in front of them.
+        If the machine is busy, they may be much later: an earlier cell's line of 100 MB may be in front of them.
         """
         last_read, silence = -1, wall_time(_LAST_OUTPUT_S)
 
@@ -235,11 +235,12 @@ class Kernel:
                 return
 
     def _shake_hands(self, deadline: float) -> bool:
-        """Ask until both an answer and its echo among the outputs have arrived; whether they have."""
+        """Send requests until both an answer and its echo among the outputs have arrived. Return True if they have."""
         answered = heard = False
         asked: set[str] = set()
         while self.alive and time.monotonic() < deadline:
-            # Asked more than once because outputs published before our subscription was known are lost.
+            # Sent repeatedly, because outputs are lost that were published before our subscription reached the
+            # kernel.
             asked.add(self._ask("kernel_info_request", {}))
             for channel, message in self._messages(until(min(deadline, time.monotonic() + _ASK_AGAIN_S))):
                 if _parent(message) in asked:
@@ -254,15 +255,15 @@ class Kernel:
         return self._iopub.read + self._shell.read - self._read_before > self._limits.flood_bytes
 
     def _count_anew(self) -> None:
-        """Count what is read from now on, without the rest of what was too large: that is an earlier cell's."""
+        """Count the bytes read from now on. The rest of an earlier cell's too large message does not count."""
         self._read_before = self._iopub.read + self._shell.read + self._iopub.owed
 
     def _died(self) -> Ended:
-        """The reason why the kernel is gone."""
+        """Return how the kernel's end counts for the cell."""
         return self._guard.reason() or Ended.KERNEL_DIED
 
     def _messages(self, left: Left) -> Iterator[tuple[ZmtpConnection, dict[str, Any]]]:
-        """All messages until the time is up, a limit or the kernel's end; outputs are handed on from here."""
+        """Yield messages until the time is up, a limit is exceeded or the kernel ends; outputs are passed on here."""
         while True:
             ready = self._ready(_wait_ms(left))
             if self._guard.exceeded():
@@ -283,7 +284,7 @@ class Kernel:
                 return
 
     def _ready(self, wait_ms: int) -> list[ZmtpConnection]:
-        """The connections on which something has come within so many milliseconds; none at the process's end."""
+        """Return the connections with new data within ``wait_ms`` milliseconds; none once the process has ended."""
         channels = (self._iopub, self._shell)
         poll = select.poll()
         poll.register(self._process.fileno(), select.POLLIN)
@@ -295,7 +296,7 @@ class Kernel:
 
     def _received(self, channel: ZmtpConnection) -> Iterator[dict[str, Any]]:
         for parts in channel.received():
-            with contextlib.suppress(Exception):  # a message of no or of a forged form
+            with contextlib.suppress(Exception):  # a message with a wrong format or a forged signature
                 yield self._form.read(parts)
 
     def _hand_on(self, message: Mapping[str, Any]) -> None:
@@ -321,7 +322,7 @@ def _wait_ms(left: Left) -> int:
 
 
 def _listener(path: Path) -> socket.socket:
-    """A Unix socket that listens; ZeroMQ's own would be made in the box."""
+    """A listening Unix socket; ZeroMQ would make its own inside the box."""
     listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     listener.bind(str(path))
     listener.listen(8)
@@ -329,7 +330,7 @@ def _listener(path: Path) -> socket.socket:
 
 
 def _log_pipe() -> tuple[int, int]:
-    """A pipe that keeps what is written first and refuses the rest, so that nobody has to read it meanwhile."""
+    """A pipe that keeps the first text and refuses more once it is full, so it need not be read meanwhile."""
     reading, writing = os.pipe()
     for end in (reading, writing):
         os.set_blocking(end, False)
@@ -342,13 +343,13 @@ def _parent(message: Mapping[str, Any]) -> str:
 
 
 def _answer(message: Mapping[str, Any], request: str) -> Mapping[str, Any]:
-    """The content of a message that answers ``request``; empty for any other."""
+    """The content of a message if it answers ``request``, else empty."""
     content = message.get("content")
     return content if _parent(message) == request and isinstance(content, Mapping) else {}
 
 
 def _asks_to_exit(reply: Mapping[str, Any]) -> bool:
-    """True if ``exit()`` or ``quit()`` was called: the kernel answers first and ends a moment later."""
+    """True if the cell called ``exit()`` or ``quit()``: the kernel answers first and ends a moment later."""
     payload = reply.get("payload")
     return isinstance(payload, list) and any(
         isinstance(p, Mapping) and p.get("source") == "ask_exit" for p in payload

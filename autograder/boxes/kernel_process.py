@@ -1,8 +1,8 @@
-"""A fork of the fork server: an IPython kernel on sockets that it was given.
+"""A fork of the fork server: an IPython kernel on given sockets.
 
-The listening sockets come from the grader, so that no folder of the host is open to the box, and nothing in the box
-can put another socket in their place. Only two of Jupyter's five channels are served: requests and outputs. What
-the grader does not use (control, input, heartbeat) is bound to nothing.
+The listening sockets come from the grader. So no folder of the host is open to the box, and no program in the box can
+replace a socket. Only two of Jupyter's five channels are used: requests and outputs. The others (control, input,
+heartbeat) are not reachable from outside.
 """
 
 from __future__ import annotations
@@ -42,17 +42,17 @@ _PRELOADED = (
 )
 _MAGIC = "autograder.notebook.cells.program_files"
 _PREPARED = ("autograder.cards.bundle",)
-"""The modules of these that have a function ``prepare`` to be called."""
+"""Those modules whose function ``prepare`` is called."""
 
 
 def prepare(*interfaces: str) -> None:
-    """Import what nearly every notebook of the course does; what is not there is left to the notebook to miss.
+    """Import what nearly every notebook of the course imports; skip missing modules, which a notebook will report.
 
     Args:
-        interfaces: The modules with the course's own interfaces. Of the course itself this process sees nothing.
+        interfaces: The modules with the course's own interfaces. The process sees nothing else of the course.
     """
-    # JupyterLab's debugger is of no use where nobody sits before the notebook, and a seventh of what a kernel imports.
-    # ipykernel does without where it is not installed (ipykernel/debugger.py).
+    # JupyterLab's debugger is useless without a user, and a seventh of a kernel's imports. ipykernel works without it
+    # if it is not installed (ipykernel/debugger.py).
     sys.modules.setdefault("debugpy", None)  # type: ignore[arg-type]
     preload((*RCLPY, *_PRELOADED, *_rehearsed()))
     for name in _PREPARED:
@@ -62,7 +62,7 @@ def prepare(*interfaces: str) -> None:
 
 
 def _rehearsed() -> list[str]:
-    """The modules that a kernel imports until its first cell has run; a child becomes a kernel and lists them."""
+    """List the modules that a kernel imports until its first cell has run, by starting one in a child."""
     before = set(sys.modules)
     reading, writing = os.pipe()
     pid = os.fork()
@@ -89,16 +89,16 @@ def _rehearse() -> None:
         app.initialize([])
         assert app.shell is not None
         app.shell.run_cell("import asyncio\n%time 1 + 1\nassert asyncio")
-        # Before the folder goes; the standard streams are those of the kernel by now, and nobody listens.
+        # Restore the streams before the folder is removed: by now they belong to the kernel, which has no client.
         sys.stdout, sys.stderr = sys.__stdout__, sys.__stderr__
 
 
 def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
-    """Be a kernel until it is shut down.
+    """Run a kernel until it is shut down.
 
     Args:
-        call: ``key``, what messages are signed with; ``address``, the path in the names of the sockets.
-        descriptors: Listening sockets of the shell and the iopub channel, and where stray output goes.
+        call: ``key``, which signs messages, and ``address``, the path in the names of the sockets.
+        descriptors: The listening sockets of the shell and iopub channels, and the descriptor for other output.
     """
     shell, iopub, log = descriptors
     for standard in (1, 2):
@@ -109,19 +109,19 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
     app = _kernel_app(call["key"].encode(), call["address"], {SHELL: shell, IOPUB: iopub})
     app.initialize([])
     app.start()
-    # What an interpreter does at its end and a fork does not: hooks, the last outputs among them.
+    # The exit hooks, which write the last outputs among others: an interpreter runs them at exit, a fork does not.
     atexit._run_exitfuncs()
 
 
 def _arguments() -> list[str]:
-    """The ``sys.argv`` that a program in a cell has in JupyterLab, where some meet the kernel's own arguments."""
+    """Return the ``sys.argv`` that JupyterLab sets, because some programs in cells parse the kernel's arguments."""
     launcher = importlib.util.find_spec("ipykernel_launcher")
     name = launcher.origin if launcher is not None and launcher.origin else "ipykernel_launcher.py"
     return [name, "-f", "kernel.json"]
 
 
 def _forget_the_fork() -> None:
-    """Draw anew what a fork has in common with its siblings: random numbers. Python reseeds ``random`` itself."""
+    """Reset state that a fork shares with its siblings: random numbers. Python itself reseeds ``random``."""
     random.seed()
     numpy_random = sys.modules.get("numpy.random")
     if numpy_random is not None:
@@ -129,27 +129,27 @@ def _forget_the_fork() -> None:
 
 
 class _GivenSockets(IPKernelApp):
-    """A kernel's application that binds nothing of its own."""
+    """A kernel application that uses the given sockets instead of binding its own."""
 
     given: Mapping[int, int]
     address: str
     key: bytes
 
     def init_connection_file(self) -> None:
-        """Take the addresses that a connection file would hold."""
+        """Set the addresses that a connection file would contain."""
         self.transport, self.ip = "ipc", self.address
         self.shell_port, self.iopub_port, self.stdin_port, self.control_port, self.hb_port = 1, 2, 3, 4, 5
         self.session.key = self.key
 
     def write_connection_file(self, **_: Any) -> None:
-        """Nobody reads one."""
+        """Do nothing: no program reads a connection file here."""
 
     def log_connection_info(self) -> None:
-        """Nobody reads that either; the ports are noted as the base class does it."""
+        """Only note the ports, as the base class does: the connection details are not needed."""
         self._ports = {"shell": 1, "iopub": 2, "stdin": 3, "hb": 5, "control": 4}
 
     def init_heartbeat(self) -> None:
-        """The grader hears of a kernel's end from the operating system."""
+        """Do nothing: the grader learns of a kernel's end from the operating system."""
         self.heartbeat = None
 
     def _try_bind_socket(self, s: Any, port: int) -> int:
@@ -158,14 +158,14 @@ class _GivenSockets(IPKernelApp):
             s.setsockopt(zmq.USE_FD, descriptor)
             s.bind(f"ipc://{self.address}-{port}")
             s.setsockopt(zmq.USE_FD, -1)
-        # Inside of the process: the debugger's socket connects to whatever the shell was bound to last.
+        # An address inside the process: the debugger's socket connects to the last address of the shell channel.
         s.bind(f"inproc://channel-{port}")
         return port
 
 
 def _kernel_app(key: bytes, address: str, given: Mapping[int, int]) -> IPKernelApp:
     config = Config()
-    # No history file: it would be one more thing to write, and nobody will press the up key.
+    # No history file: it would be a needless write, and no user will press the up key.
     config.HistoryManager.hist_file = ":memory:"
     config.HistoryManager.enabled = False
     config.InteractiveShellApp.extensions = [_MAGIC]

@@ -1,4 +1,4 @@
-"""The limits that hold while a notebook runs, and how much of a time is left."""
+"""The limits for running a notebook, and functions that tell how much of a time is left."""
 
 from __future__ import annotations
 
@@ -8,46 +8,45 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 Left = Callable[[], float]
-"""The seconds that are left; none or fewer at the end."""
+"""Returns the seconds that are left; zero or less when the time is up."""
 Patient = Callable[[float], Left]
-"""A function from a number of seconds to the time that is left of them, from the call on."""
+"""Turns a number of seconds into a function that returns how many of them are left, counted from the call on."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """The limits of one notebook; where one is met, the feedback names it.
+    """The limits of one notebook; the feedback names a limit that was reached.
 
     Attributes:
-        cell_seconds: Seconds that the machine has for one cell; where it is crowded, each lasts longer on the wall.
-            A check cell gets its exercise's limit and ``check_margin`` instead.
-        terminal_factor: How many times as long a terminal's cell (``%%bash``) may take: it may build.
-        check_margin: Seconds beyond the judge's own limit, so that its verdict arrives before the cell is
-            stopped.
+        cell_seconds: Seconds for one cell on an idle machine; on a busy machine they stretch. A check cell gets its
+            exercise's limit and ``check_margin`` instead.
+        terminal_factor: How many times this limit a terminal's cell (``%%bash``) gets, because it may build.
+        check_margin: Seconds beyond the judge's own limit, so that the verdict arrives before the cell is stopped.
         notebook_seconds: Wall time of all cells together, checks included.
         interrupt_grace: Seconds that an interrupted cell has to end before its kernel is killed.
         start_seconds: Wall time until a kernel must have answered.
-        cell_output_bytes: Output kept of one cell; the rest is dropped and a line says so.
-        notebook_output_bytes: Output kept of all cells together.
-        message_bytes: Largest single message that is read from a kernel.
+        cell_output_bytes: Output kept from one cell; the rest is dropped, and a line in the output tells so.
+        notebook_output_bytes: Output kept from all cells together.
+        message_bytes: The largest message that is read from a kernel.
         flood_bytes: Output that a cell may send, kept or not, before it is stopped.
-        cpu_seconds: Processor time of a box's processes together; a submission that is executed twice has it each time.
-        memory_bytes: Memory of a box's processes together, files in its scratch included.
-        beside_bytes: The same, as long as others are executed beside. Who needs more is executed again, alone, so it
-            decides nothing.
-        beside: Whether others are.
-        judge_bytes: Memory that the judge's process, and each check of it, may write to: what a subject sends to it
-            ends there.
+        cpu_seconds: Processor time of a box's processes together, for each time that a submission is executed.
+        memory_bytes: Memory of a box's processes together, including files in its scratch.
+        beside_bytes: The limit on memory while other submissions run. A submission that needs more is executed again,
+            alone, so this limit never decides a result.
+        beside: True while other submissions run.
+        judge_bytes: Memory that the judge's process, and each of its checks, may write to; it bounds what a subject
+            can send to the judge.
         processes: Processes and threads of a box together.
-        open_files: Files, sockets and pipes that one process may have open.
-        all_open_files: What all processes of a box may have open together, and the number of sockets in its network.
-        file_locks: Parts of files that all processes of a box may have locked together; a database locks five.
-        socket_bytes: What may wait in the sockets of a box's network. The machine has one limit for those of all boxes;
-            where that is used up, nobody's messages arrive any more.
-        scratch_bytes: What a box's files may have together.
-        scratch_files: How many files, folders and links a box may have.
+        open_files: Open files, sockets and pipes of one process.
+        all_open_files: The same for all processes of a box together; also the most sockets in its network.
+        file_locks: Parts of files that all processes of a box may lock together; a database locks five.
+        socket_bytes: Bytes that may wait in the sockets of a box's network. The machine has one limit for all boxes
+            together; if that is used up, no box receives messages any more.
+        scratch_bytes: The size of a box's files together.
+        scratch_files: The number of files, folders and links in a box.
     """
 
-    # What honest notebooks need, and why these are several times that: docs/decisions.md, on limits.
+    # What honest notebooks need, and why these limits are several times that: docs/decisions.md, on limits.
     cell_seconds: float = 60.0
     terminal_factor: float = 2.0
     check_margin: float = 10.0
@@ -73,30 +72,30 @@ class Limits:
 
     @property
     def of_the_judge(self) -> dict[str, int]:
-        """Limits of a judge's process (setrlimit(2)): address space that can be written to, stacks of threads too."""
+        """Limits of a judge's process (setrlimit(2)): writable address space, including the stacks of threads."""
         return {"RLIMIT_DATA": self.judge_bytes}
 
     @property
     def longest(self) -> float:
-        """Seconds of wall time after which a notebook is stopped, whatever it does."""
+        """The longest that a notebook can run before it is stopped, in seconds of wall time."""
         return self.start_seconds + self.notebook_seconds + self.interrupt_grace
 
     @property
     def memory_now(self) -> int:
-        """The memory that a box may have now, in bytes."""
+        """The memory that a box may use now, in bytes."""
         return min(self.memory_bytes, self.beside_bytes) if self.beside else self.memory_bytes
 
 
 _MOST_OPEN_FILES = 1 << 20
-"""More is never needed, and some systems allow a billion, which programs that go through all of them count up to."""
+"""Programs that loop over all possible descriptors would take too long with the billion that some systems allow."""
 
 
 def raise_own() -> None:
-    """Take as much as this user may have of what the system counts for each user and not for each process.
+    """Raise this process's limits to the most that its user may have, for resources that the system counts by user.
 
-    How many descriptors a user may have on their way through sockets is decided by the limit on open files of whoever
-    sends one (unix(7), ETOOMANYREFS), whoever else has sent the others. A box of the same user must never be able to
-    have as many as the grader, so that the grader can always send another one.
+    The number of descriptors that a user may have in transit through sockets is the sender's limit on open files
+    (unix(7), ETOOMANYREFS), whichever process sent the others. A box of the same user must never be able to use as
+    many as the grader, so that the grader can always send one more.
     """
     for kind, most in (
         (resource.RLIMIT_NOFILE, _MOST_OPEN_FILES),
@@ -112,21 +111,21 @@ def raise_own() -> None:
 
 
 def open_files_of_a_box(wanted: int) -> int:
-    """The number of files that a process in a box may have open: at most half of what the grader may have."""
+    """Return how many files a process in a box may have open: at most half as many as the grader."""
     own = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
     return wanted if own == resource.RLIM_INFINITY else min(wanted, own // 2)
 
 
 def until(deadline: float) -> Left:
-    """Until a moment on the monotonic clock."""
+    """Return the time left until a moment on the monotonic clock."""
     return lambda: deadline - time.monotonic()
 
 
 def wall_time(seconds: float) -> Left:
-    """For so many seconds of wall time."""
+    """Return the time left of ``seconds`` seconds of wall time from now on."""
     return until(time.monotonic() + seconds)
 
 
 def first_of(*lefts: Left) -> Left:
-    """Until the first of several is up."""
+    """Return the time left until the first of several ends."""
     return lambda: min(left() for left in lefts)

@@ -1,9 +1,9 @@
-"""The files that a box sees, as bubblewrap's arguments.
+"""The files that a box sees, as arguments for bubblewrap.
 
-Only what Python, ROS and a build of a workspace need, all of it read-only: the system's programs and libraries, the
-Python installation, the environment with the course's packages, and the package itself. Nothing of ``solutions/``,
-of a class or of the home folder, though an installation may be below one. All that can be written to is the
-scratch, which has a limit and vanishes with the box.
+A box sees only what Python, ROS and the build of a workspace need, read-only: the system's programs and libraries,
+the Python installation, the environment with the course's packages, and this package. It sees no ``solutions/``, no
+class and no home folder, even if an installation lies below one. It can write only to the scratch, which has a size
+limit and vanishes with the box.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ USER = "student"
 USER_ID = 1000
 HOME = Path("/home") / USER
 WORK = HOME / "notebook"
-"""The folder of a notebook, its files and what it writes."""
+"""The folder for a notebook, the files next to it and the files that it writes."""
 
 _PROC_HIDDEN = {"kcore", "kmsg", "keys", "key-users"}
-"""Files that say more about the machine and its users than a program needs to know."""
+"""Files that tell more about the machine and its users than a program needs."""
 
 ETC = "etc"
-"""The folder of the scratch that no box can write to."""
+"""The folder of the scratch in which no box can write."""
 TERMINALS = "pts"
 """The folder of the scratch with the pseudo-terminals of all boxes of a supervisor."""
 _ETC_FILES = {
@@ -49,45 +49,45 @@ _ETC_FILES = {
 
 @dataclass(frozen=True)
 class Bind:
-    """Something of the host that is to be seen in a box, which may only read it.
+    """A file or folder of the host that is visible, but read-only, in a box.
 
     Attributes:
-        source: Where it is.
-        place: Where the box sees it; at the same path where it is None.
+        source: The path on the host.
+        place: The path in the box; None for the same path as on the host.
     """
 
     source: Path
     place: Path | None = None
 
     def arguments(self) -> list[str]:
-        """As arguments of bubblewrap."""
+        """The arguments for bubblewrap."""
         return ["--ro-bind", str(self.source), str(self.place or self.source)]
 
 
 @dataclass(frozen=True)
 class Link:
-    """A symbolic link of the box's own.
+    """A symbolic link that exists only in the box.
 
     Attributes:
-        place: Where it is.
-        target: What it leads to in the box.
+        place: The path of the link.
+        target: The path in the box to which it leads.
     """
 
     place: Path
     target: Path
 
     def arguments(self) -> list[str]:
-        """As arguments of bubblewrap."""
+        """The arguments for bubblewrap."""
         return ["--symlink", str(self.target), str(self.place)]
 
 
 def box_arguments(scratch: Path, binds: Sequence[Bind | Link], *, scratch_visible: bool = True) -> list[str]:
-    """The arguments of bubblewrap for a box.
+    """Return the arguments of bubblewrap for a box.
 
     Args:
         scratch: The supervisor's file system in memory.
-        binds: What is to be seen beside the system, Python and the course's package.
-        scratch_visible: Give the box the scratch as its home, its ``/tmp`` and its ``/dev/shm``. Else it has small
+        binds: What the box sees in addition to the system, Python and this package.
+        scratch_visible: True if the scratch is the box's home, ``/tmp`` and ``/dev/shm``. Otherwise the box has small
             ones of its own.
     """
     words = [
@@ -117,7 +117,7 @@ def box_arguments(scratch: Path, binds: Sequence[Bind | Link], *, scratch_visibl
     words += [word for folder in cover for word in ("--tmpfs", folder)]
     for bind in (*(Bind(path) for path in installation()), *binds):
         words += bind.arguments()
-    # What bubblewrap itself put there is a file system in memory without a limit.
+    # The other folders that bubblewrap makes are file systems in memory without a limit, so they become read-only.
     return [*words, *(word for folder in ("/dev", "/", *cover) for word in ("--remount-ro", folder))]
 
 
@@ -133,7 +133,7 @@ def _course_below_the_scratch() -> tuple[str, ...]:
 
 
 def _etc(scratch: Path) -> list[str]:
-    """The ``/etc`` of a box, which the supervisor has written, with two folders of the host in it."""
+    """Return the mounts for the ``/etc`` of a box: the files that the supervisor wrote, and two folders of the host."""
     words = ["--ro-bind", str(scratch / ETC), "/etc"]
     for name in ETC_FOLDERS:
         words += ["--ro-bind-try", f"/etc/{name}", f"/etc/{name}"]
@@ -142,7 +142,7 @@ def _etc(scratch: Path) -> list[str]:
 
 @functools.cache
 def etc_files() -> Mapping[str, bytes]:
-    """The ``/etc`` of a box: a user, a host, the linker's and the clock's files, no name service."""
+    """Return the files of a box's ``/etc``: user, host name, linker and clock; no name service."""
     files = {name: text.encode() for name, text in _ETC_FILES.items()}
     for name in _ETC_OF_THE_HOST:
         with contextlib.suppress(OSError):
@@ -152,17 +152,17 @@ def etc_files() -> Mapping[str, bytes]:
 
 @functools.cache
 def _proc_covers() -> tuple[str, ...]:
-    """Cover what in ``/proc`` belongs to the whole machine and can be written to by its owner.
+    """Cover the files in ``/proc`` that belong to the whole machine and are writable for their owner.
 
-    Where the grader is root, so is the owner of a box's files to the kernel, and in a fresh ``/proc`` root may write to
-    settings of the machine (``/proc/sys``), capability or not.
+    If the grader is root, the kernel treats the owner of a box's files as root. In a fresh ``/proc`` root may write
+    to settings of the machine (``/proc/sys``), even without a capability.
     """
     words: list[str] = []
     for path in sorted(Path("/proc").iterdir()):
         if path.name.isdecimal() or path.is_symlink():
             continue
         if path.is_dir():
-            # bubblewrap reads the list of mounts anew for each one: no more of them than needed.
+            # bubblewrap reads the list of mounts again for each bind, so there are no more than needed.
             words += ["--ro-bind", str(path), str(path)] if _can_be_written_below(path) else []
         elif path.name in _PROC_HIDDEN or path.stat().st_mode & 0o222:
             words += ["--ro-bind", "/dev/null", str(path)]
@@ -191,10 +191,10 @@ def _system() -> list[str]:
 
 @functools.cache
 def installation() -> tuple[Path, ...]:
-    """The folders of Python, of ROS and of the course's package that lie outside of the system's own.
+    """Return the folders of Python, ROS and this package that lie outside the system's folders.
 
-    An environment has its own prefix and that of the Python it was made with; a sourced ROS has what its search
-    paths name. Of a search path only what is an installation is taken: a folder below the prefix of ROS
+    An environment has its own prefix and that of the Python that made it. A sourced ROS has the folders that its
+    search paths name. Of a search path, only an installation is used: a folder below the prefix of ROS
     (``share/ament_index``) or of conda.
     """
     return _installation(os.environ)
@@ -214,7 +214,7 @@ def _installation(variables: Mapping[str, str]) -> tuple[Path, ...]:
 
 
 def _ros_prefix(path: Path) -> Path | None:
-    """The folder of an installation of ROS that a path is in."""
+    """Return the ROS installation that contains a path; None if there is none."""
     for folder in (path, *path.parents):
         if (folder / "share" / "ament_index").is_dir() or (folder / "conda-meta").is_dir():
             return folder
@@ -226,7 +226,7 @@ def _in_system(path: Path) -> bool:
 
 
 def _outermost(paths: Iterable[Path]) -> list[Path]:
-    """The folders without those that are in another of them."""
+    """Return the folders that are not inside another of them."""
     every = sorted(set(paths))
     return [
         path for path in every if not any(path != other and path.is_relative_to(other) for other in every)

@@ -1,4 +1,4 @@
-"""A box for a command that somebody runs by hand: what a class gives to a program, without a class around it."""
+"""A box for a command that a person runs by hand: as isolated as a program in a class, without a class."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ _OF_PYTHON = ("PYTHONUNBUFFERED", "PYTHONFAULTHANDLER")
 
 
 class OneCommandBox:
-    """A network of this process's own, and a box on it for each start of a command.
+    """A network for this process alone, in which each start of a command gets a box.
 
     Args:
-        scratch: An empty folder; what is made in it is seen by this process and the boxes alone.
-        folder: What a command sees of the user's files, read-only and at its own place. It starts there.
-        command: The command, for a look whether it names a file that it would not see.
+        scratch: An empty folder. Only this process and the boxes see the files made in it.
+        folder: The user's folder that a command sees, read-only and at the same path. It is the working folder.
+        command: The command, to check whether it names a file that would not be visible.
 
     Raises:
-        ValueError: The folder holds what no box may see, or the command needs more than that. The message says what
-            to do.
+        ValueError: The folder contains files that no box may see, or the command needs files outside it. The message
+            says what to do.
     """
 
     def __init__(self, scratch: Path, folder: Path, command: Sequence[str]) -> None:
@@ -56,21 +56,21 @@ class OneCommandBox:
         return any(Path(os.path.normpath(file)).is_relative_to(place) for place in places)
 
     def enter(self) -> None:
-        """Leave the host's network for one with nothing but a loopback interface. For a process without threads.
+        """Leave the host's network for one with only a loopback interface. The process must have no threads.
 
         Raises:
-            OSError: There are no such namespaces here.
+            OSError: The system allows no such namespaces.
         """
         syscalls.leave_the_host()
         syscalls.bring_loopback_up()
         furnish(self._scratch, SCRATCH_BYTES, SCRATCH_INODES)
 
     def start_of(self, command: Sequence[str], environment: Mapping[str, str]) -> tuple[list[str], list[int]]:
-        """The command to start in place of another, and the descriptors to start it with, which the caller closes.
+        """Return the command line that starts a command in a box, and its descriptors, which the caller closes.
 
         Args:
             command: The command.
-            environment: What it would have without a box; what Python and ROS need of it is kept.
+            environment: The command's environment outside a box; variables that Python and ROS need are kept.
         """
         words = box_arguments(self._scratch, [Bind(self._folder)])
         python = {name: value for name, value in environment.items() if name in _OF_PYTHON}
@@ -81,9 +81,9 @@ class OneCommandBox:
         return [*begin, *command], descriptors
 
     def limit(self) -> None:
-        """Take the limits of a box; for the process that becomes the command's."""
+        """Apply the limits of the box; call it in the child, before the command is executed."""
         take_limits(self._guard.cgroups, self._guard.rlimits)
 
     def close(self) -> None:
-        """Take away what is left once every command has ended."""
+        """Remove what is left once every command has ended."""
         self._guard.close()

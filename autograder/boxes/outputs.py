@@ -1,8 +1,8 @@
-"""Collecting a cell's outputs from a kernel that may send anything, in bounded memory.
+"""Collects a cell's outputs in bounded memory, whatever the kernel sends.
 
-Messages come from the student's process and are never trusted: what has not the form of the Jupyter messaging
-specification is dropped, and of rich output only plain text and bitmaps are kept. HTML, SVG, JavaScript and
-Markdown would be rendered in the browser of whoever reads the feedback.
+Messages come from the student's process and are never trusted. A message that breaks the Jupyter messaging
+specification is dropped. Of rich output only plain text and bitmaps are kept: HTML, SVG, JavaScript and Markdown
+would be rendered in the browser of everyone who reads the feedback.
 """
 
 from __future__ import annotations
@@ -15,18 +15,19 @@ from typing import Any
 IMAGES = ("image/png", "image/jpeg")
 TRACEBACK_LINES = 200
 OUTPUT_BYTES = 32
-"""Bytes that each output, each update of one and each line of a traceback takes, however little is in it: a million
-empty ones fill a memory, and keep whoever makes the page busy."""
+"""Bytes that each output, each update and each line of a traceback counts at least: a million empty ones fill the
+memory and take long to render.
+"""
 
 
 class Budget:
-    """Bytes of output that may still be kept, over several cells."""
+    """The bytes of output that may still be kept, over several cells."""
 
     def __init__(self, total: int) -> None:
         self.left = total
 
     def take(self, wanted: int) -> int:
-        """Take up to ``wanted`` bytes; returns how many were left to take."""
+        """Use up to ``wanted`` bytes. Return how many were left."""
         granted = max(0, min(wanted, self.left))
         self.left -= granted
         return granted
@@ -36,8 +37,8 @@ class OutputCollector:
     """The outputs of one cell.
 
     Args:
-        cell_bytes: Most bytes kept of this cell.
-        notebook: What is left for the whole notebook.
+        cell_bytes: The most bytes to keep for this cell.
+        notebook: The budget of the whole notebook.
     """
 
     def __init__(self, cell_bytes: int, notebook: Budget) -> None:
@@ -49,7 +50,7 @@ class OutputCollector:
         self._dropped = 0
 
     def handle(self, message_type: str, content: Mapping[str, Any]) -> None:
-        """Take one iopub message into account; anything else than an output is ignored."""
+        """Process one iopub message; messages that are not outputs are ignored."""
         match message_type:
             case "stream":
                 self._stream(content)
@@ -66,7 +67,7 @@ class OutputCollector:
                     self._clear()
 
     def outputs(self) -> tuple[dict[str, Any], ...]:
-        """The outputs so far, in nbformat's form, with a closing line where something was dropped."""
+        """The outputs so far in nbformat's format, with a last line if anything was dropped."""
         kept = [_without_overwritten_lines(output) for output in self._outputs]
         if self._dropped:
             kept.append(
@@ -90,7 +91,7 @@ class OutputCollector:
             return
         self._clear_if_due()
         if goes_on:
-            # Joined lazily: repeated += on a long string would cost quadratic time.
+            # Pieces are joined later: repeated += on a long string would take quadratic time.
             self._outputs[-1]["text"].append(text)
         else:
             self._outputs.append({"output_type": "stream", "name": name, "text": [text]})
@@ -116,7 +117,7 @@ class OutputCollector:
                 output["data"] = data
 
     def _error(self, content: Mapping[str, Any]) -> None:
-        # One is kept in any case: it says why the cell has ended.
+        # One error is always kept: it explains why the cell ended.
         if not self._has_room() and any(output["output_type"] == "error" for output in self._outputs[-1:]):
             return
         self._clear_if_due()
@@ -139,7 +140,7 @@ class OutputCollector:
         for mime in IMAGES:
             picture = data.get(mime)
             if isinstance(picture, str) and _is_base64(picture):
-                # Half a picture is none: all of it or nothing.
+                # Half a picture is useless: keep all of it or nothing.
                 if len(picture) <= min(self._own.left, self._notebook.left):
                     safe[mime] = self._afford(picture)
                 else:
@@ -149,7 +150,7 @@ class OutputCollector:
         return safe
 
     def _has_room(self, outputs: int = 1) -> bool:
-        """Take the bytes of so many outputs, the first one's excepted; whether there were that many left."""
+        """Use the bytes of ``outputs`` outputs, not counting the first one. Return True if enough were left."""
         size = outputs * OUTPUT_BYTES if self._outputs and not self._clear_at_next else 0
         if self._notebook.take(self._own.take(size)) == size:
             return True
@@ -175,7 +176,7 @@ class OutputCollector:
 
 
 def _text(value: Any) -> str:
-    """``value`` as text that UTF-8 can hold; a lone surrogate would end the conversion of the notebook."""
+    """Return ``value`` as text that UTF-8 can encode; a lone surrogate would stop the conversion of the notebook."""
     text = value if isinstance(value, str) else "" if value is None else repr(value)[:1000]
     return text.encode("utf-8", "replace").decode("utf-8")
 
@@ -194,7 +195,7 @@ def _is_base64(text: str) -> bool:
 
 
 def _without_overwritten_lines(output: dict[str, Any]) -> dict[str, Any]:
-    """Join a stream's pieces; of a line overwritten with carriage returns keep what a terminal would show."""
+    """Join a stream's pieces; where carriage returns overwrite a line, keep what a terminal would show."""
     if output["output_type"] != "stream":
         return output
     lines = "".join(output["text"]).replace("\r\n", "\n").split("\n")

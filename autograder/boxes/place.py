@@ -1,6 +1,6 @@
-"""The place where a notebook runs: in boxes, or without them where somebody has asked for that.
+"""The boxes in which a notebook runs, or their replacement if the user asked for no sandbox.
 
-A place starts the two processes of a notebook, its kernel and its judge, and leaves nothing behind.
+Each class starts the two processes of a notebook, its kernel and its judge, and leaves no process behind.
 """
 
 from __future__ import annotations
@@ -27,18 +27,18 @@ if TYPE_CHECKING:
     from autograder.boxes.limits import Limits
 
 SHARED_FOLDER = Path("/run/judge")
-"""The path in the student's box of the folder that it shares with its grader."""
+"""The path, in the student's box, of the folder that it shares with its grader."""
 _STUDENT, _JUDGE = "student", "judge"
 _PROGRAMS_SCRATCH_BYTES, _PROGRAMS_SCRATCH_FILES = 1_000_000, 1_000
-"""Nobody writes there but the supervisor: what a program writes is in memory of its own box."""
+"""Only the supervisor writes there; what a program writes is in the memory of its own box."""
 
 
 @dataclass(frozen=True)
 class JudgeSetting:
-    """The needs of a judge's process; named by the grader, because boxes know no judge.
+    """The settings of a judge's process; the grader passes them, because boxes do not import the judge.
 
     Attributes:
-        environment: More variables of its environment.
+        environment: More environment variables.
         readable: Folders that only a judge may see, such as the reference outputs.
     """
 
@@ -49,19 +49,19 @@ class JudgeSetting:
 class BoxedPlace:
     """The boxes of one submission, in one network or in two.
 
-    The student's box and a judge's are on the notebook's network. What the grader itself builds and starts for a check,
-    from sources that were handed in, runs on another network, with a judge of its own: nobody in the student's box can
-    say anything there, whatever it does.
+    The student's box and its judge's box share the notebook's network. Programs that the grader builds from submitted
+    sources and starts for a check run on another network, with another judge: no process in the student's box can
+    send anything there.
 
     Args:
         addresses: The fork servers.
-        folder: Ours alone; short, because Unix sockets will be in it.
-        files: What is beside the notebook.
-        variables: More variables of the kernel's environment.
-        socket_variable: The one that tells the kernel where the judge is.
-        judge: What the judge's process needs.
-        limits: The limits of the kernel and of all that it starts.
-        programs: Whether there is to be a network for programs.
+        folder: A folder for this object alone; its path is short, because it will contain Unix sockets.
+        files: The files next to the notebook.
+        variables: More environment variables for the kernel.
+        socket_variable: The environment variable that tells the kernel the path of the judge's socket.
+        judge: The settings of the judge's process.
+        limits: The limits of the kernel and everything that it starts.
+        programs: True to make a second network for programs.
 
     Raises:
         NoSandbox: The namespaces could not be made.
@@ -106,16 +106,16 @@ class BoxedPlace:
 
     @property
     def judge_socket(self) -> Path:
-        """The judge's socket; of the judge, the student's box sees the folder of this socket alone."""
+        """The path of the judge's socket; its folder is all that the student's box sees of the judge."""
         return self._shared / _JUDGE
 
     @property
     def shared(self) -> Path:
-        """The folder that the student's box sees as ``SHARED_FOLDER``, and may only read."""
+        """The folder that the student's box sees, read-only, as ``SHARED_FOLDER``."""
         return self._shared
 
     def start_kernel(self, channels: Channels) -> ForkedProcess:
-        """Let a fork of the fork server enter the student's box."""
+        """Start the kernel: a fork of the fork server enters the student's box."""
         box = self.enclosure.box(_STUDENT, [Bind(self._shared, SHARED_FOLDER)], guarded=True)
         self.guard.watch(box.pid)
         return self.enclosure.enter(
@@ -128,12 +128,12 @@ class BoxedPlace:
         )
 
     def start_judge(self, listener: int, orders: int, *, of_programs: bool = False) -> ForkedProcess:
-        """Let a fork of the judges' fork server enter a box of its own.
+        """Start a judge: a fork of the judges' fork server enters a box made for it.
 
         Args:
-            listener: Where the notebook will reach it.
-            orders: Where the grader will.
-            of_programs: On the network of programs instead of the notebook's.
+            listener: The listening socket for the notebook.
+            orders: The listening socket for the grader.
+            of_programs: True for the network of programs instead of the notebook's.
         """
         enclosure = self.programs if of_programs else self.enclosure
         name = f"{_JUDGE} {next(self._judges)}"
@@ -155,7 +155,7 @@ class BoxedPlace:
 
 
 class UnboxedPlace:
-    """No box: forks of the fork servers with the rights of whoever grades.
+    """No boxes: the processes run with the rights of the user who grades.
 
     For the course's own notebooks, and for ``--unsafe-no-sandbox``. Arguments as for :class:`BoxedPlace`.
     """
@@ -172,7 +172,7 @@ class UnboxedPlace:
         *,
         programs: bool = False,
     ) -> None:
-        del programs  # there is one network, the host's
+        del programs  # the host's network is the only one
         self._addresses, self._folder, self._judge, self._limits = addresses, folder, judge, limits
         self.guard = NoGuard()
         self._cwd = write_files(files, folder / "work")
@@ -180,11 +180,11 @@ class UnboxedPlace:
 
     @property
     def judge_socket(self) -> Path:
-        """The socket on which the judge is to listen."""
+        """The path of the socket on which the judge listens."""
         return self._folder / _JUDGE
 
     def start_kernel(self, channels: Channels) -> ForkedProcess:
-        """Let a fork of the fork server be the kernel."""
+        """Start the kernel as a fork of the fork server."""
         entrance = Entrance(
             cwd=str(self._cwd),
             environment=kernel_environment(self._folder, self._variables),
@@ -195,7 +195,7 @@ class UnboxedPlace:
         return ForkedProcess(self._addresses.kernels, entrance, descriptors)
 
     def start_judge(self, listener: int, orders: int, *, of_programs: bool = False) -> ForkedProcess:
-        """Let a fork of the judges' fork server be the judge."""
+        """Start a judge as a fork of the judges' fork server."""
         del of_programs
         environment = kernel_environment(self._folder / "of-the-judge", self._judge.environment)
         entrance = Entrance(

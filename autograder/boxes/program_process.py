@@ -1,9 +1,9 @@
-"""A fork of the fork server: `ros2 run`, and the student's program that it starts, both of them warm.
+"""A fork of the fork server that runs `ros2 run`, and the student's program, without their slow imports.
 
-Most of a program's start is imports that all programs have in common. So this process, forked from one that has made
-them, is the course's own `ros2` (``environment.ros2_command``), with its look-up and its messages, and exchanges one
-thing alone: a Python script for this interpreter becomes a further fork instead of a new process. That fork has the
-arguments, the path, the standard streams, the ``__main__`` and the end of a process of its own.
+Most of a program's start-up is imports that all programs share. So this process, forked from one that has made these
+imports, is the course's own `ros2` (``environment.ros2_command``), with its search for programs and its messages. It
+differs in one point: a Python script for this interpreter becomes another fork instead of a new process. That fork
+has the arguments, path, standard streams, ``__main__`` and exit of a process of its own.
 
 Everything else is started as `ros2 run` starts it: another interpreter's script, a program in another language, a
 script that would import a module, or load a library, of its own where one of the same name has been loaded here.
@@ -34,29 +34,29 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 _OF_SCRIPTS = ("environment.ros2_command.pkg", "ament_index_python.packages", "importlib.metadata", "re")
-"""Imported by `ros2 run`, and by the scripts that setuptools makes."""
+"""Modules that `ros2 run` imports, and the scripts that setuptools makes."""
 _AT_START = ("sitecustomize", "usercustomize")
-"""The modules that Python imports by itself when it starts (the documentation of ``site``)."""
+"""The modules that Python imports by itself at start (documentation of ``site``)."""
 _UNBUFFERED = 2
 """``_IONBF`` of stdio.h."""
 _HEAD = 1024
-"""Bytes of a script in which its first line ends."""
+"""Bytes of a script that contain its first line."""
 _FOR_THE_LOADER = "LD_LIBRARY_PATH"
-"""Read when a process starts, and never again (ld.so(8)); the folders in it are opened at each search."""
+"""Read once, when a process starts (ld.so(8)); the folders in it are opened at each search."""
 _OF_PROCESSORS = "glibc-hwcaps"
-"""A folder in which the loader looks first, if it was there when the loader first looked (ld.so(8))."""
+"""A folder that the loader searches first, if it existed at the loader's first search (ld.so(8))."""
 _environment: dict[str, str] = {}
 """The environment of every box."""
 _library_folders: list[str] = []
-"""Where the loader of this process looks first; see :func:`autograder.boxes.fork_server.library_folders`."""
+"""The folders that this process's loader searches first; see :func:`autograder.boxes.fork_server.library_folders`."""
 
 
 def prepare(libraries: str, *library_folders: str) -> None:
-    """Import what nearly every program with a node does.
+    """Import what nearly every program with a node imports.
 
     Args:
         libraries: The ``LD_LIBRARY_PATH`` of every box.
-        library_folders: What this process has in its own one before that.
+        library_folders: Folders in this process's own path before that.
     """
     _environment.update({**os.environ, _FOR_THE_LOADER: libraries})
     _library_folders.extend(library_folders)
@@ -66,10 +66,10 @@ def prepare(libraries: str, *library_folders: str) -> None:
 
 
 def _never_unload() -> None:
-    """Let this process and its forks end before shared libraries are unloaded, the last thing that ``exit`` does.
+    """Let this process and its forks end before shared libraries are unloaded, which ``exit`` does last.
 
-    LTTng, which rclpy loads, would end two threads there that a fork has not got, and crash (``lttng_ust_exit``).
-    Handlers run in the reverse of this order (atexit(3)), so what is imported from here on is cleaned up as ever.
+    LTTng, which rclpy loads, would then stop two threads that a fork does not have, and crash (``lttng_ust_exit``).
+    Handlers run in reverse order (atexit(3)), so anything imported after this is cleaned up as usual.
     """
     libc = ctypes.CDLL(None)
     libc.on_exit(libc._exit, None)
@@ -77,11 +77,11 @@ def _never_unload() -> None:
 
 
 def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
-    """Be `ros2 run` until its program has ended.
+    """Run `ros2 run` until its program has ended.
 
     Args:
-        call: ``words``, what follows `ros2` on the command line.
-        descriptors: Where standard output and standard error go.
+        call: ``words``, the words after `ros2` on the command line.
+        descriptors: The descriptors for standard output and standard error.
 
     Raises:
         SystemExit: With the exit code of `ros2`.
@@ -96,7 +96,7 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
 
 
 def _start(command: Sequence[str]) -> ros2_run.Process:
-    """Start a program: as a fork where that makes no difference to it.
+    """Start a program; as a fork if the program cannot tell the difference.
 
     Args:
         command: The program and its arguments.
@@ -113,7 +113,7 @@ def _start(command: Sequence[str]) -> ros2_run.Process:
 
 
 def _loads_the_same_libraries() -> bool:
-    """True if this process finds each library where a new one with the same environment would."""
+    """True if this process finds each library in the same file as a new process with the same environment would."""
     given, wanted = (
         path.split(os.pathsep) if (path := environment.get(_FOR_THE_LOADER)) else []
         for environment in (_environment, os.environ)
@@ -129,7 +129,7 @@ def _loads_the_same_libraries() -> bool:
 
 
 def _loaded_libraries() -> set[str]:
-    """The names of the libraries in this process, as :func:`_names_in` has names."""
+    """The names of the libraries in this process, in the form of :func:`_names_in`."""
     lines = Path("/proc/self/maps").read_text(encoding="utf-8", errors="replace").splitlines()
     return {line.rpartition("/")[2].partition(".")[0] for line in lines if ".so" in line}
 
@@ -139,7 +139,7 @@ def _python_path(environment: Mapping[str, str]) -> list[str]:
 
 
 def _is_ours(script: str) -> bool:
-    """True for the text of a program for this interpreter, which can also start an archive (``zipapp``)."""
+    """True for a Python script for this interpreter, including the script of an archive (``zipapp``)."""
     line = _head(Path(script)).split(b"\n")[0]
     return line == f"#!{INTERPRETER}".encode() and pkgutil.get_importer(script) is None
 
@@ -154,7 +154,7 @@ def _imported() -> set[str]:
 
 
 def _names_in(folders: Sequence[str]) -> set[str]:
-    """The names that could be imported or loaded from these folders, and some that could not."""
+    """Return every name that could be imported or loaded from these folders, and some that could not."""
     return {
         entry.name.partition(".")[0]
         for folder in map(Path, folders)
@@ -164,11 +164,11 @@ def _names_in(folders: Sequence[str]) -> set[str]:
 
 
 class _Fork:
-    """A program that was forked; implements what `ros2 run` uses of :class:`subprocess.Popen`."""
+    """A forked program, with the methods of :class:`subprocess.Popen` that `ros2 run` uses."""
 
     def __init__(self, command: Sequence[str], standard_path: Sequence[str]) -> None:
         self._code: int | None = None
-        # Until the fork has handlers of its own, it has those of `ros2 run`, which leaves Ctrl-C to it.
+        # Until the fork sets its own handlers it has those of `ros2 run`, which expects its program to handle Ctrl-C.
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         self._pid = os.fork()
         if self._pid == 0:
@@ -176,12 +176,12 @@ class _Fork:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
 
     def send_signal(self, number: int) -> None:
-        """Send it a signal, if it has not ended."""
+        """Send a signal, unless the program has ended."""
         if self._code is None:
             os.kill(self._pid, number)
 
     def wait(self) -> int:
-        """Wait for its end; its exit code, negative for a signal."""
+        """Wait for the end. Return the exit code, negative for a signal."""
         if self._code is None:
             _, status = os.waitpid(self._pid, 0)
             self._code = os.waitstatus_to_exitcode(status)
@@ -189,9 +189,9 @@ class _Fork:
 
 
 def _be(command: Sequence[str], standard_path: Sequence[str]) -> NoReturn:
-    """Be the process of a Python script, to the end of its interpreter."""
+    """Run a Python script in this process, until the end of the interpreter."""
     script, *_ = command
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # ends a new process as long as Python has not begun
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # as in a new process in which Python has not started yet
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     signal.signal(signal.SIGINT, signal.default_int_handler)
     if os.environ.get("PYTHONFAULTHANDLER"):
@@ -207,9 +207,9 @@ def _be(command: Sequence[str], standard_path: Sequence[str]) -> NoReturn:
 
 
 def _open_standard_streams() -> None:
-    """Open the streams as Python does at its start (config_init_stdio, create_stdio in Python/pylifecycle.c)."""
+    """Open the streams as Python does at start (config_init_stdio, create_stdio in Python/pylifecycle.c)."""
     at_once = bool(os.environ.get("PYTHONUNBUFFERED"))
-    if at_once:  # also the lines of ROS's log, which are written in C
+    if at_once:  # this also covers the lines of ROS's log, which C code writes
         libc = ctypes.CDLL(None)
         libc.setvbuf(ctypes.c_void_p.in_dll(libc, "stdout"), None, _UNBUFFERED, ctypes.c_size_t(0))
     for name, number, errors in (("stdout", 1, None), ("stderr", 2, "backslashreplace")):
@@ -227,9 +227,9 @@ def _open_standard_streams() -> None:
 
 
 def _exit_code(script: str) -> int:
-    """Run a script as ``__main__``; the exit code that Python would end with, where it has not ended in it.
+    """Run a script as ``__main__``. Return Python's exit code, if the script has not ended the process itself.
 
-    Python itself runs it, in the very function with which a process of its own does, and says what ended it.
+    Python's own function for a script runs it, and reports the error that ended it.
     """
     main = sys.modules["__main__"] = ModuleType("__main__")
     main.__dict__.update(__builtins__=builtins, __annotations__={})
@@ -240,6 +240,6 @@ def _exit_code(script: str) -> int:
     if ctypes.pythonapi.PyRun_SimpleFileExFlags(file, name, 1, None) == 0:
         return 0
     if getattr(sys, "last_type", None) is KeyboardInterrupt:
-        # Python ends by SIGINT then, but only once it has cleaned up, when none of its code runs any more (Py_RunMain).
+        # Python then ends by SIGINT, after its clean-up, when none of its code runs any more (Py_RunMain).
         libc.__cxa_atexit(libc["raise"], ctypes.c_void_p(signal.SIGINT), None)
     return 1

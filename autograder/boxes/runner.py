@@ -1,7 +1,7 @@
-"""Executing a rebuilt notebook cell by cell, with the judge looking at each check cell.
+"""Executes a rebuilt notebook cell by cell; the judge observes each check cell.
 
-What the notebook prints, raises or returns decides nothing. A check cell's result is what the judge has to
-say once the cell has run, and where the judge has nothing to say it is zero, with the reason.
+What the notebook prints, raises or returns decides nothing. The result of a check cell is what the judge reports
+after the cell; without a report it is zero points, with the reason.
 """
 
 from __future__ import annotations
@@ -31,21 +31,21 @@ _TERMINAL = ("%%bash", "%%sh", "%%script")
 
 
 class Unfinished(RuntimeError):
-    """The judge was still at work when its time was over."""
+    """The judge had not finished when its time was up."""
 
 
 class Judge(Protocol):
-    """The judge as it is seen from here."""
+    """What this module needs of the judge."""
 
     def open(self, exercise_id: str) -> None:
-        """From now on a check of this exercise counts."""
+        """Allow a check of this exercise from now on."""
         ...
 
     def close(self) -> Verdict | None:
-        """The exercise's check is over; what came of it, or None where nobody asked.
+        """End the exercise's check. Return its verdict, or None if no check was requested.
 
         Raises:
-            Unfinished: The check did not come to its end. Any other exception is the judge's own trouble as well.
+            Unfinished: The check was not finished. Any other exception is a failure of the judge as well.
         """
         ...
 
@@ -64,16 +64,16 @@ def run_notebook(
 
     Args:
         cells: The cells of the rebuilt notebook.
-        judge: Started while the kernel starts; must be ended by leaving the context.
+        judge: Opened while the kernel starts; leaving the context ends it.
         start: Starts the kernel's process.
-        folder: For the kernel's sockets, a short path.
+        folder: The folder for the kernel's sockets, a short path.
         limits: All limits.
-        guard: Says when a limit of the box is exceeded.
-        patient: How long the seconds of the limits on cells last.
+        guard: Reports that a limit of the box is exceeded.
+        patient: Turns the limits on cells into deadlines; the deadlines may stretch while the machine is busy.
 
     Returns:
-        The execution. Nothing that the notebook does makes this function raise; trouble of the grader's own
-        (no kernel, no judge) is in ``trouble``, and every check it concerns is "not checked".
+        The execution. Nothing in the notebook can make this function raise; a failure of the grader itself (no
+        kernel, no judge) is in ``trouble``, and the checks it affects are "not checked".
     """
     began = time.monotonic()
     run = _Run(cells, limits, patient)
@@ -89,13 +89,13 @@ def run_notebook(
                 raise KernelFailed("the process that watches over the kernel is gone")
     except KernelFailed as error:
         return run.failed(str(error), time.monotonic() - began)
-    except Exception as error:  # a judge that cannot start or end must not cost the batch
+    except Exception as error:  # a judge that cannot start or end must not stop the whole batch
         return run.failed(f"the judge failed: {type(error).__name__}: {error}", time.monotonic() - began)
     return run.result(time.monotonic() - began, start_seconds)
 
 
 class _Run:
-    """One notebook's execution while it goes on."""
+    """The execution of one notebook in progress."""
 
     def __init__(self, cells: Sequence[Cell], limits: Limits, patient: Patient = wall_time) -> None:
         self._cells = cells
@@ -113,13 +113,13 @@ class _Run:
         self._hung_before: dict[int, tuple[str, str]] = {}
 
     def on_output(self, request: str, message_type: str, content: Mapping[str, Any]) -> None:
-        """An output belongs to the cell that asked for it, also when that cell has ended long ago."""
+        """Add an output to the cell that requested it, even if that cell ended long ago."""
         index = self._requests.get(request)
         if index is not None:
             self._collectors[index].handle(message_type, content)
 
     def all_cells(self, kernel: Kernel, judge: Judge) -> None:
-        """Run what is to run, as long as there is a kernel and time."""
+        """Run every cell that is to run, as long as the kernel lives and time is left."""
         of_notebook = wall_time(self._limits.notebook_seconds)
         for index, cell in enumerate(self._cells):
             if cell.kind is not CellType.CODE:
@@ -139,13 +139,13 @@ class _Run:
                     self._hangs.note(cell, _title(cell))
 
     def _allow(self, index: int, cell: Cell) -> None:
-        """Say how long a cell may take: what has hung before is not waited for at full length again."""
+        """Set a cell's time limit: a name that hung before does not get the full time again."""
         if (before := self._hangs.before(cell)) is not None:
             self._hung_before[index] = before
             self._allowed[index] = seconds_again(cell, self._allowed[index], self._limits)
 
     def result(self, seconds: float, start_seconds: float) -> Execution:
-        """The execution, with a verdict for every check cell."""
+        """Return the execution, with a verdict for every check cell."""
         runs = [self._cell_run(index) for index in range(len(self._cells))]
         for index, cell in enumerate(self._cells):
             if cell.check is None or index in self._verdicts:
@@ -161,7 +161,7 @@ class _Run:
         return Execution(tuple(runs), self._verdicts, self._trouble, seconds, start_seconds)
 
     def _what_led_to(self, check: int, runs: list[CellRun]) -> list[tuple[str, CellRun]]:
-        """The code cells before a check, with titles: those since the last one, or all if none went wrong."""
+        """Return the code cells before a check, with titles: those since the last check, or all if none failed."""
         code = [index for index in range(check) if self._cells[index].kind is CellType.CODE]
         checks = [index for index in code if self._cells[index].check is not None]
         recent = [index for index in code if index > (checks[-1] if checks else -1)]
@@ -170,14 +170,14 @@ class _Run:
         return [(_title(self._cells[index]), runs[index]) for index in recent]
 
     def failed(self, reason: str, seconds: float) -> Execution:
-        """The execution where the grader's own side failed: no check of it says anything."""
+        """Return the execution if the grader itself failed: none of its checks counts."""
         runs = tuple(self._cell_run(index) for index in range(len(self._cells)))
         verdicts = {i: grader_trouble(cell.check, reason) for i, cell in enumerate(self._cells) if cell.check}
         return Execution(runs, verdicts, reason, seconds)
 
     @contextlib.contextmanager
     def _watched(self, index: int, cell: Cell, judge: Judge) -> Iterator[None]:
-        """Have the judge look at a check cell; any other cell runs unwatched."""
+        """Let the judge observe a check cell; any other cell runs without the judge."""
         if cell.check is None or cell.check.asserts:
             yield
             return
@@ -191,14 +191,16 @@ class _Run:
         try:
             verdict = judge.close()
         except Unfinished as error:
-            # A cell that was not stopped and has left its check behind has not waited: it might choose when it leaves.
+            # A cell that ended early with its check unfinished did not wait; otherwise a student could choose
+            # when to stop a check.
             if self._ended[index] is Ended.TIMED_OUT:
                 self._judge_failed(index, cell.check, error)
             return
         except Exception as error:
             self._judge_failed(index, cell.check, error)
             return
-        # Who was stopped at a limit has not shown the judge all: whether it had seen enough by then would be chance.
+        # A cell stopped at a limit has not shown everything: a fail would depend on how much the judge saw until
+        # then.
         if verdict is not None and (verdict.passed or self._ended[index] not in LIMITS):
             self._count(index, cell.check, verdict)
 
@@ -232,7 +234,7 @@ class _Run:
 
 
 def _title(cell: Cell) -> str:
-    """The first line of a cell that says something, to name the cell by."""
+    """Return the first line of a cell that is neither empty nor a comment, as its name."""
     lines = [line.strip() for line in cell.source.splitlines()]
     telling = [line for line in lines if line and not line.startswith("#")]
     return (telling or lines or [""])[0][:60]

@@ -1,4 +1,4 @@
-"""Boxes of one submission: made, entered, used for a command, ended.
+"""The boxes of one submission: make, enter, run a command in, end.
 
 .. code-block:: python
 
@@ -6,9 +6,9 @@
         box = enclosure.box("student", [Bind(folder_of_the_socket, Path("/run/judge"))])
         done = enclosure.run(["ros2", "run", "my_robot_pkg", "talker"], limit=30.0)
 
-All boxes of an enclosure share one network namespace with nothing in it but the loopback interface: their ROS
-nodes meet each other and nobody else, whatever the domain. When the enclosure is closed, or its process is killed,
-no process of any of its boxes is left and its scratch is gone.
+All boxes of an enclosure share one network namespace that has only the loopback interface: their ROS nodes can reach
+each other and no other node, whatever the domain. When the enclosure is closed, or its process is killed, all
+processes of its boxes end and the scratch is removed.
 """
 
 from __future__ import annotations
@@ -43,15 +43,15 @@ OUTPUT_BYTES = 1_000_000
 
 
 class Enclosure:
-    """The network, the scratch and the boxes of one submission. Threads take turns.
+    """The network, the scratch and the boxes of one submission; safe to call from several threads.
 
     Args:
-        supervisors: Where the fork server of supervisors listens.
-        folder: Ours alone and short-lived; nothing of it is seen in a box but what is bound. Made where it is not.
-        files: Files to be in the notebook's folder, by relative path.
-        scratch_bytes: What all files that the boxes write may have together.
-        scratch_inodes: How many files, folders and links there may be.
-        guard: Holds the limits of the commands; they share them with whatever else it guards.
+        supervisors: The socket address of the fork server that starts supervisors.
+        folder: A short-lived folder for this object alone, made if missing. A box sees only what is bound from it.
+        files: Files for the notebook's folder, by relative path.
+        scratch_bytes: The size limit of all files that the boxes write together.
+        scratch_inodes: The most files, folders and links in the scratch.
+        guard: Enforces the limits on the commands, together with everything else it guards.
 
     Raises:
         NoSandbox: The supervisor could not make the namespaces.
@@ -82,17 +82,17 @@ class Enclosure:
     def box(
         self, name: str, binds: Sequence[Bind | Link] = (), *, scratch: bool = True, guarded: bool = False
     ) -> Box:
-        """Make an empty box, for a fork server's child to enter.
+        """Make an empty box, which a child of a fork server can enter.
 
         Args:
-            name: Not yet used in this enclosure.
-            binds: What it is to see beside the system, Python and the course's package.
-            scratch: Give it the enclosure's scratch; else it has a small one of its own.
-            guarded: What enters it has the limits of the guard, and so have its first processes: who is in a box can
-                make them do anything.
+            name: A name that no other box of this enclosure has.
+            binds: What the box sees in addition to the system, Python and this package.
+            scratch: True to give it the enclosure's scratch; otherwise it has a small one of its own.
+            guarded: True if the guard's limits apply to every process that enters, and to the first processes of the
+                box, which a program inside could control.
 
         Raises:
-            NoSandbox: It could not be made.
+            NoSandbox: The box could not be made.
         """
         return self._supervision.start(
             name,
@@ -113,16 +113,16 @@ class Enclosure:
         call: Mapping[str, Any] | None = None,
         rlimits: Mapping[str, int] | None = None,
     ) -> ForkedProcess:
-        """Let a fork of a fork server enter a box.
+        """Start a process: a fork of a fork server enters a box.
 
         Args:
-            box: One of this enclosure.
-            server: Where that fork server listens.
-            descriptors: What the process is given; they stay open here.
-            cwd: Its folder.
-            environment: Its whole environment.
-            call: What it is told.
-            rlimits: Its limits in a box without a guard (setrlimit(2)).
+            box: A box of this enclosure.
+            server: The socket address of that fork server.
+            descriptors: File descriptors for the process; the caller keeps its copies.
+            cwd: The working folder.
+            environment: All environment variables.
+            call: The argument for the process's module.
+            rlimits: Limits for a process in a box without a guard (setrlimit(2)).
 
         Raises:
             ChannelClosed: The fork server is gone, or the fork could not enter the box.
@@ -145,16 +145,16 @@ class Enclosure:
         cwd: Path = WORK,
         output_bytes: int = OUTPUT_BYTES,
     ) -> Finished:
-        """Run a command with the scratch in a box of its own until it ends; the rest is as for :meth:`start`.
+        """Run a command, with the scratch, in a new box until it ends; otherwise as :meth:`start`.
 
-        When this returns no process of that box is alive, daemons included.
+        On return no process of that box is alive, daemons included.
 
         Args:
             command: See :meth:`start`.
             limit: Seconds of wall time; then the whole box is killed.
             binds: See :meth:`start`.
-            cwd: Where it starts.
-            output_bytes: How much of its output is kept.
+            cwd: The working folder.
+            output_bytes: The most bytes of output to keep.
 
         Raises:
             NoSandbox: The box could not be made.
@@ -172,17 +172,17 @@ class Enclosure:
         output_bytes: int = OUTPUT_BYTES,
         scratch: bool = True,
     ) -> Running:
-        """Start a command in a box of its own, in the submission's network namespace.
+        """Start a command in a new box, in the submission's network namespace.
 
-        Leaving the context of what comes back ends it and all that it has started.
+        Leaving the context of the returned object ends the command and everything that it started.
 
         Args:
-            command: Program and arguments, as they are called in the box.
-            binds: What the box is to see beside the system, Python and the course's package.
-            environment: Its whole environment; :func:`autograder.boxes.environment.box_environment` where None.
-            cwd: Where it starts.
-            output_bytes: How much of its output is kept.
-            scratch: See :meth:`box`. Two commands with the scratch see each other's files.
+            command: Program and arguments, with paths as in the box.
+            binds: What the box sees in addition to the system, Python and this package.
+            environment: All environment variables; None for :func:`autograder.boxes.environment.box_environment`.
+            cwd: The working folder.
+            output_bytes: The most bytes of output to keep.
+            scratch: See :meth:`box`. Commands with the scratch see each other's files.
 
         Raises:
             NoSandbox: The box could not be made.
@@ -216,14 +216,14 @@ class Enclosure:
         environment: Mapping[str, str],
         cwd: Path = WORK,
     ) -> WarmCommand:
-        """Start `ros2` with these words in a box of its own without the scratch, from the fork server of programs.
+        """Start `ros2` with these words in a new box without the scratch, from the fork server of programs.
 
         Args:
-            programs: Where that fork server listens.
-            words: Beginning with ``run``.
+            programs: The socket address of that fork server.
+            words: The words of the command line, beginning with ``run``.
             binds: See :meth:`start`.
-            environment: Its whole environment.
-            cwd: Where it starts.
+            environment: All environment variables.
+            cwd: The working folder.
         """
         libraries = _own_libraries(environment)
         links = [Link(*pair) for pair in zip(library_folders(programs), libraries, strict=False)]
@@ -270,7 +270,7 @@ class Enclosure:
 
 
 def _own_libraries(environment: Mapping[str, str]) -> list[Path]:
-    """The folders of libraries that an environment has beside those of every box."""
+    """Return the folders of libraries that an environment has in addition to those of every box."""
     of_every_box = box_environment().get("LD_LIBRARY_PATH", "").split(os.pathsep)
     folders = environment.get("LD_LIBRARY_PATH", "").split(os.pathsep)
     return [Path(folder) for folder in folders if folder not in of_every_box]
@@ -278,9 +278,9 @@ def _own_libraries(environment: Mapping[str, str]) -> list[Path]:
 
 @functools.cache
 def why_impossible() -> str:
-    """The reason why no sandbox is possible here and what to do, in one sentence; empty where one is.
+    """Return why no sandbox is possible here and what to do, in one sentence; empty if it is possible.
 
-    Found out by making one.
+    It tries to make one.
     """
     if shutil.which("bwrap") is None:
         return "bubblewrap is not installed. On Debian or Ubuntu, type: sudo apt-get install -y bubblewrap"
@@ -302,7 +302,7 @@ def why_impossible() -> str:
 
 
 def _reason(error: str) -> str:
-    """The usual meaning of a refusal."""
+    """Return the usual meaning of an error of bubblewrap."""
     apparmor = Path("/proc/sys/kernel/apparmor_restrict_unprivileged_userns")
     if os.geteuid() != 0 and apparmor.exists() and apparmor.read_text().strip() == "1":
         return (
@@ -312,13 +312,13 @@ def _reason(error: str) -> str:
     if "unshare" in error or "namespace" in error:
         return (
             "this system or its container allows no user namespaces: set the sysctls user.max_user_namespaces and, "
-            "where there is one, kernel.unprivileged_userns_clone, or start the container with "
+            "if it exists, kernel.unprivileged_userns_clone, or start the container with "
             "--security-opt seccomp=unconfined"
         )
     return "no box could be made here"
 
 
-if __name__ == "__main__":  # asked by the doctor, as this process may not be the course's own Python
+if __name__ == "__main__":  # the doctor runs this file, because the doctor may not run in the course's Python
     from autograder.boxes.guards import guards
 
     print(json.dumps({"why_impossible": why_impossible(), "guards": dict(guards())}))

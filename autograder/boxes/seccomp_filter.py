@@ -1,25 +1,27 @@
 """The system calls that no program in a box may make, as a seccomp filter.
 
-The namespaces decide what a box can reach. The filter takes away what no answer to an exercise needs and where kernels
-had their holes: tracing other processes, mounting, namespaces in namespaces, keys, BPF, io_uring. Watching files
-(inotify) is among it because a user has 128 of such watches for all boxes and programs together; programs that watch
-look now and then instead where they cannot. Semaphores and messages of System V are among it because the kernel gives
-some thousand calls gigabytes that no process is seen to have, and asynchronous input and output (``io_setup``) because
-all programs of the machine share one number of requests. A lease (``fcntl``) makes everybody else who opens a file wait
-for up to 45 seconds, also where the file is read-only here: Python's own modules are the same files in every box.
+The namespaces decide what a box can reach. The filter forbids calls that no answer to an exercise needs and in which
+kernels had security holes: tracing other processes, mounting, namespaces in namespaces, keys, BPF, io_uring. It
+forbids watching files (inotify) because a user has only 128 watches for all boxes and programs together; programs
+that cannot watch check from time to time instead. It forbids semaphores and messages of System V because a few
+thousand calls take gigabytes that belong to no process, and asynchronous input and output (``io_setup``) because all
+programs of the machine share one number of requests. It forbids leases (``fcntl``) because a lease delays every other
+process that opens the file for up to 45 seconds, even if the file is read-only here: Python's own modules are the
+same files in every box.
 
-The filter also refuses what makes the kernel keep memory that it charges to no cgroup and that no guard can count:
-attributes of files (access control lists), memory policies (``mbind``; the policy of a file in memory outlives its
-mapping), filters of sockets and of system calls (each is compiled, and all boxes share the room for that), and the two
-kinds of file locks that ``/proc/locks`` shows of no box: those of an open file description, and those of a process that
-shares its table of open files and has ended. The guard counts all other locks (:mod:`autograder.boxes.guards`). Of the
-networks' protocols, a box has those whose waiting data the guard counts: UDP, TCP, and netlink to list the interfaces.
+The filter also refuses calls for which the kernel keeps memory that it charges to no cgroup and that no guard can
+count: attributes of files (access control lists), memory policies (``mbind``; the policy of a file in memory outlives
+its mapping), filters of sockets and of system calls (each is compiled, and all boxes share the space for that), and
+the two kinds of file locks that ``/proc/locks`` does not show for a box: those of an open file description, and those
+of a process that shares its table of open files and has ended. The guard counts all other locks
+(:mod:`autograder.boxes.guards`). Of the network protocols, a box has those whose waiting data the guard counts: UDP,
+TCP, and netlink to list the interfaces.
 
-A call that is refused fails with EPERM, as it does for any user without the right to it. Attributes of files fail with
-EOPNOTSUPP, as on a file system without them, which ``cp -p`` expects. ``clone3`` does not exist (ENOSYS), because its
-flags are in memory that a filter cannot read, and libraries then use ``clone``.
+A refused call fails with EPERM, as for any user without the right to it. Attributes of files fail with EOPNOTSUPP, as
+on a file system without them, which ``cp -p`` expects. ``clone3`` does not exist (ENOSYS), because its flags are in
+memory that a filter cannot read; libraries then use ``clone``.
 
-Numbers are those of the kernel's own tables (asm/unistd_64.h, asm-generic/unistd.h), which no kernel ever changes.
+The numbers come from the kernel's own tables (asm/unistd_64.h, asm-generic/unistd.h), which never change.
 """
 
 from __future__ import annotations
@@ -91,23 +93,30 @@ _FUTEX_WAKE = (1, 129)
 _BY_ARGUMENT = {"clone", "clone3", "socket", "socketpair", "setsockopt", "ioctl", "fcntl", "prctl"}
 _ATTRIBUTES = {"setxattr", "lsetxattr", "fsetxattr", "setxattrat"}
 _HIDDEN_MEMORY = {"memfd_create", "shmget", "vmsplice"}
-"""Memory that no process is seen to have: refused where it is watched process by process, without a cgroup. A hundred
-pipes with pages of a process (``vmsplice``) hold 3 GB once the process has given these pages back."""
+"""Memory that belongs to no process: refused if the guard counts process by process, without a cgroup.
+
+A hundred pipes with pages of a process (``vmsplice``) hold 3 GB after the process has given these pages back.
+"""
 
 _NETLINK, _ROUTE = 16, 0
-"""AF_NETLINK, and its protocol with which programs list the network interfaces (linux/netlink.h)."""
+"""AF_NETLINK, and its protocol for listing the network interfaces (linux/netlink.h)."""
 _COUNTED = (0, socket.IPPROTO_TCP, socket.IPPROTO_UDP)
-"""The protocols whose waiting data a guard finds in tables of ``/proc``; 0 is the usual one of a kind of socket. MPTCP,
-SCTP and SMC have none."""
+"""The protocols whose waiting data a guard finds in tables of ``/proc``; 0 is the default of a kind of socket.
+
+MPTCP, SCTP and SMC have no such table.
+"""
 _PROTOCOLS = {socket.AF_INET: _COUNTED, socket.AF_INET6: _COUNTED, _NETLINK: (_ROUTE,)}
-"""By family. AF_UNIX has none. AF_VSOCK above all is not here: it talks to the host of a virtual machine, past every
-network namespace."""
+"""By family.
+
+AF_UNIX has none. AF_VSOCK in particular is missing: it reaches the host of a virtual machine past every network
+namespace.
+"""
 _SOL_SOCKET, _SOCKET_FILTERS = 1, (26, 50, 51, 52)
 """SO_ATTACH_FILTER, SO_ATTACH_BPF and those of SO_REUSEPORT (asm-generic/socket.h)."""
 _TERMINAL_TRICKS = (0x5412, 0x541C)
 """TIOCSTI types into a terminal, TIOCLINUX pastes into a console (asm-generic/ioctls.h)."""
 _OTHERS_WAIT = (fcntl.F_SETLEASE, fcntl.F_NOTIFY, 1040)
-"""Leases, signals when a folder changes, and what is both (F_SETDELEG, Linux 6.19; linux/fcntl.h)."""
+"""Leases, signals when a folder changes, and a combination of both (F_SETDELEG, Linux 6.19; linux/fcntl.h)."""
 _LOCKS_OF_NOBODY = (37, 38)
 """F_OFD_SETLK and F_OFD_SETLKW: locks of an open file description, not of a process (asm-generic/fcntl.h)."""
 _NAMESPACES = (
@@ -118,12 +127,12 @@ _NAMESPACES = (
 
 @dataclass(frozen=True)
 class Architecture:
-    """A machine's system calls.
+    """The system calls of a processor architecture.
 
     Attributes:
-        audit: What seccomp calls it (linux/audit.h).
+        audit: The architecture's number for seccomp (linux/audit.h).
         calls: Numbers by name.
-        x32: Whether a second table hides behind a bit of the number.
+        x32: True if a second table of calls is selected by a bit of the number.
     """
 
     audit: int
@@ -139,15 +148,17 @@ ARCHITECTURES = {
 _LOAD, _JUMP_EQUAL, _JUMP_AT_LEAST, _JUMP_BITS, _RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
 _ALLOW, _KILL, _ERRNO = 0x7FFF0000, 0x80000000, 0x00050000
 _NUMBER, _ARCH, _ARGUMENTS = 0, 4, 16
-"""Offsets in what a filter sees (linux/seccomp.h, struct seccomp_data); an argument has 8 bytes, low half first."""
+"""Offsets in the data that a filter reads (linux/seccomp.h, struct seccomp_data); an argument has 8 bytes, low half
+first.
+"""
 
 
 def filter_for_boxes(*, hidden_memory: bool = True, machine: str = "") -> bytes:
-    """The filter's program for this machine; empty for one whose system calls are not known here.
+    """Return the filter's program for a machine; empty if its system calls are not known here.
 
     Args:
-        hidden_memory: Allow memory that belongs to no process; it counts in a cgroup.
-        machine: As ``uname -m`` says it; this machine's by default.
+        hidden_memory: True to allow memory that belongs to no process, because a cgroup counts it.
+        machine: The machine as in ``uname -m``; this machine by default.
     """
     known = ARCHITECTURES.get(machine or platform.machine())
     if known is None:
@@ -220,13 +231,13 @@ def _fail(number: int) -> _Instruction:
 
 
 def _where(call: int, decide: Sequence[_Instruction]) -> list[_Instruction]:
-    """For one call, decide by its arguments; what is not decided is allowed."""
+    """For one call, decide by its arguments; the call is allowed unless ``decide`` refuses it."""
     body = [*decide, (_RETURN, 0, 0, _ALLOW)]
     return [(_JUMP_EQUAL, 0, len(body), call), *body]
 
 
 def _load(argument: int) -> _Instruction:
-    """The low half of an argument: the kernel, too, takes no more of a flag, a family or a command."""
+    """Load the low half of an argument; the kernel also uses no more of a flag, a family or a command."""
     return (_LOAD, 0, 0, _ARGUMENTS + 8 * argument)
 
 

@@ -1,12 +1,12 @@
 """The supervisor of one submission's boxes: it owns their network namespace and their scratch, and ends them.
 
-Forked from a fork server of its own (:mod:`autograder.boxes.fork_server`), which has imported almost nothing. It leaves
-for a user, a network and a mount namespace of its own, from where bubblewrap makes the boxes. Each box gets a
-further user namespace, so that nobody in a box has a right over the network. When the connection to the worker is
-lost, however the worker ended, the supervisor kills all boxes and goes.
+It is forked from a fork server of its own (:mod:`autograder.boxes.fork_server`), which has few imports. It enters new
+user, network and mount namespaces, and bubblewrap makes the boxes from there. Each box gets another user namespace,
+so that no process in a box has rights over the network. When the connection to the worker is lost, for whatever
+reason, the supervisor kills all boxes and exits.
 
-Words of the worker: ``open`` (once), ``start`` (a box or a command), ``kill``. Words of the supervisor: ``opened``,
-``started``, ``ended``, ``failed``.
+The worker sends ``open`` (once), ``start`` (a box or a command) and ``kill``. The supervisor answers ``opened``,
+``started``, ``ended`` or ``failed``.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ SCRATCH_FOLDERS = ("home", "tmp", "shm", "work")
 """The folders in the scratch; a box sees each of them at another path."""
 
 MOST_TERMINALS = 32
-"""A line with an exclamation mark takes one while it runs."""
+"""A notebook's line with an exclamation mark takes one terminal while it runs."""
 
 
 def prepare() -> None:
-    """Everything is imported above; what every box's ``/etc`` holds is read once."""
+    """Read the files for every box's ``/etc`` once; the imports above are all that is needed otherwise."""
     etc_files()
 
 
@@ -59,9 +59,12 @@ def run(channel: Channel) -> None:
 @dataclass
 class _Started:
     process: subprocess.Popen[bytes]
-    """bubblewrap outside of the box. It ends when the first process of the box has, and with that one all have."""
+    """bubblewrap outside the box.
+
+    It ends when the first process of the box has ended, and all others end with that one.
+    """
     end: int
-    """Its pidfd."""
+    """The pidfd of bubblewrap."""
     first: int = -1
     """The pidfd of the first process in the box."""
 
@@ -78,7 +81,7 @@ class _Supervisor:
         self._started: dict[str, _Started] = {}
 
     def serve(self) -> None:
-        """Do what the worker says, and tell it what has ended."""
+        """Carry out the worker's messages, and report what has ended."""
         while True:
             watched: list[Any] = [self._channel, *(started.end for started in self._started.values())]
             ready, _, _ = select.select(watched, [], [])
@@ -95,7 +98,7 @@ class _Supervisor:
                     close_all(descriptors)
 
     def end_all(self) -> None:
-        """Kill every box and wait until none of its processes lives."""
+        """Kill every box and wait until none of its processes is alive."""
         for started in self._started.values():
             with contextlib.suppress(ProcessLookupError):
                 started.kill()
@@ -114,7 +117,7 @@ class _Supervisor:
 
     def _open(self, scratch: str, size: int, inodes: int, files: str) -> None:
         syscalls.leave_the_host()
-        die_with_parent()  # taken away by the change of rights
+        die_with_parent()  # the change of rights cleared this setting
         syscalls.bring_loopback_up()
         place = Path(scratch)
         furnish(place, size, inodes)
@@ -133,15 +136,15 @@ class _Supervisor:
         rlimits: Mapping[str, int] | None = None,
         hidden_memory: bool = True,
     ) -> None:
-        """Let bubblewrap start a box.
+        """Start a box with bubblewrap.
 
-        Without a command the box stays empty until somebody enters it, and lives until it is killed. With one, its
-        standard input, output and error are the descriptors that came with the message.
+        Without a command the box stays empty until a process enters it, and lives until it is killed. With a command,
+        the descriptors that came with the message are its standard input, output and error.
         """
         if name in self._started:
             raise ValueError(f"there is a box named {name} already")
         info, writing = os.pipe()
-        # A session of its own: Ctrl-C is for the command and its process group, and not for bubblewrap.
+        # A session of its own: Ctrl-C is for the command and its process group, not for bubblewrap.
         words = [*arguments, "--new-session", "--info-fd", str(writing)]
         words, kept = bubblewrap(words, hidden_memory=hidden_memory)
         kept.append(writing)
@@ -164,7 +167,7 @@ class _Supervisor:
             text = told.read()
         first = json.loads(text)["child-pid"] if text else 0
         if first:
-            with contextlib.suppress(ProcessLookupError):  # a command that has ended at once
+            with contextlib.suppress(ProcessLookupError):  # a command that ended at once
                 started.first = os.pidfd_open(first)
         if not idle:
             self._tell_started(name, first)
@@ -174,7 +177,7 @@ class _Supervisor:
             process.stdin.write(b"\n")
             process.stdin.flush()
         assert process.stdout is not None
-        # The program that waits in an empty box repeats what is sent to it: an answer means that the box is complete.
+        # The program that waits in an empty box echoes what is sent to it: an echo means that the box is complete.
         with process.stdout as said:
             line = said.readline()
             if line != b"\n":
@@ -184,7 +187,7 @@ class _Supervisor:
         self._tell_started(name, first)
 
     def _tell_started(self, name: str, first: int) -> None:
-        """Hand over the pidfd of the first process in the box: with it one enters the box."""
+        """Send the pidfd of the first process in the box: a process uses it to enter the box."""
         pidfd = self._started[name].first
         self._channel.send({"say": "started", "name": name, "pid": first}, [pidfd] if pidfd >= 0 else [])
 
@@ -192,7 +195,7 @@ class _Supervisor:
         self._channel.send({"say": "ended", "name": name, "status": self._reap(name)})
 
     def _reap(self, name: str) -> int:
-        """Wait for a box's end."""
+        """Wait for the end of a box."""
         started = self._started.pop(name)
         status = started.process.wait()
         close_all([started.end, *([started.first] if started.first >= 0 else [])])
@@ -203,12 +206,12 @@ class _Supervisor:
 
 
 def furnish(place: Path, size: int, inodes: int) -> None:
-    """Mount the scratch and make in it what every box has, in this process's mount namespace only.
+    """Mount the scratch and make the folders of every box in it, in this process's mount namespace only.
 
     Args:
         place: An existing folder.
         size: Bytes that the scratch can hold.
-        inodes: Files, folders and links that it can hold.
+        inodes: The number of files, folders and links that it can hold.
     """
     syscalls.mount_tmpfs(place, size, inodes)
     for name in (*SCRATCH_FOLDERS, TERMINALS):
@@ -221,27 +224,27 @@ def furnish(place: Path, size: int, inodes: int) -> None:
 
 
 def bubblewrap(arguments: Sequence[str], *, hidden_memory: bool) -> tuple[list[str], list[int]]:
-    """The beginning of a command line, which a command is to follow, and the descriptors that it needs.
+    """Return the start of a command line, to be followed by the command, and the descriptors that it needs.
 
     Args:
-        arguments: What the box is like (:func:`autograder.boxes.mounts.box_arguments`).
+        arguments: The description of the box (:func:`autograder.boxes.mounts.box_arguments`).
         hidden_memory: See :func:`autograder.boxes.seccomp_filter.filter_for_boxes`.
 
     Returns:
-        The words, and descriptors to be inherited, which the caller closes.
+        The words, and the descriptors to be inherited; the caller closes them.
     """
     kept = []
     seccomp = filter_for_boxes(hidden_memory=hidden_memory)
     if seccomp:
         kept.append(_file_with(seccomp))
         arguments = [*arguments, "--seccomp", str(kept[-1])]
-    # In a file, because a box sees the command line of its first process, and folders of the host are in it.
+    # In a file, because a box sees the command line of its first process, which would contain folders of the host.
     kept.append(_file_with(b"".join(os.fsencode(word) + b"\0" for word in arguments)))
     return ["bwrap", "--args", str(kept[-1]), "--"], kept
 
 
 def _file_with(data: bytes) -> int:
-    """A descriptor of an anonymous file with this content, at its beginning."""
+    """Return a descriptor of an anonymous file with this content, positioned at its start."""
     descriptor = os.memfd_create("for-bubblewrap")
     os.write(descriptor, data)
     os.lseek(descriptor, 0, os.SEEK_SET)

@@ -1,6 +1,6 @@
-"""The system calls that Python does not offer, as functions that raise OSError.
+"""System calls that Python does not offer, as functions that raise OSError.
 
-Numbers are those of Linux's headers: linux/sched.h, linux/prctl.h, linux/capability.h, linux/sockios.h.
+The numbers come from Linux's headers: linux/sched.h, linux/prctl.h, linux/capability.h, linux/sockios.h.
 """
 
 from __future__ import annotations
@@ -43,12 +43,12 @@ def _check(result: int, what: str) -> None:
 
 
 def unshare(namespaces: int) -> None:
-    """Leave the namespaces of the parent for new ones (unshare(2))."""
+    """Leave the parent's namespaces for new ones (unshare(2))."""
     _check(_libc.unshare(namespaces), "unshare")
 
 
 def setns(descriptor: int, namespaces: int) -> None:
-    """Enter namespaces of the process that a pidfd stands for (setns(2), Linux 5.8 or later)."""
+    """Enter namespaces of the process of a pidfd (setns(2), Linux 5.8 or later)."""
     _check(_libc.setns(descriptor, namespaces), "setns")
 
 
@@ -61,7 +61,7 @@ def prctl(option: int, value: int = 0) -> None:
 
 
 def drop_capabilities() -> None:
-    """Give up every capability, for this process and for all that it will ever execute."""
+    """Give up every capability, for this process and every program that it executes."""
     last = int(Path("/proc/sys/kernel/cap_last_cap").read_text())
     for capability in range(last + 1):
         prctl(PR_CAPBSET_DROP, capability)
@@ -71,11 +71,11 @@ def drop_capabilities() -> None:
 
 
 def filter_system_calls(program: bytes) -> None:
-    """Let a seccomp filter decide on every later system call of this process and its children.
+    """Install a seccomp filter for all later system calls of this process and its children.
 
     Args:
-        program: Instructions of 8 bytes each (linux/filter.h, struct sock_filter). Without one, only what is executed
-            can bring no new right (no_new_privs).
+        program: Instructions of 8 bytes each (linux/filter.h, struct sock_filter). Empty to only forbid gaining
+            rights by executing a program (no_new_privs).
     """
     prctl(PR_SET_NO_NEW_PRIVS, 1)
     if not program:
@@ -87,26 +87,26 @@ def filter_system_calls(program: bytes) -> None:
 
 
 def leave_the_host() -> None:
-    """Enter an empty network and mounts of one's own, with every right over these and no other."""
+    """Enter an empty network and a private mount namespace, with full rights over these and nothing else."""
     user, group = os.geteuid(), os.getegid()
     unshare(CLONE_NEWUSER | CLONE_NEWNET | CLONE_NEWNS)
     map_only_user(0, user, group)
 
 
 def map_only_user(inside: int, user: int, group: int) -> None:
-    """In a new user namespace, let ``inside`` stand for the one user and group that there are."""
+    """Map this process's only user and group to ``inside`` in a new user namespace."""
     Path("/proc/self/setgroups").write_text("deny")
     Path("/proc/self/uid_map").write_text(f"{inside} {user} 1")
     Path("/proc/self/gid_map").write_text(f"{inside} {group} 1")
 
 
 def mount_tmpfs(place: Path, size: int, inodes: int) -> None:
-    """Mount an empty file system in memory, in this process's mount namespace only.
+    """Mount an empty file system in memory, visible in this process's mount namespace only.
 
     Args:
         place: An existing folder.
         size: Bytes that it can hold.
-        inodes: Files, folders and links that it can hold.
+        inodes: The number of files, folders and links that it can hold.
     """
     _check(_libc.mount(b"none", b"/", None, ctypes.c_ulong(_MS_REC | _MS_PRIVATE), None), "mount")
     options = f"size={size},nr_inodes={inodes},mode=0755".encode()
@@ -119,7 +119,7 @@ def mount_terminals(place: Path, most: int) -> None:
 
     Args:
         place: An existing folder.
-        most: Terminals that there may be at once. The machine has a few thousand for all such file systems together.
+        most: The most terminals at once. The machine has a few thousand for all such file systems together.
     """
     options = f"newinstance,ptmxmode=0666,mode=620,max={most}".encode()
     flags = ctypes.c_ulong(_MS_NOSUID | _MS_NOEXEC)
@@ -127,7 +127,7 @@ def mount_terminals(place: Path, most: int) -> None:
 
 
 def bring_loopback_up() -> None:
-    """A new network namespace has nothing but ``lo``, and that is down."""
+    """Bring up ``lo``, the only interface of a new network namespace, which starts down."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as any_socket:
         request = struct.pack("16sH14x", b"lo", 0)
         flags = struct.unpack("16sH14x", fcntl.ioctl(any_socket, _SIOCGIFFLAGS, request))[1]

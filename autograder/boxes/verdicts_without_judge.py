@@ -1,8 +1,8 @@
-"""The verdict on a check cell that no judge decides: by plain tests, or zero points with a reason to act on.
+"""The verdict on a check cell that the judge does not decide: by plain tests, or zero points with a reason and advice.
 
-A cell of plain tests has the rules of nbgrader. It runs in the student's own kernel, so whoever wants to can have it
-say anything; a check of the judge's in the same notebook is not touched by that. One rule is not nbgrader's: a line on
-standard error costs nothing, because ROS and many libraries log there when all is well.
+A cell of plain tests follows nbgrader's rules. It runs in the student's own kernel, so a student can make it print
+anything; the judge's checks in the same notebook are not affected. One rule differs from nbgrader: a line on standard
+error costs nothing, because ROS and many libraries log there when all is well.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 _SYNTAX_ERRORS = ("SyntaxError", "IndentationError", "TabError")
 _ASSERTION = "AssertionError"
 _NO_INPUT = "StdinNotImplementedError"
-"""Raised by ``input()`` in a kernel that no person sits at."""
+"""The error that ``input()`` raises in a kernel without a user."""
 _STUB = "NotImplementedError"
-"""Raised by what nbgrader puts in the place of a solution."""
+"""The error that nbgrader's replacement for a solution raises."""
 
 LIMITS = {
     Ended.OUT_OF_MEMORY: (
@@ -50,7 +50,7 @@ LIMITS = {
         "Look for a loop that prints without waiting, or print less.",
     ),
 }
-"""For each limit of a box: what a student is told, and what to do."""
+"""For each limit of a box: what the student is told, and the advice."""
 _SHORTAGES = {
     "OSError: [Errno 28]": (
         "disk_full",
@@ -66,15 +66,15 @@ _SHORTAGES = {
     "RuntimeError: can't start new thread": ("too_many_processes", *LIMITS[Ended.TOO_MANY_PROCESSES]),
     "MemoryError": ("out_of_memory", *LIMITS[Ended.OUT_OF_MEMORY]),
 }
-"""Limits that a program hears of as an error: how it begins, the diagnosis, what is said, what to do."""
+"""Limits that reach a program as an error: how the error begins, then diagnosis, message and advice."""
 
 
 def zero_points(check: Check, key: str, reason: str, next_step: str, detail: str = "") -> Verdict:
     """A failed check without criteria.
 
     Args:
-        check: The check that was to be made.
-        key: The diagnosis.
+        check: The check that should have been made.
+        key: The key of the diagnosis.
         reason: What happened, for the student.
         next_step: What to do now.
         detail: More text, such as the end of a traceback.
@@ -83,7 +83,7 @@ def zero_points(check: Check, key: str, reason: str, next_step: str, detail: str
 
 
 def grader_trouble(check: Check, reason: str) -> Verdict:
-    """The grader's own trouble: nobody's fault who submitted, and worth another run."""
+    """A failure of the grader itself: not the student's fault, and worth another run."""
     return not_checked(
         check.exercise,
         check.title,
@@ -100,14 +100,14 @@ def without_verdict(
     limit: float,
     hung: tuple[str, str] | None = None,
 ) -> Verdict:
-    """The reason why a check cell has no verdict.
+    """Return the reason why a check cell has no verdict.
 
     Args:
-        check: The check that was to be made.
-        run: What came of the check cell.
+        check: The check that should have been made.
+        run: The result of the check cell.
         before: The cells since the last check, each with its first line, in order.
-        limit: Seconds of wall time that the check cell had.
-        hung: What it uses that has hung before, and the title of the cell in which it did; None where nothing has.
+        limit: The time limit of the check cell in seconds of wall time.
+        hung: A name in the cell that hung before, and the title of the cell in which it hung; None if there is none.
     """
     match run.ended:
         case Ended.NOT_RUN | Ended.KERNEL_DIED:
@@ -183,7 +183,7 @@ def _out_of_time(check: Check, before: list[tuple[str, CellRun]]) -> Verdict:
 
 
 def _stopped_by_error(check: Check, run: CellRun, before: list[tuple[str, CellRun]]) -> Verdict:
-    """The cell raised, mostly because what it names was never defined: the cause is in an earlier cell."""
+    """Say which error stopped the cell; often an earlier cell that should have defined a name is the cause."""
     title, cause = next(
         ((title, cell) for title, cell in before if cell.ended in (Ended.RAISED, Ended.TIMED_OUT, *LIMITS)),
         ("", None),
@@ -229,7 +229,7 @@ def _stopped_by_error(check: Check, run: CellRun, before: list[tuple[str, CellRu
 
 
 def _told(error: str) -> str:
-    """An error's words without the name that IPython gives to the file of a cell."""
+    """Return an error's text without the name that IPython gives to the file of a cell."""
     return re2.sub(r"\(\d+\.py, line (\d+)\)", r"(line \1)", error).strip().rstrip(":.")
 
 
@@ -241,14 +241,14 @@ def _end_of_traceback(run: CellRun) -> str:
 
 
 def verdict_by_tests(check: Check, run: CellRun) -> Verdict | None:
-    """The verdict on a cell of plain tests.
+    """Return the verdict on a cell of plain tests.
 
     Args:
-        check: The cell's; its points are those of the gradebook.
-        run: What came of it.
+        check: The cell's check; its points are those of the gradebook.
+        run: The result of the cell.
 
     Returns:
-        None for a cell that did not come to its end for another reason than a failing test.
+        None if the cell was stopped by anything but a failing test.
     """
     if run.ended is Ended.RAISED and run.error.startswith(_ASSERTION):
         said = run.error.removeprefix(_ASSERTION).lstrip(": ").strip()
@@ -256,8 +256,8 @@ def verdict_by_tests(check: Check, run: CellRun) -> Verdict | None:
         step = "Read the line with the arrow in the output: it says which test it was."
         return _tested(check, 0.0, Diagnosis("assertion_failed", text, step))
     if run.ended is Ended.RAISED and run.error.startswith(_STUB):
-        text = "What this cell tests is not solved yet."
-        step = "Write your answer in the place of the line `raise NotImplementedError()`."
+        text = "The task that this cell tests is not solved yet."
+        step = "Write your answer instead of the line `raise NotImplementedError()`."
         return _tested(check, 0.0, Diagnosis("not_written", text, step))
     if run.ended is not Ended.DONE:
         return None
@@ -269,7 +269,7 @@ def verdict_by_tests(check: Check, run: CellRun) -> Verdict | None:
 
 
 def _partial_credit(outputs: Iterable[Mapping[str, Any]], most: float) -> float:
-    """The value of the cell where it is a number of points; else all of them."""
+    """Return the value of the cell if it is a number of points, else all of them."""
     values = [one["data"].get("text/plain", "") for one in outputs if one["output_type"] == "execute_result"]
     try:
         score = float(values[0]) if values else most

@@ -1,7 +1,8 @@
-"""A ZeroMQ connection to a kernel that reads no more than it may: ZMTP 3.0 (https://rfc.zeromq.org/spec/23) by hand.
+"""A ZeroMQ connection to a kernel with a limit on what it reads: ZMTP 3.0 (https://rfc.zeromq.org/spec/23) by hand.
 
-ZeroMQ's own library keeps a message until its last part is there, in memory without a limit: a kernel that sends parts
-for ever fills the machine, outside of its box. Here each message has a limit, all of its parts together.
+ZeroMQ's own library keeps a message in memory, without a limit, until its last part has come: a kernel that sends
+parts for ever would fill the machine's memory, outside its box. Here each message has a limit for all its parts
+together.
 """
 
 from __future__ import annotations
@@ -21,24 +22,24 @@ _GREETING = b"\xff" + bytes(8) + b"\x7f\x03\x00" + b"NULL".ljust(20, b"\0") + by
 _READY = b"\x05READY\x0bSocket-Type"
 _SUBSCRIBE_TO_ALL = b"\x01"
 _PART_BYTES = 64
-"""Bytes that a part counts as besides what is in it."""
+"""Bytes that each part counts in addition to its content."""
 _AT_ONCE, _MESSAGES_AT_ONCE = 1 << 18, 100
-"""Bytes that are read, and messages that are handed out, before others have their turn."""
+"""Bytes to read, and messages to return, before other connections have their turn."""
 _AGAIN_SECONDS = 0.015
-"""Seconds before a connection that was broken off is made anew."""
+"""Seconds before a broken connection is made again."""
 
 
 class _NotZmtp(ValueError):
-    """The other end says something that no ZeroMQ does."""
+    """The other end does not speak ZMTP."""
 
 
 class ZmtpConnection:
-    """One end of a connection. It is made anew when the other end breaks it off.
+    """One end of a connection. It connects again when the other end breaks the connection.
 
     Args:
         path: The Unix socket at which the other end listens.
-        kind: ``"DEALER"``, or ``"SUB"`` for all that the other end publishes.
-        most: Bytes of one message; a larger one is read and dropped.
+        kind: ``"DEALER"``, or ``"SUB"`` for everything that the other end publishes.
+        most: The largest message in bytes; a larger one is read and dropped.
 
     Attributes:
         read: Bytes that have been read.
@@ -56,34 +57,34 @@ class ZmtpConnection:
 
     @property
     def is_waiting(self) -> bool:
-        """True if there is a whole message that nobody has taken."""
+        """True if a whole message waits to be taken."""
         return bool(self._messages)
 
     @property
     def owed(self) -> int:
-        """Bytes of a part that was too large and of which the rest is still to be read past."""
+        """Bytes of a too large part that are still to be skipped."""
         return self._to_skip
 
     @property
     def wants_to_write(self) -> bool:
-        """True if not all that was sent has gone."""
+        """True if something that was sent is still in the buffer."""
         return bool(self._unsent)
 
     def fileno(self) -> int:
-        """The descriptor to be polled; -1 while the other end is gone."""
+        """The descriptor to poll; -1 while the other end is gone."""
         if self._socket is None and time.monotonic() > self._not_before:
             self._connect()
         return -1 if self._socket is None else self._socket.fileno()
 
     def send(self, parts: Sequence[bytes]) -> None:
-        """Send a message, now or when there is room for it."""
+        """Send a message now, or as soon as the socket has room for it."""
         last = len(parts) - 1
         message = b"".join(_frame(part, _MORE if place < last else 0) for place, part in enumerate(parts))
         (self._unsent if self._is_ready else self._waits_for_ready).extend(message)
         self._write()
 
     def received(self) -> Iterator[list[bytes]]:
-        """The whole messages that are there, without waiting; of a flood a piece."""
+        """Yield the whole messages that have arrived, without waiting; of a flood only a part."""
         if not self._messages and self._socket is not None:
             try:
                 self._write()
@@ -103,7 +104,7 @@ class ZmtpConnection:
             yield self._messages.popleft()
 
     def close(self) -> None:
-        """Break it off; may be called twice."""
+        """Break the connection; may be called twice."""
         if self._socket is not None:
             self._socket.close()
             self._socket = None
@@ -127,12 +128,12 @@ class ZmtpConnection:
         self._write()
 
     def _write(self) -> None:
-        with contextlib.suppress(OSError):  # who reads is told, too, where the connection is broken
+        with contextlib.suppress(OSError):  # the reading side reports a broken connection, too
             while self._unsent and self._socket is not None:
                 del self._unsent[: self._socket.send(self._unsent)]
 
     def _take_frames(self) -> None:
-        """Take from the buffer what is there as a whole."""
+        """Take whole frames from the buffer."""
         at = 0
         if not self._is_greeted:
             if len(self._buffer) < len(_GREETING):
@@ -161,7 +162,7 @@ class ZmtpConnection:
         self._write()
 
     def _head(self, at: int) -> tuple[int, int, int] | None:
-        """The flags of the frame that begins here, where its body begins, and the body's size."""
+        """Return the flags of the frame that begins here, the start of its body, and the body's size."""
         if len(self._buffer) < at + 2:
             return None
         flags = self._buffer[at]
@@ -172,7 +173,7 @@ class ZmtpConnection:
         return flags, at + 9, int.from_bytes(self._buffer[at + 1 : at + 9], "big")
 
     def _is_too_large(self, flags: int, size: int) -> bool:
-        """True if this part is to be skipped. It counts once: its head is not looked at again."""
+        """True if this part is to be skipped. A part counts once: its head is not checked again."""
         if flags & _COMMAND:
             return size > self._most
         if self._size + size + _PART_BYTES <= self._most:
