@@ -103,7 +103,8 @@ def main(arguments: list[str]) -> None:
     gc.collect()
     # Objects made so far are not collected in the children, so their memory remains shared.
     gc.freeze()
-    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # the exit status of a child is not needed, so no zombie is kept
+    # The exit status of a child is not needed, so no zombie is kept.
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)
     while True:
         watched: list[Any] = [listener, 0]
         ready, _, _ = select.select(watched, [], [])

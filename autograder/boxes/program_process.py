@@ -5,8 +5,8 @@ imports, is the course's own `ros2` (``environment.ros2_command``), with its sea
 differs in one point: a Python script for this interpreter becomes another fork instead of a new process. That fork
 has the arguments, path, standard streams, ``__main__`` and exit of a process of its own.
 
-Everything else is started as `ros2 run` starts it: another interpreter's script, a program in another language, a
-script that would import a module, or load a library, of its own where one of the same name has been loaded here.
+Everything else is started as `ros2 run` starts it: another interpreter's script, a program in another language, and a
+script with a module or library of its own whose name is already loaded in this process.
 """
 
 from __future__ import annotations

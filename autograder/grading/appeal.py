@@ -1,4 +1,4 @@
-"""An appeal file from a class: what was handed in, what the judge saw of it, and what it decided."""
+"""Writes an appeal file from a class: what was handed in, what the judge saw of it, and what it decided."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from autograder.grading.class_records import Entered, RunCell
 
 FOLDER = "appeals"
-"""The folder of a class in which the files are written."""
+"""The folder of a class for appeal files."""
 
 
 def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = None) -> Path:
-    """Write the appeal file of one check; where it is.
+    """Write the appeal file of one check, and return its path.
 
     Args:
         path: The class directory.
@@ -35,7 +35,7 @@ def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = N
         to: The file; one in the class by default.
 
     Raises:
-        GradingError: There is no such check, or no evidence of it; the message says what to do.
+        GradingError: The check does not exist, or no evidence of it is kept; the message says what to do.
     """
     directory = ClassDirectory(path)
     try:
@@ -82,7 +82,7 @@ def _appeal(
 
 
 def _before(cells: list[RunCell], exercise_id: str) -> Iterator[Cell]:
-    """The student's cells above the check: all of it was run in the same kernel before."""
+    """Yield the student's cells above the check: all of them ran in the same kernel before it."""
     for cell in cells:
         if cell.checks == exercise_id:
             return

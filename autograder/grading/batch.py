@@ -1,10 +1,10 @@
-"""Grading a class: rebuild, execute in parallel, write one after the other.
+"""Grades a class: rebuilds notebooks, executes them in parallel, and writes the results one after the other.
 
-The order makes it fail closed. What is not known to be right in the gradebook is taken back first; then each
-result goes into the store of the class and from there, by one writer, into the gradebook. A run that is killed has
-left zeros and results, never a wrong grade, and the next run goes on from there.
+The order makes it fail closed. First, grades that may be wrong are taken back in the gradebook; then each result goes
+into the store of the class and from there, by one writer, into the gradebook. A killed run leaves zeros and results,
+never a wrong grade, and the next run continues from there.
 
-Nothing of a submission is held longer than it takes to write it down, so that a class of any size fits.
+A submission is kept in memory only until it is written, so a class may have any size.
 """
 
 from __future__ import annotations
@@ -81,17 +81,17 @@ def grade(
 
     Args:
         path: The class directory.
-        assignments: Only these; all by default.
-        students: Only these; all by default.
-        sections: Only the students of these, and those who are named.
-        jobs: Notebooks executed at once; as many as processors and memory allow by default.
+        assignments: The assignments to grade; all by default.
+        students: The students to grade; all by default.
+        sections: Grade the students of these sections, and those in ``students``.
+        jobs: The number of notebooks at once; as many as processors and memory allow by default.
         again: Execute every notebook again, even if it has not changed.
-        feedback: Make the pages that go back to the students.
+        feedback: Make the pages for the students.
         console: The console for progress; standard error by default.
         judge: The class that makes a judge, as ``module:class``; the real one by default.
         scheduler: The address of a Dask scheduler whose workers execute the notebooks; this machine by default.
-        dry_run: Enter nothing: execute what would be executed and say who would get other points. What was executed
-            is kept for the run that enters it.
+        dry_run: Enter nothing: execute what is new, and report who would get different points. The results are kept
+            for the run that enters them.
 
     Returns:
         The report. Submissions that could not be graded are in it, with zero points and the reason.
@@ -224,19 +224,19 @@ class _Batch:
 
     @property
     def unsettled(self) -> list[Submission]:
-        """The submissions of which the gradebook does not have the grades."""
+        """The submissions whose grades are not in the gradebook."""
         return [work.submission for work in self._works if not work.written]
 
     def take_back(self) -> None:
-        """Take back the grades of all that is not settled."""
+        """Take back the grades of every submission that is not settled."""
         if self.unsettled:
             self._writer.take_back(self.unsettled)
 
     def run(self, execute: Execute | None) -> None:
-        """Execute what must be, and write each submission as soon as it is complete.
+        """Execute the tasks that must run, and write each submission as soon as it is complete.
 
         Args:
-            execute: Executes tasks; None where all is settled.
+            execute: Executes tasks; None if everything is settled.
         """
         for work in self._works:
             if work.written:
@@ -264,7 +264,7 @@ class _Batch:
                 self._write(work)  # no notebook of it could be executed, or that was known last
 
     def report(self, seconds: float) -> GradeReport:
-        """The report on what was asked for; ``grades.csv``, written here, has the whole class."""
+        """The report on the chosen part of the class. Also writes ``grades.csv``, which has the whole class."""
         url = self._directory.gradebook_url
         works = {work.key: work for work in (*self._works, *self._others)}
         entries = read_entries(url)
@@ -401,7 +401,7 @@ class _Batch:
         work.results.clear()
 
     def _keep_time(self, work: Work) -> SubmissionEntry:
-        """Enter a changed time of handing in, or a changed due date, and what being late costs now."""
+        """Enter a changed time of handing in or due date, and the late penalty that follows."""
         entry = self._entries.get(work.key, SubmissionEntry())
         at = handed_in_at(work.submission.folder, believed=entry.handed_in)
         moved = at is not None and at != entry.handed_in
@@ -412,7 +412,7 @@ class _Batch:
         return read_entry(self._directory.gradebook_url, *work.key)
 
     def _make_pages(self, work: Work, entry: SubmissionEntry) -> None:
-        """Make the pages of a submission that has none, or whose pages say what the gradebook said before."""
+        """Make the pages of a submission that has none, or whose pages are older than its points in the gradebook."""
         submission = work.submission
         if not self._feedback:
             return

@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Attempt:
-    """One time that a submission was graded and entered.
+    """One grading of a submission that was entered.
 
     Attributes:
         at: The time in UTC.
         assignment: The assignment's name.
-        work: Stands for what was handed in and all that it was graded with: equal for the same once more.
-        course: Stands for the version of the course.
+        work: A hash of what was handed in and everything it was graded with: equal if neither has changed.
+        course: The version of the course.
         rows: The judge's results.
     """
 
@@ -37,7 +37,7 @@ class Attempt:
     rows: tuple[Row, ...]
 
     def line(self) -> str:
-        """The attempt in one line for a person."""
+        """The attempt as one line of text."""
         score, most = sum(row.score for row in self.rows), sum(row.max_score for row in self.rows)
         words = [
             f"{row.exercise} {row.score:g}" + (f" ({row.diagnosis})" if row.diagnosis else "")
@@ -51,15 +51,15 @@ class Attempt:
 
 @dataclass(frozen=True)
 class Entered:
-    """The last entry of a submission into the gradebook, by which the next run knows the grades that are still right.
+    """The last entry of a submission in the gradebook; the next run uses it to find grades that are still right.
 
     Attributes:
-        fingerprint: Of all that it was made from.
-        tasks: The task of each notebook, as :meth:`autograder.grading.task.Task.key` has it.
+        fingerprint: A hash of everything that the grades were made from.
+        tasks: The hash of each notebook's task, from :meth:`autograder.grading.task.Task.key`.
         scores: The points of each check cell, by notebook and grade_id.
-        rows: The same for the report, with what is wrong.
-        course: Stands for the version of the course that it was graded with.
-        shown: Stands for what the gradebook said when the pages of feedback were made; empty where none were.
+        rows: The same as rows of the report, with the mistakes.
+        course: The version of the course with which it was graded.
+        shown: A hash of the gradebook's entries from which the feedback pages were made; empty if there are no pages.
     """
 
     fingerprint: str
@@ -70,7 +70,7 @@ class Entered:
     shown: str = ""
 
     def is_in(self, entry: SubmissionEntry) -> bool:
-        """True if the gradebook, whose entry this is, still has the points that were entered."""
+        """True if the gradebook, which has this entry, still holds the points that were entered."""
         return all(
             entry.judged(notebook, name) == score
             for notebook, entered in self.scores.items()
@@ -80,12 +80,12 @@ class Entered:
 
 @dataclass(frozen=True)
 class Origin:
-    """The master that a source of a class was made of.
+    """The master from which a source notebook of a class was made.
 
     Attributes:
-        master: The master's file, below the course's top folder where it is there.
-        text: Stands for the whole of it.
-        work: Stands for its graded cells and those that students write.
+        master: The master's file; a path relative to the course if it is inside the course.
+        text: A hash of its whole text.
+        work: A hash of the cells that are graded or that students write.
     """
 
     master: str
@@ -94,10 +94,10 @@ class Origin:
 
 
 class RunCell(msgspec.Struct, frozen=True, array_like=True):
-    """A cell that was run and is the student's own, or a check cell.
+    """A cell that was run: one that a student wrote, or a check cell.
 
     Attributes:
-        name: Its grade_id; empty for a cell that the student has added.
+        name: The grade_id; empty for a cell that the student added.
         text: The student's text; empty for a check cell.
         checks: The exercise that it checks; empty for any other cell.
     """
@@ -109,15 +109,15 @@ class RunCell(msgspec.Struct, frozen=True, array_like=True):
 
 @dataclass(frozen=True)
 class KeptEvidence:
-    """The evidence of a student's notebook, with the cells that were run. It is no grade.
+    """The evidence of a student's notebook, with the cells that were run. It decides no grade.
 
     Attributes:
         assignment: The assignment's name.
         notebook: The notebook's name.
-        task: The task that was executed, as :meth:`autograder.grading.task.Task.key` has it.
-        course: Stands for the version of the course.
-        checks: By exercise, as the judge has packed it (:mod:`autograder.judge.verdicts.keeping`).
-        cells: The cells that tell what was judged, in their order: a list of :class:`RunCell`, compressed.
+        task: The hash of the executed task, from :meth:`autograder.grading.task.Task.key`.
+        course: The version of the course.
+        checks: The evidence by exercise, as packed by the judge (:mod:`autograder.judge.verdicts.keeping`).
+        cells: The cells that show what was judged, in order: a compressed list of :class:`RunCell`.
     """
 
     assignment: str
@@ -129,7 +129,7 @@ class KeptEvidence:
 
     @classmethod
     def of(cls, task: Task, execution: Execution) -> Self:
-        """The evidence of a task that was executed."""
+        """Return the evidence of an executed task."""
         run = [
             RunCell(cell.name, "" if cell.check else cell.source, cell.check.exercise if cell.check else "")
             for cell in task.cells

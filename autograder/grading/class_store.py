@@ -1,11 +1,11 @@
-"""The store of a class: all that the grader itself knows of it, in one SQLite file beside nbgrader's gradebook.
+"""The store of a class: everything that the grader itself records about it, in one SQLite file next to the gradebook.
 
-Each step is one transaction. It is on the disk when its method returns, or not there at all, whenever a run is killed
-or the power fails. The file has a rollback journal and no write-ahead log: that log needs memory which machines of a
-network cannot share, and a folder that can be written to even by those who only read. They read while a batch runs,
-which holds the file for the milliseconds of each step. That there is one batch at a time is the task of the lock
-(:mod:`autograder.grading.classes.class_lock`), a file of its own: the system frees it however a process ends, and a
-lock on this file for as long as a batch takes would keep readers out.
+Each step is one transaction: whenever a run is killed or the power fails, the step is either on the disk or not done
+at all. The file uses a rollback journal, not a write-ahead log, because that log needs memory that machines of a
+network cannot share, and write access to the folder even for readers. Readers may read while a batch runs, which
+locks the file for milliseconds in each step. A lock file (:mod:`autograder.grading.classes.class_lock`) ensures that
+there is one batch at a time: the system frees it however a process ends, and holding a lock on this file during a
+whole batch would keep readers out.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 NAME = "class.db"
 _FORM = 2
-"""Goes up with each change of the tables; a file of another form is refused."""
+"""Increased with each change of the tables; a file with another version is refused."""
 _TABLES = """
 -- What came of each notebook when it was executed last. Its task is the hash of all that the result depends on.
 CREATE TABLE IF NOT EXISTS result (
@@ -73,22 +73,22 @@ _NOT_ENTERED = (
     "task NOT IN (SELECT value FROM entered AS e, json_each(CAST(e.tasks AS TEXT))"
     " WHERE e.student = evidence.student AND e.assignment = evidence.assignment)"
 )
-"""True of evidence on which nothing that stands in the gradebook rests."""
+"""True for evidence that no entry in the gradebook is based on."""
 _RUNS = 50
-"""Runs whose tables are kept."""
+"""The number of runs whose tables are kept."""
 _PATIENCE = 30.0
-"""Seconds for which a step waits until another program has done its own."""
+"""Seconds that a step waits for another program's step."""
 _Decoded = TypeVar("_Decoded")
 
 
 class ClassStore:
     """The store of one class. A context manager, which closes the file.
 
-    The first step that writes makes the file. Where there is none every answer is empty, as for an unknown student. An
-    entry that cannot be decoded and can be made again counts as none.
+    The first write makes the file. Without a file every answer is empty, as for an unknown student. A damaged entry
+    that can be made again is treated as missing.
 
-    Every method raises :class:`DiskFull` where there is no room, and :class:`StoreTrouble` where the file is damaged,
-    locked, read-only or of another form; what was there before stays.
+    Every method raises :class:`DiskFull` if the disk is full, and :class:`StoreTrouble` if the file is damaged,
+    locked, read-only or of another version; earlier content stays.
 
     Args:
         directory: The class.
@@ -115,9 +115,11 @@ class ClassStore:
     # -- results of tasks
 
     def keep(self, task: Task, execution: Execution) -> Execution:
-        """Keep a result and its evidence, in place of the last ones of the same notebook; the result without evidence.
+        """Store a result and its evidence, replacing the last ones of this notebook.
 
-        The evidence of what stands in the gradebook stays: a run that enters nothing must leave it to an appeal.
+        Return the result without evidence.
+
+        The evidence behind grades in the gradebook stays: a run that enters nothing must leave it for appeals.
 
         If the grader itself failed, nothing is stored or replaced: the next run tries again.
         """
@@ -142,7 +144,7 @@ class ClassStore:
         return result
 
     def results(self, student: str, assignment: str) -> dict[str, Execution]:
-        """The last results of a submission by task, in the order of the notebooks; it may have changed since."""
+        """Return the last results of a submission by task, in the order of notebooks; it may have changed since."""
         rows = self._rows(
             "SELECT task, execution FROM result WHERE (student, assignment) = (?, ?) ORDER BY notebook",
             student,
@@ -158,7 +160,7 @@ class ClassStore:
             book.executemany("DELETE FROM result WHERE (student, assignment) = (?, ?)", names)
 
     def evidence(self, student: str, exercise: str) -> KeptEvidence | None:
-        """The evidence of a student's check that stands in the gradebook, else the last; None where none is kept."""
+        """Return the evidence behind a check's grade in the gradebook, else the newest; None if none is kept."""
         for assignment, notebook, task, course, checks, cells in self._rows(
             "SELECT assignment, notebook, task, course, checks, cells FROM evidence WHERE student = ?"
             f" ORDER BY assignment, notebook, {_NOT_ENTERED}",
@@ -172,7 +174,7 @@ class ClassStore:
     # -- what stands in the gradebook
 
     def enter(self, submission: Submission, attempt: Attempt, entered: Entered | None) -> None:
-        """Note an attempt, and what stands in the gradebook now; None if the next run should try again."""
+        """Record an attempt, and the new entry in the gradebook; None as entry if the next run should try again."""
         names = (submission.student, submission.assignment)
         with self._step() as book:
             book.execute(
@@ -202,21 +204,21 @@ class ClassStore:
                 )
 
     def note_fingerprint(self, submission: Submission, fingerprint: str) -> None:
-        """Note that the entry of a submission is right for other bytes, too."""
+        """Record that the entry of a submission is also right for other bytes."""
         self._note(submission, "fingerprint", fingerprint)
 
     def note_shown(self, submission: Submission, shown: str) -> None:
-        """Note what the gradebook said when the pages of a submission were made."""
+        """Record the gradebook's state from which the pages of a submission were made."""
         self._note(submission, "shown", shown)
 
     def forget_entered(self, submissions: Iterable[Submission]) -> None:
-        """Drop the entries of submissions, before their grades are taken back."""
+        """Delete the entries of submissions, before their grades are taken back."""
         with self._step() as book:
             names = ((one.student, one.assignment) for one in submissions)
             book.executemany("DELETE FROM entered WHERE (student, assignment) = (?, ?)", names)
 
     def entered(self) -> dict[tuple[str, str], Entered]:
-        """The last entries into the gradebook, by student and assignment."""
+        """Return the last entries in the gradebook, by student and assignment."""
         found = {}
         for student, assignment, fingerprint, *blobs, course, shown in self._rows("SELECT * FROM entered"):
             tasks = _decoded(blobs[0], dict[str, str])
@@ -227,7 +229,7 @@ class ClassStore:
         return found
 
     def attempts(self, student: str) -> list[Attempt]:
-        """All times that a student was graded, the first one first."""
+        """Return all attempts of a student, the first one first."""
         found = []
         for at, assignment, work, course, report in self._rows(
             "SELECT at, assignment, work, course, report FROM attempt WHERE student = ? ORDER BY number",
@@ -254,7 +256,7 @@ class ClassStore:
             )
 
     def runs(self) -> list[str]:
-        """The names of the runs, the oldest first."""
+        """Return the names of the runs, the oldest first."""
         return [name for (name,) in self._rows("SELECT name FROM run ORDER BY name")]
 
     def run(self, name: str) -> tuple[Row, ...] | None:
@@ -265,7 +267,7 @@ class ClassStore:
     # -- sources
 
     def note_origins(self, origins: Mapping[str, Origin]) -> None:
-        """Note the masters from which the sources of assignments were just made."""
+        """Record the masters from which the sources of assignments were just made."""
         with self._step() as book:
             book.executemany(
                 "REPLACE INTO origin VALUES (?, ?, ?, ?)",
@@ -277,13 +279,13 @@ class ClassStore:
         return {name: Origin(*fields) for name, *fields in self._rows("SELECT * FROM origin")}
 
     def keep_graded_cells(self, fingerprint: str, cells: bytes) -> None:
-        """Keep the cells that were read from the present sources, in place of all others."""
+        """Store the cells that were read from the present sources, replacing all others."""
         with self._step() as book:
             book.execute("DELETE FROM graded_cells")
             book.execute("INSERT INTO graded_cells VALUES (?, ?)", (fingerprint, cells))
 
     def graded_cells(self, fingerprint: str) -> bytes:
-        """The cells that were read from the sources with this fingerprint; empty where they are not known."""
+        """Return the cells that were read from the sources with this fingerprint; empty if none are stored."""
         rows = self._rows("SELECT cells FROM graded_cells WHERE fingerprint = ?", fingerprint)
         return rows[0][0] if rows else b""
 
@@ -307,7 +309,7 @@ class ClassStore:
 
     @contextlib.contextmanager
     def _step(self) -> Iterator[sqlite3.Connection]:
-        """One transaction."""
+        """Run the block in one transaction."""
         with self._said_clearly():
             book = self._opened(may_make=True)
             book.execute("BEGIN IMMEDIATE")
@@ -337,7 +339,7 @@ class ClassStore:
 
     @contextlib.contextmanager
     def _said_clearly(self) -> Iterator[None]:
-        """End what was begun where it fails, and say in an instructor's words what the database says."""
+        """Roll back on a failure, and turn the database's message into one for an instructor."""
         try:
             yield
         except BaseException as error:

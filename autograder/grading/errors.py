@@ -1,4 +1,4 @@
-"""Errors about a class, with what to do. The command line ends with exit code 2 on these."""
+"""Errors about a class, with advice. After one of them the command line exits with code 2."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
 
 def course_command(*words: object, inside: Path | None = None) -> str:
-    """Return a command as messages print it: a shell takes each word, a path with blanks too, as one.
+    """Return a command as messages print it, quoted so that a shell takes each word, even a path with blanks, as one.
 
     Args:
-        words: The words behind ``./course``, or behind ``autograder`` where the wheel is installed.
-        inside: The folder in which it has to be typed, as nbgrader's own commands ask for; any where not given.
+        words: The words after ``./course``, or after ``autograder`` if the wheel is installed.
+        inside: The folder in which it has to be typed, which nbgrader's own commands require; None for any folder.
     """
     program = ROOT / COMMAND if inside and IS_CLONE else COMMAND
     command = shlex.join(map(str, (program, *words)))
@@ -27,14 +27,14 @@ def course_command(*words: object, inside: Path | None = None) -> str:
 
 
 class GradingError(Exception):
-    """Something an instructor can put right; the message says what happened and what to do."""
+    """A problem that an instructor can fix; the message says what happened and what to do."""
 
 
 def check_known(wanted: Sequence[str], known: Sequence[str], what: str) -> None:
-    """See that there is what was asked for by name.
+    """Check that everything that was asked for by name exists.
 
     Raises:
-        GradingError: There is not; the message says what there is.
+        GradingError: A name does not exist; the message lists the existing names.
     """
     for name in wanted:
         if name not in known:
@@ -81,12 +81,12 @@ class MasterUnusable(GradingError):
 
 
 class DiskFull(GradingError):
-    """There is no room left on the disk."""
+    """The disk is full."""
 
     def __init__(self, path: Path) -> None:
         super().__init__(
             f"The disk that holds {path} is full. Free some room and run the same command again: "
-            "what was graded so far is kept, and no grade of an earlier run is shown in its place."
+            "what was graded so far is kept, and no grade of an earlier run is shown instead."
         )
 
 
@@ -95,7 +95,7 @@ class GradebookTrouble(GradingError):
 
     Args:
         path: The class.
-        said: The words of the database.
+        said: The database's message.
     """
 
     def __init__(self, path: Path, said: str) -> None:
@@ -113,8 +113,8 @@ class StoreTrouble(GradingError):
     """The store of a class cannot be read or written.
 
     Args:
-        file: Its file.
-        said: The reason, such as the words of the database.
+        file: The file of the store.
+        said: The reason, such as the database's message.
     """
 
     def __init__(self, file: Path, said: str) -> None:
@@ -147,7 +147,7 @@ _STORE_ADVICE = {
 
 
 def is_disk_full(error: BaseException | None) -> bool:
-    """True if a full disk (or an exhausted quota) is at the bottom of ``error``."""
+    """True if a full disk (or an exhausted quota) is the cause of ``error``."""
     while error is not None:
         if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
             return True
@@ -159,15 +159,15 @@ def is_disk_full(error: BaseException | None) -> bool:
 
 @contextlib.contextmanager
 def clear_disk_errors(path: Path) -> Iterator[None]:
-    """Say in an instructor's words what the disk says.
+    """Turn errors of the disk and the database into messages for an instructor.
 
     Args:
-        path: The class that is worked on.
+        path: The class in use.
 
     Raises:
-        DiskFull: The disk is full, whichever step found out.
+        DiskFull: The disk is full, whichever step noticed it.
         GradebookTrouble: The gradebook is locked, read-only, damaged or out of reach.
-        GradingError: Something may not be read or written.
+        GradingError: A file may not be read or written.
     """
     try:
         yield
@@ -193,15 +193,15 @@ def clear_disk_errors(path: Path) -> Iterator[None]:
 
 @contextlib.contextmanager
 def clear_place_errors(path: Path, option: str) -> Iterator[None]:
-    """Say in an instructor's words why a file that was asked for cannot be at its place.
+    """Turn errors about the path of a requested file into messages for an instructor.
 
     Args:
-        path: The file that is written.
-        option: The option that names another place.
+        path: The file to write.
+        option: The option that sets another path.
 
     Raises:
         GradingError: A file or folder with this name is in the way, or the name is not allowed.
-        OSError: It is the disk's trouble, for which :func:`clear_disk_errors` has words.
+        OSError: A failure of the disk, for which :func:`clear_disk_errors` has messages.
     """
     try:
         yield

@@ -21,16 +21,16 @@ _NUMBERS = ("raw_score", "late_submission_penalty", "score", "max_score")
 
 
 class SafeCsvExport(ExportPlugin):
-    """One line for each student and assignment, as nbgrader's ``CsvExportPlugin`` writes it.
+    """One line for each student and assignment, with the columns of nbgrader's ``CsvExportPlugin``.
 
-    That one writes a comma or a line break in a name as it is, and a formula, too.
+    nbgrader's plug-in does not quote commas and line breaks in names, and leaves formulas active.
     """
 
     def export(self, gradebook: Gradebook) -> None:
-        """Write the file that ``--to`` names, ``grades.csv`` where it names none.
+        """Write the file given by ``--to``, by default ``grades.csv``.
 
         Args:
-            gradebook: nbgrader's, open.
+            gradebook: nbgrader's open gradebook.
         """
         to = Path(self.to or "grades.csv")
         self.log.info("Exporting grades to %s", to)

@@ -1,9 +1,9 @@
-"""``nbgrader autograde`` and ``nbgrader generate_feedback`` on a class of ours, as commands or as formgrader's buttons.
+"""Runs ``nbgrader autograde`` and ``nbgrader generate_feedback``, or formgrader's buttons, with the course's grader.
 
-nbgrader's own conversion has no judge, and copies whatever is in a submission: a pipe would hold it up for ever,
-and a file with a hole of a terabyte would fill the disk. So its steps are replaced by those of ``./course grade``.
-The class's configuration names the exporters below. nbgrader makes an exporter before it converts the first notebook,
-and ours take over the converter that made them.
+nbgrader's own conversion has no judge, and copies whatever is in a submission: a pipe would block it for ever, and a
+sparse file of a terabyte would fill the disk. So its steps are replaced by those of ``./course grade``. The class's
+configuration names the exporters below. nbgrader makes an exporter before it converts the first notebook, and these
+exporters then take over the converter that made them.
 """
 
 from __future__ import annotations
@@ -32,22 +32,22 @@ if TYPE_CHECKING:
 
 
 CANNOT = 2
-"""The exit code of ``./course grade`` where something could not be checked or had to be refused."""
+"""The exit code of ``./course grade`` if something could not be checked or had to be refused."""
 
 
 class _Ours(BaseConverter):
-    """A conversion of whole submissions by the engine.
+    """A conversion of whole submissions by this package's grader.
 
-    nbgrader has listed in ``assignments`` the folders that it would convert.
+    nbgrader has listed in ``assignments`` the folders to convert.
     """
 
     def convert_notebooks(self) -> None:
         """Convert the submissions that were asked for.
 
         Raises:
-            NbGraderException: Not all of them could be; the log has a line for each.
-            SystemExit: The same, where nbgrader runs as a command: with the exit code of ``./course grade``, which
-                nbgrader would make a 1.
+            NbGraderException: Some could not be converted; the log has a line for each.
+            SystemExit: The same, if nbgrader runs as a command: with the exit code of ``./course grade``, which
+                nbgrader would turn into 1.
         """
         try:
             problems = self._convert(ClassDirectory(Path(self.coursedir.root)), self._chosen())
@@ -62,10 +62,10 @@ class _Ours(BaseConverter):
             raise NbGraderException("; ".join(problems))
 
     def _chosen(self) -> dict[str, list[str]]:
-        """The students that were asked for, by assignment.
+        """Return the students that were asked for, by assignment.
 
         Raises:
-            GradingError: A single notebook of them was asked for.
+            GradingError: A single notebook was asked for.
         """
         if self.coursedir.notebook_id != "*":
             raise GradingError(
@@ -77,7 +77,7 @@ class _Ours(BaseConverter):
         return chosen
 
     def _convert(self, directory: ClassDirectory, chosen: dict[str, list[str]]) -> list[str]:
-        """Convert submissions, and say what went wrong."""
+        """Convert submissions. Return what went wrong."""
         raise NotImplementedError
 
 
@@ -95,7 +95,7 @@ class _OurAutograde(_Ours, Autograde):
                 feedback=False,
                 console=Console(quiet=True),
             )
-            # A file without a place may be anybody's: it is no failure of the one whose button was pressed.
+            # A file without a place may belong to any student: it is not a failure of the submission being graded.
             refused = [(f"{one.path}: {one.reason}", one.path.is_absolute()) for one in report.refused]
             remarks = [f"{'/'.join(key)}: {words}" for key, words in remarks_on(report.rows).items()]
             for notice in (*report.notices, *remarks, *(text for text, in_class in refused if not in_class)):
@@ -134,19 +134,19 @@ class _OurFeedback(_Ours, GenerateFeedback):
 
 
 def _take_over(converter: object) -> None:
-    """Have the engine do what a converter of nbgrader was made for.
+    """Let the grader do the work of nbgrader's converter.
 
     Args:
-        converter: It has not yet begun to convert; anything else is left as it is.
+        converter: A converter that has not begun; any other object is left unchanged.
     """
     ours = {Autograde: _OurAutograde, GenerateFeedback: _OurFeedback}.get(type(converter))
     if ours is not None:
-        # nbgrader offers no way to say which class it shall make.
+        # nbgrader offers no way to choose the class of the converter.
         converter.__class__ = ours
 
 
 class SubmissionExporter(NotebookExporter):
-    """By this name nbgrader finds our way of grading, whoever starts ``autograde``."""
+    """nbgrader finds this package's way of grading by this name, however ``autograde`` is started."""
 
     def __init__(self, *args: Any, **kw: Any) -> None:
         initialise: Any = super().__init__
@@ -155,7 +155,7 @@ class SubmissionExporter(NotebookExporter):
 
 
 class FeedbackExporter(PageExporter):
-    """By this name nbgrader finds our way of making pages, whoever starts ``generate_feedback``."""
+    """nbgrader finds this package's way of making pages by this name, however ``generate_feedback`` is started."""
 
     def __init__(self, *args: Any, **kw: Any) -> None:
         initialise: Any = super().__init__
@@ -164,13 +164,13 @@ class FeedbackExporter(PageExporter):
 
 
 class WireExecute(NbGraderPreprocessor):
-    """Stands in the place of nbgrader's Execute and refuses to grade.
+    """Replaces nbgrader's Execute and refuses to grade.
 
-    Its section of the configuration has what the engine reads: limits, and two switches.
+    Its configuration section contains the grader's settings: limits, and two switches.
     """
 
     def preprocess(self, *_: Any, **__: Any) -> tuple[Any, Any]:
-        """Say what is missing: nbgrader comes here only where the line that leads to the engine was taken out.
+        """Report the missing line: nbgrader calls this only if the line that leads to the grader was removed.
 
         Raises:
             TypeError: Always.

@@ -1,4 +1,4 @@
-"""A class on disk: its folders, the names that may be in them, and its lock."""
+"""A class on disk: its folders, valid names for them, and its lock."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ if TYPE_CHECKING:
 CONFIG_NAME = "nbgrader_config.py"
 STATE_NAME = ".autograder"
 COURSE_NAME = "course"
-"""The file in the state with the top folder of the class's course: an installed package is in no course."""
+"""The file in the class's state with the course's top folder: an installed package is not inside the course."""
 SUFFIX = ".ipynb"
 _LONGEST_NAME = 100
 _STUDENTS_FILES = ("submitted", "autograded", "feedback", "downloaded")
-"""The folders of a class that hold what students have written, as nbgrader calls them."""
+"""The folders of a class that contain students' files, by nbgrader's names."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Submission:
     Attributes:
         student: The student's id.
         assignment: The assignment's name.
-        folder: Its place.
+        folder: The folder of the submission.
     """
 
     student: str
@@ -56,11 +56,11 @@ class Submission:
 
 @dataclass(frozen=True)
 class Refused:
-    """Something under ``submitted`` that cannot be graded under that name.
+    """A file or folder in ``submitted`` that cannot be graded under its name.
 
     Attributes:
         path: The file or folder.
-        reason: Why, and what to do.
+        reason: The reason, and what to do.
     """
 
     path: Path
@@ -74,7 +74,7 @@ class ClassDirectory:
         path: The folder that holds ``nbgrader_config.py``.
 
     Raises:
-        NotAClass: It is none; the message says what is missing.
+        NotAClass: The folder is not a class; the message says what is missing.
     """
 
     def __init__(self, path: Path) -> None:
@@ -117,7 +117,7 @@ class ClassDirectory:
             )
         url = str(config.CourseDirectory.get("db_url") or "sqlite:")
         if not url.startswith("sqlite:") and not config.CourseDirectory.get("course_id"):
-            # nbgrader refers to a course of that name, and only SQLite does not look whether there is one.
+            # nbgrader stores the course's id as a foreign key, and only SQLite accepts an id that does not exist.
             raise ClassIncomplete(
                 f"A gradebook in a database server needs the name of the course. Add a line to "
                 f'{self.path / CONFIG_NAME}: c.CourseDirectory.course_id = "ros2"'
@@ -127,7 +127,7 @@ class ClassDirectory:
 
     @property
     def time_zone(self) -> ZoneInfo:
-        """The time zone in which formgrader takes due dates, and in which this package shows times.
+        """The time zone of formgrader's due dates and of all times that this package shows.
 
         This is nbgrader's own option ``c.NbGraderAPI.timezone``; its default is UTC.
 
@@ -147,7 +147,7 @@ class ClassDirectory:
     def _as_written(self) -> Config:
         try:
             return PyFileConfigLoader(CONFIG_NAME, path=str(self.path)).load_config()
-        except Exception as error:  # it is a program: it may raise anything
+        except Exception as error:  # the file is a program: it may raise anything
             raise ClassIncomplete(
                 f"{self.path / CONFIG_NAME} cannot be read: {type(error).__name__}: {error}"
             ) from error
@@ -157,7 +157,7 @@ class ClassDirectory:
         """Return the class secret; make it if the class has none.
 
         Raises:
-            ClassIncomplete: It is damaged.
+            ClassIncomplete: The secret is damaged.
         """
         path = self.state / "secret"
         try:
@@ -182,7 +182,7 @@ class ClassDirectory:
         return sorted(path.stem for path in (self.path / "source" / assignment).glob(f"*{SUFFIX}"))
 
     def master(self, assignment: str, notebook: str) -> NotebookNode:
-        """The trusted master of a notebook.
+        """Return the trusted master of a notebook.
 
         Raises:
             MasterUnusable: It cannot be graded against.
@@ -195,7 +195,7 @@ class ClassDirectory:
 
     @functools.cached_property
     def named_cells(self) -> NamedCells:
-        """The named cells of all of its notebooks, as they are now."""
+        """The named cells of all notebooks of the class, as they are now."""
         from autograder.grading.rebuilding.named_cells import NamedCells
 
         return NamedCells(
@@ -207,7 +207,7 @@ class ClassDirectory:
         )
 
     def files(self, assignment: str) -> dict[str, bytes]:
-        """The files beside the assignment's notebooks, by relative path."""
+        """Return the files next to the assignment's notebooks, by relative path."""
         folder = self.path / "source" / assignment
         found = (path for path in sorted(folder.rglob("*")) if path.is_file() and path.suffix != SUFFIX)
         return {
@@ -219,10 +219,9 @@ class ClassDirectory:
         }
 
     def submissions(self) -> tuple[list[Submission], list[Refused]]:
-        """Everything that was handed in, and what cannot be graded under the name it has.
+        """Return everything that was handed in, and what cannot be graded under its name.
 
-        A notebook that is not an ordinary file is in both lists: it gets zero points
-        and the reason.
+        A notebook that is not an ordinary file is in both lists: it gets zero points and the reason.
         """
         notebooks = {assignment: self.notebooks(assignment) for assignment in self.assignments()}
         taken: list[Submission] = []
@@ -251,11 +250,11 @@ class ClassDirectory:
 
     @contextlib.contextmanager
     def lock(self) -> Iterator[None]:
-        """Keep a second batch out, and clean up behind one that was killed. The lock goes with the process.
+        """Keep a second batch out, and clean up after a killed one. The lock ends with the process.
 
         Raises:
-            ClassBusy: Another process holds it.
-            GradingError: The disk or the gradebook failed whoever holds it, in an instructor's words.
+            ClassBusy: Another process holds the lock.
+            GradingError: The disk or the gradebook failed in the block; the message is for an instructor.
         """
         with clear_disk_errors(self.path):
             self.state.mkdir(mode=0o700, exist_ok=True)
@@ -266,14 +265,14 @@ class ClassDirectory:
 
     @property
     def scratch_prefix(self) -> str:
-        """The beginning of the names of this class's temporary folders, short because sockets live in them."""
+        """The beginning of the names of this class's temporary folders; short, because sockets are made in them."""
         return f"autograder-{hashlib.sha256(str(self.path).encode()).hexdigest()[:8]}-"
 
 
 def refuse_students_folder(folder: Path) -> None:
-    """Make sure that a folder does not lie among the files of students in a class.
+    """Raise an error if a folder lies among the students' files of a class.
 
-    A student may have put a whole class there, and the configuration of a class is a program.
+    A student may have put a whole class there, and the configuration of a class is a program that would run.
 
     Raises:
         ClassIncomplete: The folder lies there; the message names the class.
@@ -290,8 +289,8 @@ def refuse_students_folder(folder: Path) -> None:
 def reason_against_name(name: str) -> str:
     """Return why a folder's name cannot be a student's id; empty if it can.
 
-    nbgrader looks for folders with wildcards and splits paths at separators, so that some characters would
-    find a neighbour's folder or none; control characters would forge lines in a terminal or a log.
+    nbgrader looks for folders with wildcards and splits paths at separators, so some characters would find another
+    student's folder or none; control characters would forge lines in a terminal or a log.
     """
     if len(name.encode("utf-8", "surrogateescape")) > _LONGEST_NAME:
         return f"the name is longer than {_LONGEST_NAME} bytes"

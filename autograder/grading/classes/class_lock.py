@@ -1,4 +1,4 @@
-"""One batch at a time in a class, whichever command or button started it."""
+"""Allows only one batch at a time in a class, whichever command or button started it."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Holder:
-    """The process that is at work.
+    """The process that holds the lock.
 
     Attributes:
-        pid: The process.
+        pid: The process id.
         host: The machine that it runs on.
         since: The local time at which it began.
     """
@@ -42,7 +42,7 @@ class Holder:
 
 
 _own: dict[Path, Holder] = {}
-"""The locks of this process: the system lets a process take a lock again that it has already."""
+"""The locks of this process: the system would let a process take the same lock twice."""
 _changing = threading.Lock()
 
 
@@ -58,7 +58,7 @@ def held(path: Path, of: Path) -> Iterator[bool]:
         of: The class, for messages.
 
     Raises:
-        ClassBusy: Somebody holds it; the message says who.
+        ClassBusy: Another process holds the lock; the message names it.
         OSError: The file cannot be written.
     """
     path = path.resolve()

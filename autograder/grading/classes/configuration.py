@@ -1,4 +1,4 @@
-"""The lines of ``nbgrader_config.py`` that decide how a submission is converted, and those that a class may have.
+"""The lines of ``nbgrader_config.py`` that decide how submissions are converted, and which values are supported.
 
 Every command uses the same conversion into the gradebook. If a class sets an option of nbgrader's conversion that this
 one does not support, the command refuses before it changes anything, so that no line is silently ignored.
@@ -42,12 +42,12 @@ _MAY_BE: Mapping[str, Mapping[str, tuple[Any, ...]]] = {
     "HTMLExporter": {
         "filters": ({"markdown2html": "autograder.grading.returning.page_exporter.markdown_to_html"},)
     },
-    # The last three limit what nbgrader's exchange takes.
+    # The last three limit what nbgrader's exchange accepts.
     "CourseDirectory": dict.fromkeys(
         ("root", "db_url", "course_id", "include", "max_file_size", "max_dir_size"), (_ANYTHING,)
     ),
     "WireExecute": dict.fromkeys((*_LIMITS, "unsafe_no_sandbox", "demonstrations"), (_ANYTHING,)),
-    # Of these, none has an effect.
+    # None of these has an effect here.
     **{
         section: {}
         for section in (
@@ -71,8 +71,9 @@ _MAY_BE: Mapping[str, Mapping[str, tuple[Any, ...]]] = {
         )
     },
 }
-"""The values that the options of each section may have; a section that is not here is not about the conversion, or is
-honoured."""
+"""The supported values of each section's options; a section that is not listed has nothing to do with the
+conversion, or is fully supported.
+"""
 
 
 _INSTEAD = {
@@ -83,10 +84,10 @@ _INSTEAD = {
 
 
 def check_configuration(directory: ClassDirectory) -> None:
-    """See that the conversion honours all that the class's configuration says of it.
+    """Check that every option in the class's configuration is supported.
 
     Raises:
-        ClassIncomplete: It does not; the message names the option and says what to do.
+        ClassIncomplete: One is not; the message names the option and says what to do.
     """
     path = directory.path / CONFIG_NAME
     for option in _not_honoured(directory.config):

@@ -1,4 +1,4 @@
-"""Making a class, an nbgrader course directory of the course's masters, and bringing its sources up to date."""
+"""Makes a class, an nbgrader course directory with the course's masters, and updates its sources."""
 
 from __future__ import annotations
 
@@ -126,16 +126,16 @@ def new_class(
     """Make a class directory with its gradebook, sources and release.
 
     Args:
-        path: A folder that is not there yet, or an empty one; outside of the course's repository.
-        course_root: The folder that holds ``solutions``.
-        assignments: The names of the masters; all with a graded cell by default.
+        path: A new or empty folder outside the course's repository.
+        course_root: The folder that contains ``solutions``.
+        assignments: The names of the masters; all masters with a graded cell by default.
         timezone: The name of the time zone of due dates, such as ``Europe/Berlin``; this machine's by default.
         cell_seconds: Wall time of one cell.
         notebook_seconds: Wall time of a notebook.
 
     Raises:
-        ClassExists: There is something already, or the place is inside the repository.
-        GradingError: An assignment is not known, its master cannot be used, or nbgrader could not make it.
+        ClassExists: The folder is not empty, or is inside the repository.
+        GradingError: An assignment is unknown, a master cannot be used, or nbgrader could not make the class.
     """
     path = path.absolute()
     _check_place(path, course_root)
@@ -151,7 +151,7 @@ def new_class(
             _fill(path, sources, config)
             (path / STATE_NAME / COURSE_NAME).write_text(str(course_root.resolve()), encoding="utf-8")
     except BaseException:
-        # Half a class would only be in the way of the next try.
+        # An unfinished class would only be in the way of the next attempt.
         for entry in path.iterdir() if path.is_dir() else ():
             shutil.rmtree(entry) if entry.is_dir() else entry.unlink()
         if made_folder and path.is_dir():
@@ -185,11 +185,11 @@ def _check_place(path: Path, course_root: Path) -> None:
 
 
 Sources = dict[str, "tuple[Path, NotebookNode]"]
-"""A master and the source notebook that is made of it, by assignment."""
+"""By assignment: the master, and the source notebook made from it."""
 
 
 def sources_of(course_root: Path, wanted: Sequence[str]) -> Sources:
-    """The masters that the sources of a class are made of.
+    """Return the masters, and the source notebooks that a class gets from them.
 
     Args:
         course_root: The folder that holds ``solutions``.
@@ -218,7 +218,7 @@ def _fill(path: Path, sources: Sources, config: str) -> None:
     (path / "submitted").mkdir()
     (path / STATE_NAME).mkdir(mode=0o700)
     create_secret(path / STATE_NAME / "secret")
-    # Students' work, points and the secret belong in no repository.
+    # Students' work, points and the secret must not go into a repository.
     (path / ".gitignore").write_text("*\n", encoding="utf-8")
     for name, (_, notebook) in sources.items():
         (path / "source" / name).mkdir(parents=True)
@@ -231,19 +231,19 @@ def _fill(path: Path, sources: Sources, config: str) -> None:
 def write_source(
     directory: ClassDirectory, name: str, notebook: NotebookNode, assignments: Container[str]
 ) -> None:
-    """Write the source of an assignment, with links that lead to the other notebooks in a class.
+    """Write the source of an assignment, with links that work in a class.
 
-    In the chapter all notebooks are in one folder; in a class, as nbgrader has it, each is in a folder of its own.
-    Notebooks outside the class are named without a link.
+    In the chapter all notebooks are in one folder; in nbgrader's class each is in a folder of its own. Notebooks
+    outside the class are named without a link.
 
     Args:
-        directory: The class, in which the assignment's folder is there.
+        directory: The class; it already has the assignment's folder.
         name: The assignment.
-        notebook: Its source, as the course has it.
+        notebook: The source as in the course.
         assignments: The assignments of the class.
 
     Raises:
-        OSError: It could not be written.
+        OSError: The file could not be written.
     """
 
     def in_a_class(other: str) -> str:
@@ -257,14 +257,14 @@ def write_source(
 
 
 def release(directory: ClassDirectory, assignments: Sequence[str] = ()) -> None:
-    """Do what ``nbgrader generate_assignment`` does.
+    """Do the same as ``nbgrader generate_assignment``.
 
     Args:
         directory: The class.
-        assignments: For these; for every one of the class by default.
+        assignments: The assignments; all of the class by default.
 
     Raises:
-        GradingError: nbgrader failed; its words are in the class's ``nbgrader.log``.
+        GradingError: nbgrader failed; the class's ``nbgrader.log`` has the details.
     """
     for assignment in assignments or directory.assignments():
         course = CourseDirectory(config=directory.config)
@@ -287,15 +287,15 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
     Args:
         path: The class directory.
         course_root: The folder that holds ``solutions``.
-        assignments: Only these; all that the course has masters of by default.
+        assignments: The assignments to renew; all that have a master in the course by default.
 
     Returns:
-        One line for each assignment: what was done.
+        One line for each assignment that says what was done.
 
     Raises:
-        GradingError: An assignment is not the course's or not the class's, none is both, or nbgrader refuses the new
-            text.
-        OSError: The sources could not be written. Whatever fails, they are as they were before.
+        GradingError: An assignment is missing in the course or in the class, no assignment is in both, or nbgrader
+            refuses the new text.
+        OSError: The sources could not be written. After any error they are as before.
     """
     directory = ClassDirectory(path)
     there = directory.assignments()
@@ -313,7 +313,7 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
             for name, (_, notebook) in made.items():
                 write_source(directory, name, notebook, there)
             release(directory, list(made))
-        except BaseException:  # also a full disk and Ctrl-C
+        except BaseException:  # including a full disk and Ctrl-C
             for name in made:
                 shutil.copytree(kept / name, directory.path / "source" / name, dirs_exist_ok=True)
             raise
@@ -326,10 +326,10 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
 
 @contextlib.contextmanager
 def _version_read_here() -> Iterator[None]:
-    """Have nbgrader learn the version of its tables from this process for as long as the block lasts.
+    """Make nbgrader read the version of its tables in this process, for as long as the block lasts.
 
-    nbgrader asks Alembic's command for it (``nbgrader.api.get_alembic_version``), which takes four seconds of processor
-    time for each new gradebook. Here the same files are read.
+    nbgrader runs Alembic's command for it (``nbgrader.api.get_alembic_version``), which takes four seconds of
+    processor time for each new gradebook. This reads the same files.
     """
     theirs = api.get_alembic_version
     api.get_alembic_version = _newest_version
@@ -340,7 +340,7 @@ def _version_read_here() -> Iterator[None]:
 
 
 def _newest_version() -> str:
-    """The version of the tables that this nbgrader makes."""
+    """Return the version of the tables that this nbgrader makes."""
     settings = Config()
     settings.set_main_option("script_location", dbutil.ALEMBIC_DIR.replace("%", "%%"))
     return str(ScriptDirectory.from_config(settings).get_current_head())

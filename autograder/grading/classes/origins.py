@@ -1,7 +1,8 @@
-"""The masters that the sources of a class were made of, and those that have changed since.
+"""The masters from which the sources of a class were made, and which of them have changed since.
 
-A class has its own copy of each assignment, which its instructor may change. The judge has none: it expects what the
-course says today. So what is compared is a master then and now, and of it the cells that are graded or answered.
+A class has its own copy of each assignment, which its instructor may change. The judge has no copy: it judges by the
+present course. So a master then is compared with the master now, and only its cells that are graded or answered
+count.
 """
 
 from __future__ import annotations
@@ -25,11 +26,11 @@ if TYPE_CHECKING:
 
 
 def note_origins(store: ClassStore, made: Mapping[str, tuple[Path, NotebookNode]]) -> None:
-    """Note what sources were just made of.
+    """Record the masters from which sources were just made.
 
     Args:
-        store: The class's.
-        made: The master and what came of it, by assignment.
+        store: The store of the class.
+        made: By assignment: the master, and the source made from it.
     """
     store.note_origins(
         {
@@ -45,7 +46,7 @@ def news(directory: ClassDirectory, store: ClassStore, assignments: Iterable[str
     Args:
         directory: The class.
         store: Its store, which knows the origins.
-        assignments: Those that are graded.
+        assignments: The assignments that are graded.
     """
     known = store.origins()
     if not known:
@@ -59,7 +60,7 @@ def news(directory: ClassDirectory, store: ClassStore, assignments: Iterable[str
 
 
 def warning(directory: ClassDirectory, assignment: str) -> str:
-    """The warning about such an assignment, and what to do."""
+    """Return the warning about a changed assignment, with what to do."""
     return (
         f"{assignment}: its master in the course was changed since this class got its source. The judge expects what "
         "the course says now, so work that was written for the old text may fail. See first who would: "
@@ -74,15 +75,15 @@ def _has_moved(origin: Origin) -> bool:
     try:
         if _digest([master.read_text("utf-8")]) == origin.text:
             return False
-        from autograder.masters.source import source_notebook  # a second, mostly for nothing
+        from autograder.masters.source import source_notebook  # takes a second, and is rarely needed
 
         return _work(source_notebook(master)) != origin.work
     except (OSError, UnicodeDecodeError, MasterError):
-        return False  # the course is elsewhere now, or being worked on
+        return False  # the course has moved, or is being edited
 
 
 def _in_course(master: Path) -> str:
-    """The master's path below the course, which may have moved when it is asked for again; else the whole path."""
+    """Return the master's path relative to the course, so that the course may move; else the whole path."""
     path, root = master.resolve(), course.root().resolve()
     return str(path.relative_to(root) if path.is_relative_to(root) else path)
 

@@ -32,16 +32,16 @@ if TYPE_CHECKING:
 
 DATA = Path(__file__).with_suffix(".toml")
 CELL_SECONDS = 8.0
-"""Short, so that the student with the endless loop does not make the demonstration long."""
+"""Short, so that the student with the endless loop does not slow down the demonstration."""
 NOTEBOOK_SECONDS = 120.0
 BANK = Path("tests", "submissions", "notebooks")
-"""In the course: answers as students write them into notebooks, right and wrong."""
+"""The folder, in the course, of answers as students write them, right and wrong."""
 _STAMP = "sample"
 
 
 @dataclass(frozen=True)
 class SampleNotebook:
-    """One notebook that one student hands in; the data file says what the fields mean."""
+    """One notebook of one student; the data file explains the fields."""
 
     student: str
     assignment: str
@@ -59,14 +59,14 @@ class SampleNotebook:
 
 @dataclass(frozen=True)
 class _Answer:
-    """A student's text in a solution cell, and in cells of their own before it."""
+    """A student's text in a solution cell, and in added cells before it."""
 
     source: str
     extra: tuple[str, ...]
 
 
 def sample_notebooks() -> tuple[SampleNotebook, ...]:
-    """The notebooks that are handed in in the sample class."""
+    """Return the notebooks of the sample class."""
     data = tomllib.loads(DATA.read_text(encoding="utf-8"))
     return msgspec.convert(data["notebook"], tuple[SampleNotebook, ...])
 
@@ -81,17 +81,17 @@ def submit_sample(path: Path) -> None:
 
 
 def demo(path: Path, *, console: Console | None = None) -> GradeReport:
-    """Make the sample class, grade it, print the table and where everything is.
+    """Make the sample class, grade it, and print the table and the paths of everything.
 
-    A class that this made before from the same course is graded as it is, which takes seconds. Where no sandbox
-    is possible it is graded without one: the samples are the course's own.
+    If this command made the class before from the same course, it only grades it, which takes seconds. If no sandbox
+    is possible it grades without one: the samples come from the course itself.
 
     Args:
         path: The class directory; made if it does not exist.
         console: Standard output by default.
 
     Raises:
-        GradingError: There is something else at ``path``, or grading is not possible.
+        GradingError: ``path`` contains something else, or grading is not possible.
     """
     console = console or Console()
     if sandbox.why_impossible():
@@ -124,7 +124,7 @@ def _make(path: Path, console: Console) -> None:
 
 
 def _version(root: Path) -> str:
-    """Changes with the masters, the answers and the data of the sample, and with the configuration of a class."""
+    """Return a hash of the masters, the answers and data of the sample, and the configuration of a class."""
     digest = hashlib.sha256(DATA.read_bytes() + CONFIG.encode())
     notebooks = sample_notebooks()
     names = {notebook.assignment for notebook in notebooks}
@@ -138,7 +138,7 @@ def _version(root: Path) -> str:
 
 
 def made_notebook(path: Path, wanted: SampleNotebook) -> NotebookNode:
-    """The notebook as the student saved it.
+    """Return the notebook as the student saved it.
 
     Args:
         path: The class, with its sources and its release.
@@ -159,7 +159,7 @@ def made_notebook(path: Path, wanted: SampleNotebook) -> NotebookNode:
 def _changed(
     cell: NotebookNode, wanted: SampleNotebook, right: dict[str, str], answers: dict[str, _Answer]
 ) -> list[NotebookNode]:
-    """The cells in the place of one cell of the released notebook."""
+    """Return the cells that replace one cell of the released notebook."""
     name = grade_id(cell)
     if not name:
         return [cell]
@@ -182,7 +182,7 @@ def _changed(
 
 
 def _bank_answers(file: str) -> dict[str, _Answer]:
-    """The cells of a bank answer: ``# %% extra`` and ``# %% solution NAME`` each begin one."""
+    """Return the cells of a bank answer: ``# %% extra`` and ``# %% solution NAME`` each begin one."""
     text = (course.root() / BANK / file).read_text(encoding="utf-8")
     found: dict[str, _Answer] = {}
     extra: list[str] = []

@@ -1,4 +1,4 @@
-"""Random inputs that a student cannot guess, that differ from a neighbour's, and that can be drawn again."""
+"""Random inputs that a student cannot guess, that differ between students, and that can be reproduced."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def create_secret(path: Path) -> None:
     """Write a new class secret that only its owner can read.
 
     Raises:
-        FileExistsError: There is one already; a new one would change every student's inputs.
+        FileExistsError: A secret exists; a new one would change every student's inputs.
     """
     descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     with os.fdopen(descriptor, "w") as file:
@@ -26,7 +26,7 @@ def create_secret(path: Path) -> None:
 
 
 def read_secret(path: Path) -> bytes:
-    """The class secret.
+    """Return the class secret.
 
     Raises:
         OSError: It cannot be read.
@@ -39,16 +39,16 @@ def read_secret(path: Path) -> bytes:
 
 
 def seed_for(secret: bytes, student: str, assignment: str, notebook: str, work: str) -> str:
-    """The seed of one student's notebook; the judge mixes each exercise's id into it.
+    """Return the seed of one student's notebook; the judge adds each exercise's id.
 
     Args:
         secret: The class secret.
         student: The student's id.
         assignment: The assignment's name.
         notebook: The notebook's name.
-        work: A hash of what was handed in. A student who copies the inputs from the feedback of one submission
-            into the next one gets different inputs there.
+        work: A hash of what was handed in. So a student who copies inputs from the feedback on one submission into
+            the next one gets different inputs there.
     """
-    # Lengths are in the message, so that ("ab", "c") and ("a", "bc") never share a seed.
+    # The message contains the lengths, so that ("ab", "c") and ("a", "bc") never give the same seed.
     message = "".join(f"{len(part)}:{part};" for part in (student, assignment, notebook, work))
     return hmac.new(secret, message.encode(), hashlib.sha256).hexdigest()[:32]

@@ -1,4 +1,4 @@
-"""The time of handing in: nbgrader's file of it, read without trusting it."""
+"""The time of handing in, from nbgrader's timestamp file, which may be forged."""
 
 from __future__ import annotations
 
@@ -13,22 +13,24 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 TIMESTAMP = "timestamp.txt"
-"""The file's name, beside the notebooks."""
+"""The name of the file next to the notebooks."""
 SECRET = "submission_secret.txt"
-"""nbgrader's exchange writes it beside the notebooks that it collects, and finds a page's student by it."""
+"""nbgrader's exchange writes this file next to the notebooks that it collects, and identifies a page's student by
+it.
+"""
 _LONGEST = 200
 _HEX = frozenset("0123456789abcdef")
 _EARLIEST = datetime(2024, 5, 23)
-"""The day on which ROS 2 Jazzy came out."""
+"""The release day of ROS 2 Jazzy."""
 _AHEAD = timedelta(days=1)
-"""The time by which another machine's clock may be ahead."""
+"""How far ahead another machine's clock may be."""
 
 
 def read_timestamp(folder: Path) -> str:
     """Return the text of the file; empty if it does not exist or is not an ordinary file.
 
-    Where work is collected with ``./course collect``, the file counts only as far as that has written it: a student
-    can put one into what is handed in.
+    If ``./course collect`` collected the work, the file counts only if the command wrote it: a student can include
+    such a file in a submission.
     """
     records = CollectedRecords(folder.parent.parent.parent / STATE_NAME)
     if records.is_used:
@@ -46,9 +48,9 @@ def _text(path: Path) -> str | None:
 
 
 def companions(folder: Path) -> dict[str, bytes]:
-    """The files of nbgrader's that follow a submission into ``autograded`` and ``feedback``, by name.
+    """Return nbgrader's files that follow a submission into ``autograded`` and ``feedback``, by name.
 
-    Without them `nbgrader release_feedback` does not know whom a page is for.
+    Without them `nbgrader release_feedback` does not know which student a page is for.
     """
     found = {}
     stamp = read_timestamp(folder)
@@ -69,10 +71,10 @@ def is_not_believed(folder: Path) -> bool:
 
 
 def timestamp_text(when: datetime) -> str:
-    """A time as nbgrader writes it.
+    """Return a time in nbgrader's format.
 
     Args:
-        when: In UTC.
+        when: The time in UTC.
     """
     return f"{when:%Y-%m-%d %H:%M:%S.%f} UTC"
 
@@ -81,7 +83,7 @@ def handed_in_at(folder: Path, *, believed: datetime | None = None) -> datetime 
     """Return the time at which the work in a folder was handed in, in UTC; None if no file records it.
 
     Args:
-        folder: Of the submission.
+        folder: The folder of the submission.
         believed: A time that was accepted before, such as the one in the gradebook; it stays accepted even if the clock
             of this machine is wrong today.
 
@@ -91,7 +93,9 @@ def handed_in_at(folder: Path, *, believed: datetime | None = None) -> datetime 
     stamp = read_timestamp(folder)
     if not stamp:
         return None
-    from nbgrader.utils import parse_utc  # here, since it takes half a second: most classes have no such file
+    from nbgrader.utils import (
+        parse_utc,
+    )  # imported here because it takes half a second, and few classes need it
 
     try:
         at: datetime = parse_utc(stamp)

@@ -1,4 +1,4 @@
-"""The conversion of a graded submission: its notebooks in ``autograded/``, and its entry in the gradebook.
+"""Converts a graded submission: writes its notebooks to ``autograded/``, and makes its entry for the gradebook.
 
 The result is the same as that of nbgrader's conversion, in a twentieth of the time: nbgrader reads, validates and
 writes every notebook twice, and opens the gradebook a dozen times.
@@ -56,11 +56,11 @@ def convert(
         folder: The folder for the notebooks; it is made here, and must not exist.
 
     Returns:
-        By notebook.
+        The entries by notebook.
 
     Raises:
         RuntimeError: A notebook was replaced while it was executed.
-        OSError: Something could not be written.
+        OSError: A file could not be written.
     """
     folder.mkdir(parents=True)
     for name, data in directory.files(submission.assignment).items():
@@ -97,7 +97,7 @@ def _graded(
 
 
 def _text(notebook: NotebookNode) -> bytes:
-    """The notebook as nbformat writes it, which takes pure Python to indent; ``notebook`` is changed."""
+    """Return the notebook as nbformat writes it, for which pure Python code indents; changes ``notebook``."""
     split: Any = rwbase.split_lines
     strip: Any = rwbase.strip_transient
     encoded = msgspec.json.encode(strip(split(notebook)), order="sorted")
@@ -105,7 +105,7 @@ def _text(notebook: NotebookNode) -> bytes:
 
 
 def _entry(notebook: NotebookNode) -> NotebookEntry:
-    """The entry that nbgrader's SaveAutoGrades would make."""
+    """Return the entry that nbgrader's SaveAutoGrades would make."""
     scores: dict[str, float | None] = {}
     comments: dict[str, str | None] = {}
     for cell in notebook.cells:
@@ -127,7 +127,7 @@ def _write(path: Path, data: bytes) -> None:
 
 
 def _with_results(nb: NotebookNode, task: Task, execution: Execution) -> NotebookNode:
-    """The notebook with the outputs of its cells; of a check cell they are the card and the points."""
+    """Return the notebook with the outputs of its cells; a check cell gets the card and the points."""
     count = 0
     for index, (node, cell) in enumerate(zip(nb.cells, task.cells, strict=True)):
         if node.cell_type != "code":
@@ -141,7 +141,7 @@ def _with_results(nb: NotebookNode, task: Task, execution: Execution) -> Noteboo
         else:
             node.outputs = [nodes.output(**output) for output in run.outputs]
             node.outputs += _remark(node, cell, run, task.limits) if execution.cells else []
-    # Here and not on the page: formgrader shows what is in autograded/, and it cleans nothing.
+    # Done here, because formgrader shows ``autograded/`` without cleaning it.
     make_harmless(nb, range(len(nb.cells)) if execution.trouble else execution.as_typed)
     nb.cells = list(_with_rubrics(nb.cells))
     if not task.boxed:
@@ -150,7 +150,7 @@ def _with_results(nb: NotebookNode, task: Task, execution: Execution) -> Noteboo
 
 
 def _with_rubrics(cells: Sequence[NotebookNode]) -> Iterator[NotebookNode]:
-    """The cells, and below each question that a person grades what the instructor wrote for that person."""
+    """Yield the cells, and below each question that a person grades the instructor's notes for grading."""
     for cell in cells:
         known = cell.metadata.pop("autograder", {})
         yield cell
@@ -165,7 +165,7 @@ def _with_rubrics(cells: Sequence[NotebookNode]) -> Iterator[NotebookNode]:
 def _graded_outputs(
     check: Check, verdict: Verdict, outputs: Sequence[Mapping[str, Any]]
 ) -> list[NotebookNode]:
-    """The card, or what tests said, and as the cell's value the score: nbgrader gives a cell that number of points."""
+    """Return the card or the test's output, and the score as the cell's value: nbgrader takes that value as points."""
     score = points(check, verdict)
     card = nodes.output(output_type="display_data", data=mimebundle(verdict), metadata={})
     return [
@@ -180,7 +180,7 @@ def _graded_outputs(
 
 
 def _of_tests(outputs: Sequence[Mapping[str, Any]]) -> Iterator[NotebookNode]:
-    """The output and errors of tests, in a form by which nbgrader decides nothing.
+    """Yield the output and errors of tests in a form from which nbgrader takes no points.
 
     nbgrader gives zero points for an error or a line on standard error, and takes the first value as points.
     """

@@ -1,4 +1,4 @@
-"""nbgrader's gradebook, written: points are taken back and entered, with comments, times and what being late costs."""
+"""Writes nbgrader's gradebook: takes points back and enters points, comments, times and late penalties."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from sqlalchemy import Connection
 
 Scores = Mapping[str, float | None]
-"""By grade_id; None if the cell has no automatic score."""
+"""By grade_id: the points; None if the cell has no automatic score."""
 
 _GRADED = ("GradeCell", "TaskCell")
 _COMMENTED = ("SolutionCell", "TaskCell")
@@ -33,8 +33,8 @@ class NotebookEntry:
 
     Attributes:
         scores: Automatic points of each graded cell, by grade_id; None if a person has to give them.
-        comments: Automatic comment on each cell that can have one, by grade_id.
-        unchecked: The graded cells that could not be checked: their zero says nothing, as after :func:`reset`.
+        comments: The automatic comment on each cell that can have one, by grade_id.
+        unchecked: The graded cells that could not be checked: their zero points mean nothing, as after :func:`reset`.
     """
 
     scores: Scores
@@ -45,8 +45,8 @@ class NotebookEntry:
 def reset(url: str, submissions: Iterable[tuple[str, str]]) -> None:
     """Take back the automatic grades of these submissions, in one transaction.
 
-    Zero, and marked as to be looked at: whatever happens from here on, no earlier score is left. A grade that
-    an instructor gave by hand is the instructor's and stays.
+    The score becomes zero and marked for review: if anything fails later, no earlier score is left. A grade that an
+    instructor gave by hand stays.
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
@@ -77,14 +77,14 @@ def enter(
         url: The address by which SQLAlchemy opens the gradebook.
         assignment: The assignment's name.
         student: The student's id; an unknown student is added.
-        notebooks: Results, by notebook.
-        timestamp: The time of handing in, in UTC; None leaves the time that is known already.
+        notebooks: The results by notebook.
+        timestamp: The time of handing in, in UTC; None to keep the known time.
 
     Returns:
-        Whether the assignment has a due date, so that nbgrader has to say what being late costs.
+        True if the assignment has a due date, so that nbgrader has to compute the late penalty.
 
     Raises:
-        LookupError: It was never generated.
+        LookupError: The assignment was never generated.
     """
     with opened(url) as book:
         found = book.execute(
@@ -99,7 +99,7 @@ def enter(
             if name not in cells:
                 raise LookupError(f"the gradebook has no notebook named {name} in {assignment}")
             _enter_notebook(book, submission, cells[name], entry)
-        # A notebook that no result is for has zero points, and is there all the same.
+        # A notebook without a result still gets an entry, with zero points.
         for name in cells.keys() - notebooks.keys():
             _enter_notebook(book, submission, cells[name], NotebookEntry({}, {}))
     return due is not None
@@ -157,7 +157,7 @@ def _submission(book: Connection, assignment: str, student: str, timestamp: date
 
 
 def enter_time(url: str, assignment: str, student: str, timestamp: datetime) -> None:
-    """Enter when a submission that is known was handed in.
+    """Enter the time of handing in of a known submission.
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
@@ -174,13 +174,13 @@ def enter_time(url: str, assignment: str, student: str, timestamp: datetime) -> 
 
 
 def enter_penalties(url: str, assignment: str, student: str, penalties: Mapping[str, float | None]) -> None:
-    """Enter what being late costs in each notebook of a submission.
+    """Enter the late penalty of each notebook of a submission.
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
         assignment: The assignment's name.
         student: The student's id.
-        penalties: Points to be taken off, by notebook; None for nothing.
+        penalties: The points to take off, by notebook; None for no penalty.
     """
     rows: list[dict[str, object]] = [
         {"a": assignment, "s": student, "n": notebook, "costs": costs}
@@ -270,7 +270,7 @@ def _enter_comments(
 
 
 def _put(book: Connection, rows: list[dict[str, object]], statement: str) -> None:
-    """Execute a statement for each of the rows; it may name fewer fields than they have."""
+    """Execute a statement for each row; the statement may use fewer fields than a row has."""
     if rows:
         names = _PARAMETER.findall(statement)
         book.execute(sql(statement), [{name: row[name] for name in names} for row in rows])

@@ -1,7 +1,7 @@
-"""nbgrader's gradebook, read: its connections, each one transaction, and the points and comments of submissions.
+"""Reads nbgrader's gradebook: connections, each for one transaction, and the points and comments of submissions.
 
-In SQL on nbgrader's own tables (``nbgrader/api.py``, as of 0.9), because its objects cost a query for every cell, and
-importing them more than a second.
+It uses SQL on nbgrader's own tables (``nbgrader/api.py``, as of 0.9), because nbgrader's objects cost a query for
+every cell, and importing them takes more than a second.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _CELLS = f"""
         JOIN grade g ON g.notebook_id = sn.id JOIN base_cell b ON b.id = g.cell_id
         LEFT JOIN grade_cells gc ON gc.id = b.id LEFT JOIN task_cells tc ON tc.id = b.id
 """
-# A question that a person grades is two cells of one name to nbgrader: one has the points, the other the comment.
+# To nbgrader, a question that a person grades is two cells of one name: one has the points, the other the comment.
 _COMMENTS = f"""
     SELECT s.student_id AS student, a.name AS assignment, n.name AS notebook, b.name AS cell,
         COALESCE(c.manual_comment, c.auto_comment) AS said
@@ -64,7 +64,7 @@ class CellEntry:
     """The gradebook's row of one cell of a submission.
 
     Attributes:
-        max_score: Points that can be had.
+        max_score: The most points for the cell.
         judged: Points that were given automatically; None if there are none.
         by_hand: Points that a person gave instead; None if no person did.
         extra: Points that a person gave on top.
@@ -91,9 +91,9 @@ class SubmissionEntry:
 
     Attributes:
         handed_in: The time of handing in, in UTC; None if unknown.
-        due: Until when it was due for this student, in UTC; None without a due date.
-        penalties: Points that are taken off for being late, by notebook.
-        cells: By notebook and grade_id.
+        due: The due date for this student, in UTC; None without a due date.
+        penalties: The late penalty in points, by notebook.
+        cells: The entries by notebook and grade_id.
         name: The student's name; empty if the gradebook has none.
     """
 
@@ -110,12 +110,12 @@ class SubmissionEntry:
 
     @property
     def penalty(self) -> float:
-        """Points that are taken off for being late."""
+        """The late penalty of all notebooks together, in points."""
         return sum(self.penalties.values())
 
     @property
     def raw(self) -> float:
-        """Points before what is taken off for being late."""
+        """The points before the late penalty."""
         return sum(cell.score for cells in self.cells.values() for cell in cells.values())
 
     @property
@@ -141,7 +141,7 @@ class SubmissionEntry:
         return entry.judged if entry else None
 
     def shown(self) -> str:
-        """Changes with whatever a page of feedback says about points and comments."""
+        """A hash of everything that a feedback page shows about points and comments."""
         return hashlib.sha256(msgspec.json.encode(self, order="deterministic")).hexdigest()
 
 
@@ -150,19 +150,19 @@ Entries = Mapping[tuple[str, str], SubmissionEntry]
 
 
 def opened(url: str) -> AbstractContextManager[Connection]:
-    """A connection for one transaction, closed at the end of the block."""
+    """Open a connection for one transaction, closed at the end of the block."""
     return _engine(url).begin()
 
 
 @functools.lru_cache(maxsize=8)
 def _engine(url: str) -> Engine:
-    """Holds no connection, only what SQLAlchemy knows of the database and of our statements."""
+    """Return an engine that keeps no connection, only SQLAlchemy's knowledge of the database and our statements."""
     return sqlalchemy.create_engine(url, poolclass=NullPool)
 
 
 @functools.lru_cache(maxsize=64)
 def sql(statement: str) -> TextClause:
-    """A statement, parsed once."""
+    """Parse a statement, once."""
     return sqlalchemy.text(statement)
 
 
@@ -178,7 +178,7 @@ def has_tables(book: Connection) -> bool:
 
 
 def worth(url: str, assignment: str) -> dict[str, dict[str, float]]:
-    """The points of each cell in the gradebook: by notebook, by grade_id."""
+    """Return the points of each cell in the gradebook: by notebook, by grade_id."""
     found: dict[str, dict[str, float]] = {}
     with opened(url) as book:
         if has_tables(book):
@@ -200,12 +200,12 @@ def worth(url: str, assignment: str) -> dict[str, dict[str, float]]:
 
 
 def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entries:
-    """The submissions that the gradebook knows.
+    """Return the submissions that the gradebook knows.
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
         student: Only this student's rows; all students' if empty.
-        assignment: Only of this assignment; of all where empty.
+        assignment: Only this assignment's rows; all assignments' if empty.
     """
     names = {"student": student, "assignment": assignment}
     narrow = "(:student = '' OR s.student_id = :student) AND (:assignment = '' OR a.name = :assignment)"
@@ -250,7 +250,7 @@ def read_entry(url: str, student: str, assignment: str) -> SubmissionEntry:
 
 
 def read_due_dates(url: str) -> dict[str, datetime]:
-    """Until when assignments are due, in UTC, without any student's extension; by name."""
+    """Return the due dates of assignments by name, in UTC, without students' extensions."""
     with opened(url) as book:
         if not has_tables(book):
             return {}

@@ -1,4 +1,4 @@
-"""The only writer into gradebook, ``autograded/`` and ``feedback/``; whatever fails in it leaves zero points."""
+"""The only writer to gradebook, ``autograded/`` and ``feedback/``; if it fails, the submission has zero points."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 class NotWritten(RuntimeError):
-    """The points in the gradebook are not those of the judge; the message says of which exercise."""
+    """The points in the gradebook differ from the judge's; the message names the exercise."""
 
 
 class Writer:
@@ -67,13 +67,13 @@ class Writer:
 
         Args:
             submission: The submission that was executed.
-            fingerprint: Of all that it was made from.
+            fingerprint: A hash of everything that the results were made from.
             results: A pair for each notebook of the assignment.
             rows: The results as rows of the report.
 
         Raises:
-            NotWritten: That failed, or the gradebook then says something else. The grades are zero then.
-            OSError: There is no room on the disk.
+            NotWritten: Writing failed, or the gradebook then holds other points. The grades are zero then.
+            OSError: The disk is full.
         """
         try:
             with quiet(self._directory.state):
@@ -98,7 +98,7 @@ class Writer:
         self._store.enter(submission, attempt, entered if is_final else None)
 
     def _convert_and_enter(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
-        """Notebooks first: without grades they are only files."""
+        """Write the notebooks first: without grades they have no effect."""
         folder = self._folder("autograded", submission)
         _remove(folder)
         entries = conversion.convert(self._directory, submission, results, folder)
@@ -113,7 +113,7 @@ class Writer:
         """Enter the time at which a graded submission was handed in, and the penalty for being late.
 
         Args:
-            submission: Its grades stay as they are.
+            submission: A graded submission; its grades stay as they are.
             at: In UTC; None if the gradebook has the time already.
         """
         names = submission.assignment, submission.student
@@ -137,7 +137,7 @@ class Writer:
         """Make the HTML pages that go back to a student. Return False if one failed; the log has the reason.
 
         Raises:
-            OSError: There is no room on the disk.
+            OSError: The disk is full.
         """
         notebooks = self._directory.notebooks(submission.assignment)
         with quiet(self._directory.state):
@@ -163,10 +163,10 @@ class Writer:
 
 
 class _LogFile(logging.FileHandler):
-    """A log file that says nothing when it cannot be written: on a full disk, the grader itself says so once."""
+    """A log file that ignores its own write errors: on a full disk, the grader itself reports the problem once."""
 
     def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802  (logging's name)
-        """Do nothing."""
+        """Ignore the error."""
 
 
 @contextlib.contextmanager
@@ -180,7 +180,7 @@ def quiet(state: Path) -> Iterator[None]:
     logger.propagate = False
     try:
         with warnings.catch_warnings():
-            # nbgrader 0.9 is written for an older SQLAlchemy, which had not much to say.
+            # nbgrader 0.9 was written for an older SQLAlchemy, which gave few warnings.
             warnings.simplefilter("ignore")
             yield
     finally:

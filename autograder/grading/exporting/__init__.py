@@ -1,1 +1,1 @@
-"""Out of a class again: points in the forms that learning management systems take, and feedback as one zip."""
+"""Exports from a class: points in the formats of learning management systems, and feedback as one zip."""

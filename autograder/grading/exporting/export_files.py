@@ -1,4 +1,4 @@
-"""Writing what goes back to an LMS into the class's folder ``export``."""
+"""Writes the files for an LMS into the class's folder ``export``."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class Exported:
     """The files that were written.
 
     Attributes:
-        files: Each file, and what it is for.
-        notices: Sentences that are worth reading before the upload.
+        files: Each file, and its purpose.
+        notices: Sentences that the instructor should read before the upload.
     """
 
     files: tuple[tuple[Path, str], ...]
@@ -44,25 +44,25 @@ def export(
     columns: Mapping[str, str] | None = None,
     sections: Sequence[str] = (),
 ) -> Exported:
-    """Write points and feedback in the form of an LMS.
+    """Write points and feedback in the format of an LMS.
 
     Args:
         path: The class directory.
         to: A system of :data:`LAYOUTS`, ``ilias``, ``csv`` or ``xlsx``.
-        assignments: Only these; all that somebody has handed in by default.
+        assignments: The assignments to export; all that at least one student has handed in by default.
         into: A list that the LMS has exported, to be filled in.
         folder: The folder to write into; ``export`` in the class by default.
         absent_zero: Write zero for students who have handed in nothing; otherwise nothing is written.
-        columns: The name of an assignment's column in ``into``, where that is not the assignment's name.
-        sections: Only the students of these; all where empty.
+        columns: The names of assignments' columns in ``into``, if they differ from the assignments' names.
+        sections: Only the students of these sections; all students if empty.
 
     Raises:
-        GradingError: There is nothing to export, a run is at work, or the list cannot be filled in or is not named.
+        GradingError: There is nothing to export, a run is in progress, or the list cannot be filled in or is missing.
     """
     if columns and not into:
         raise GradingError("--column names a column of --into: name that list, too, or leave --column out.")
     directory = ClassDirectory(path)
-    # While a run is at work, grades that were taken back look as if nobody had earned them.
+    # During a run, grades that were taken back look like zero points.
     with directory.lock():
         table = read_table(directory, sections)
         table = replace(table, absent=0.0) if absent_zero else table
@@ -81,7 +81,7 @@ def export(
             written.append((folder / name, purpose))
     notices += [f"{one.label} waits, so no points come from it: {one.sentence}" for one in table.unplaced]
     notices += [
-        f"{name} is left out of everybody's points: {reason}" for name, reason in table.unusable.items()
+        f"{name} is left out of all students' points: {reason}" for name, reason in table.unusable.items()
     ]
     notices += table.notices
     if table.waiting:
@@ -163,7 +163,9 @@ def _filled(
         raise GradingError(f"{into} cannot be read: {error}") from error
     filled, strangers, doubtful, kind = lms_gradebooks.filled_in(data, to, table, assignments, columns)
     if strangers:
-        notices.append(f"nobody in the class is called {', '.join(strangers)}: their lines stay as they were")
+        notices.append(
+            f"no student in the class is called {', '.join(strangers)}: their lines stay as they were"
+        )
     if doubtful:
         sure = " or ".join(kind.sure)
         notices.append(

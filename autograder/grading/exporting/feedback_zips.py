@@ -1,4 +1,4 @@
-"""Feedback as one zip in the form in which an LMS takes files back: each page under the name of what it answers.
+"""Feedback as one zip in the format that an LMS reads: each page has the name of the file that it answers.
 
 Moodle (*Upload multiple feedback files in a zip*) takes a page by the folder ``<name>_<number>_assignsubmission_file``;
 Canvas (*Upload submissions*) by the numbers of student and file in the name that it gave the file; Brightspace, Sakai
@@ -28,27 +28,27 @@ WAYS = {
     "sakai": "Upload All, Feedback Attachment(s)",
     "ilias": "Multi-Feedback",
 }
-"""Where each system takes the zip."""
+"""The page of each system for uploading the zip."""
 _WITHIN = {"sakai": "Feedback Attachment(s)/"}
-"""The folder for feedback in the student's own."""
+"""The folder for feedback inside the student's folder."""
 _MADE = (2000, 1, 1, 0, 0, 0)
 
 
 def feedback_zip(
     directory: ClassDirectory, table: ClassTable, records: CollectedRecords, assignment: str, lms: str
 ) -> tuple[bytes, list[str]]:
-    """The pages of one assignment.
+    """Return the pages of one assignment as a zip.
 
     Args:
         directory: The class.
-        table: The same.
-        records: The record of what was collected.
+        table: The table of this class.
+        records: The records of what was collected.
         assignment: The assignment's name.
         lms: One of :data:`WAYS`.
 
     Returns:
-        The zip, empty where there is no page for it, and the students who have a page but whose name in that LMS is not
-        known.
+        The zip, empty if it would contain no page, and the students who have a page but whose name in that LMS is
+        unknown.
     """
     data = io.BytesIO()
     unknown = []
@@ -66,15 +66,15 @@ def feedback_zip(
                     called = _moodle(table.roster.students[student].name or student, there.number, page.name)
                 else:
                     called = _called(there.file, lms, page, is_one=len(pages) == 1)
-                # The same class gives the same zip: no time of this machine is in it.
+                # The same class gives the same zip: it contains no time of this machine.
                 archive.writestr(zipfile.ZipInfo(called, _MADE), page.read_bytes(), zipfile.ZIP_DEFLATED)
     return (data.getvalue() if archive.namelist() else b""), unknown
 
 
 def _called(file: str, lms: str, page: PurePath, *, is_one: bool) -> str:
-    """The name of a page for a system, by the name that it gave to the student's file or folder.
+    """Return the name of a page for a system, from the name that it gave to the student's file or folder.
 
-    Of a zip that was unpacked that is the folder's name: what is in it, the student has named.
+    From an unpacked zip that is the folder's name, because the student chose the names inside it.
     """
     parts = PurePosixPath(file).parts
     place, found = next(

@@ -1,10 +1,11 @@
-"""The files in which systems take points for a whole gradebook: one row of a table for each system.
+"""The file formats of gradebooks for import into learning management systems, one table row each.
 
 Canvas reads ``Student, ID, SIS User ID, SIS Login ID, Section``, then a column for each assignment, and in the second
 line the points possible (https://community.canvaslms.com, "How do I import grades in the Gradebook?"). Moodle's
-gradebook reads any columns, of which one names the student (https://docs.moodle.org, "Grade import"). Brightspace reads
-``OrgDefinedId`` or ``Username``, ``… Points Grade`` and a mark at the end (https://community.d2l.com, "Importing
-grades"). Gradescope imports none: programs for its lists read this form. Blackboard's and Sakai's are from memory.
+gradebook reads any columns, of which one identifies the student (https://docs.moodle.org, "Grade import").
+Brightspace reads ``OrgDefinedId`` or ``Username``, ``… Points Grade`` and a mark at the end
+(https://community.d2l.com, "Importing grades"). Gradescope imports no grades, but programs for its lists read this
+format. The formats of Blackboard and Sakai are from memory.
 """
 
 from __future__ import annotations
@@ -23,17 +24,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Layout:
-    """The gradebook file of one system.
+    """The format of one system's gradebook file.
 
     Attributes:
-        purpose: Where it is uploaded.
-        columns: The names of the columns before the points, with what each has of a student: a name of
-            :func:`_facts`, or nothing.
-        points: The name of the column of an assignment, by its name and most points.
-        most: The name of a second column with the most points; empty for none.
-        possible: What the line with the most points begins with; empty if there is no such line.
+        purpose: The page of the system for uploading the file.
+        columns: The names of the columns before the points, each with the name of its content in :func:`_facts`, or
+            nothing.
+        points: The name of an assignment's column, made from the assignment's name and its most points.
+        most: The name of a second column for the most points; empty for none.
+        possible: The first cell of the line with the most points; empty if there is no such line.
         excused: The word that the system reads as excused.
-        end: Columns behind the points, with what each has.
+        end: Columns after the points, each with its content.
     """
 
     purpose: str
@@ -81,14 +82,14 @@ LAYOUTS = {
 
 
 def known_there(records: CollectedRecords, assignment: str, student: str, lms: str) -> Collected | None:
-    """The name of a student in the LMS from which work was collected; None if it came another way."""
+    """Return a student's name in the LMS from which work was collected; None if it came another way."""
     history = records.get(assignment, student)
     found = [one for one in history.now.values() if one.lms == lms] if history else []
     return found[-1] if found else None
 
 
 def gradebook(lms: str, table: ClassTable, records: CollectedRecords, assignments: Sequence[str]) -> str:
-    """The file that the gradebook of a system takes."""
+    """Return the file for the gradebook of a system."""
     layout = LAYOUTS[lms]
     header: list[str | float] = [*layout.columns]
     possible: list[str | float] = [layout.possible, *[""] * (len(layout.columns) - 1)]
@@ -111,7 +112,7 @@ def gradebook(lms: str, table: ClassTable, records: CollectedRecords, assignment
 def _facts(
     table: ClassTable, records: CollectedRecords, id_: str, lms: str, assignments: Sequence[str]
 ) -> dict[str, str]:
-    """What a file may have of a student; ``there`` and ``user`` are what the system itself calls the student."""
+    """Return what a file may contain about a student; ``there`` and ``user`` are the names from the system itself."""
     student = table.roster.students[id_]
     own = student.lms.get(lms, "")
     is_asked = {"there", "user"} & set(LAYOUTS[lms].columns.values())

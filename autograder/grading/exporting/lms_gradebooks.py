@@ -1,6 +1,6 @@
-"""Moodle's grading worksheet, and lists of systems that are filled in.
+"""Moodle's grading worksheet, and lists exported by systems, to be filled in with points.
 
-Moodle's assignment reads its worksheet by ``Identifier``, ``Grade`` and ``Last modified (grade)``.
+Moodle's assignment reads the columns ``Identifier``, ``Grade`` and ``Last modified (grade)`` of its worksheet.
 """
 
 from __future__ import annotations
@@ -39,10 +39,10 @@ MOODLE_WORKSHEET = (
 
 
 def moodle_worksheet(table: ClassTable, records: CollectedRecords, assignment: str) -> tuple[str, list[str]]:
-    """The grading worksheet of one assignment, and the students whose number there is not known.
+    """Return the grading worksheet of one assignment, and the students whose participant number is unknown.
 
-    The worksheet is empty where it would give points to nobody. A participant's number is Moodle's for one student and
-    one assignment, so that only work that was collected from there says it.
+    The worksheet is empty if it would give points to no student. Moodle gives each student another number in each
+    assignment, so only work that was collected from there contains the number.
     """
     rows: list[list[str | float]] = [list(MOODLE_WORKSHEET)]
     unknown = []
@@ -61,14 +61,14 @@ def moodle_worksheet(table: ClassTable, records: CollectedRecords, assignment: s
 
 
 class List(NamedTuple):
-    """A list of an LMS's own that can be filled in.
+    """A list exported by an LMS that can be filled in.
 
     Attributes:
-        lms: The system that exports it.
-        has: The columns by which it is known.
-        sure: Those that name one student, the surest first.
-        called: Those in which people name themselves.
-        numbered: The first of the sure ones has numbers that this LMS gives, and nobody else knows.
+        lms: The system that exports the list.
+        has: The columns by which the list is recognized.
+        sure: The columns that identify a student, the most certain first.
+        called: The columns in which users name themselves.
+        numbered: True if the first of the sure columns has numbers of the LMS that no other system knows.
         points: The column for the points, if the list is of one assignment; empty if each assignment has a column.
     """
 
@@ -108,24 +108,24 @@ _LISTS = (
 def filled_in(
     data: bytes, lms: str, table: ClassTable, assignments: Sequence[str], columns: Mapping[str, str]
 ) -> tuple[bytes, list[str], list[str], List]:
-    """A list of the LMS's own with the points filled in; everything else in it stays as it is.
+    """Fill the points into a list from the LMS, and leave everything else in it unchanged.
 
-    So do points that somebody has given there, where the class has none.
+    Points already in the list stay if the class has none for the student.
 
     Args:
-        data: Moodle's grading worksheet, or a gradebook that another system has exported.
-        lms: The system that the instructor says it is of.
+        data: Moodle's grading worksheet, or a gradebook that another system exported.
+        lms: The system, as the instructor named it.
         table: The class.
-        assignments: The assignments to fill in; for a worksheet, one.
-        columns: The name of an assignment's column there, where that is not the assignment's name.
+        assignments: The assignments to fill in; exactly one for a worksheet.
+        columns: The names of assignments' columns in the list, if they differ from the assignments' names.
 
     Returns:
-        The list, the lines in it that name no student of the class, the lines that may name a student whom another
-        line names as well or better (in an LMS, people name themselves), and which list it is.
+        The list; the lines that match no student of the class; the lines that may mean a student for whom another
+        line is at least as good (in an LMS, users name themselves); and the kind of list.
 
     Raises:
-        GradingError: It cannot be read, is none of these or of another system, or has no column for an assignment that
-            takes points.
+        GradingError: The list cannot be read, is of no known kind or of another system, or has no column for an
+            assignment that takes points.
     """
     try:
         text = data.decode("utf-8-sig")
@@ -134,7 +134,7 @@ def filled_in(
         rows = list(csv.reader(io.StringIO(text), delimiter=delimiter))
     except (UnicodeDecodeError, csv.Error) as error:
         raise GradingError(
-            f"The list is no CSV in UTF-8 ({error}). Download it from the LMS again and leave it as it is."
+            f"The list is not CSV in UTF-8 ({error}). Download it from the LMS again and do not change it."
         ) from error
     header = [name.strip() for name in rows[0]] if rows else []
     kind = next((one for one in _LISTS if one.has <= set(header)), None)
@@ -184,7 +184,7 @@ def filled_in(
 
 
 class _Meant(NamedTuple):
-    """A line of the list that is somebody's: how weak the reason for that is, what it calls them, its cells."""
+    """A line that matches a student: how weak the match is, the student's name in the line, and the line's cells."""
 
     weakness: int
     called: str
@@ -192,7 +192,7 @@ class _Meant(NamedTuple):
 
 
 def _told_apart(meant: Mapping[str, Sequence[_Meant]]) -> tuple[dict[str, list[str]], list[str]]:
-    """The line of each student, and the names in other lines that may be theirs."""
+    """Return the line of each student, and the names in other lines that may mean the same student."""
     certain: dict[str, list[str]] = {}
     doubtful: list[str] = []
     for student, lines in meant.items():
@@ -206,7 +206,7 @@ def _told_apart(meant: Mapping[str, Sequence[_Meant]]) -> tuple[dict[str, list[s
 
 
 _KINDS = ("number", "login", "name")
-"""What a value may be of a student's, the surest first."""
+"""The kinds of value that may identify a student, the most certain first."""
 
 
 def _open_columns(header: Sequence[str], rows: Sequence[Sequence[str]], kind: List) -> list[int]:
@@ -250,7 +250,7 @@ def _column(header: Sequence[str], open_columns: Sequence[int], assignment: str,
 
 
 def _without_number(name: str) -> str:
-    """Return the name of a column without what Canvas, Brightspace, Blackboard or Sakai write behind it."""
+    """Return a column's name without the suffix of Canvas, Brightspace, Blackboard or Sakai."""
     return re2.sub(r"(?: \([^()]*\)| Points Grade.*| \[[^\]]*\](?: \|\d+)?)$", "", name)
 
 
@@ -276,10 +276,10 @@ def _check_one_each(places: Mapping[str, int], header: Sequence[str]) -> None:
 
 
 def _who(table: ClassTable, kind: List, values: Sequence[str]) -> tuple[Student, int] | None:
-    """The student of a line, and the place of the value that says so: those that say it best come first."""
+    """Return the student of a line, and the rank of the value that matched; a low rank is a strong match."""
     columns: list[tuple[str, tuple[str, ...]]] = [(value, _KINDS) for value in values]
     if kind.numbered:
-        # A number of the LMS's own may be somebody else's id in the class: as one it is asked last.
+        # A number of the LMS may be another student's id in the class, so it is compared with ids last.
         columns = [(values[0], _KINDS[:1]), *columns[1:], (values[0], _KINDS[1:])]
     for place, (value, kinds) in enumerate(columns):
         for way in kinds if value else ():

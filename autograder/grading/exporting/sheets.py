@@ -1,4 +1,4 @@
-"""The table for a spreadsheet: a line for each student, and behind it a line for each exercise."""
+"""The table for a spreadsheet: a line for each student, then a line for each exercise."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Cells = list[str | float]
 
 
 def student_rows(table: ClassTable, assignments: Sequence[str]) -> list[Cells]:
-    """The columns' names, then a line for each student."""
+    """Return the column names, then a line for each student."""
     who = ["student", "first_name", "last_name", "email"]
     rows: list[Cells] = [
         [*who, *assignments, "total", "max", "late_penalty", "waits_for_a_person", "excused", "dropped"]
@@ -45,16 +45,16 @@ def student_rows(table: ClassTable, assignments: Sequence[str]) -> list[Cells]:
 
 
 def as_csv(table: ClassTable, assignments: Sequence[str]) -> bytes:
-    """A line for each student, as CSV that Excel knows for UTF-8."""
+    """Return a line for each student as CSV, with the mark by which Excel recognizes UTF-8."""
     return csv_text(student_rows(table, assignments)).encode("utf-8-sig")
 
 
 def as_xlsx(table: ClassTable, assignments: Sequence[str]) -> bytes:
-    """A workbook with two sheets: students, and exercises."""
+    """Return a workbook with two sheets: students, and exercises."""
     exercises: list[Cells] = [list(COLUMNS)]
     exercises += [list(csv_cells(row)) for row in table.rows if row.assignment in assignments]
     data = io.BytesIO()
-    # Nothing that a student or an LMS wrote becomes a formula, a link or a number.
+    # Text from a student or an LMS never becomes a formula, a link or a number.
     options = {
         "in_memory": True,
         "strings_to_formulas": False,

@@ -1,4 +1,4 @@
-"""One value that changes whenever something changes that may decide a grade."""
+"""A hash that changes whenever anything changes that may decide a grade."""
 
 from __future__ import annotations
 
@@ -16,22 +16,23 @@ if TYPE_CHECKING:
 
 _MADE_BY_PYTHON = "__pycache__"
 _MADE_BY_COLCON = frozenset({"build", "install", "log"})
-"""Folders of what is made from the files that count; colcon's are beside the folder ``src`` of a workspace."""
+"""Folders that are generated from the files that count; colcon makes its folders next to a workspace's ``src``."""
 _OF_CHAPTERS = (f"*/{course.CHAPTER}", "*/*/*.py", f"*/*/*{REFERENCE}")
 """The files of the chapters that count: their descriptions, the exercises and their reference outputs."""
 
 
 @functools.cache
 def course_version() -> str:
-    """A hash of everything of the course that runs and judges submissions, as hexadecimal digits.
+    """Return a hash of everything in the course that runs and judges submissions, as hexadecimal digits.
 
-    A release number would not do: after an exercise is fixed, yesterday's results must not be reused. A result is
-    kept under it, a graded submission is looked at again when it changes, and a cluster's machines must agree on it.
+    A release number is not enough: after an exercise is fixed, yesterday's results must not be reused. Results are
+    stored under this hash, a graded submission is checked again when it changes, and all machines of a cluster must
+    have the same one.
 
-    Every file of the package and of the environment counts, also those of which one would say that no grade depends on
-    them: such a list would be wrong one day. Of ``solutions/`` the exercises, their reference outputs, the chapters'
-    interfaces and the workspace count. The masters do not: a class has its own copy in ``source/``, which is looked at
-    there.
+    Every file of the package and of the environment counts, even one that seems to decide no grade: a list of
+    exceptions would be wrong one day. In ``solutions/`` the exercises, their reference outputs, the chapters'
+    interfaces and the workspace count. The masters do not: a class has its own copy in ``source/``, and that copy is
+    compared.
     """
     digest = hashlib.sha256()
     for name, path in counted_files():
@@ -42,7 +43,7 @@ def course_version() -> str:
 
 
 def counted_files() -> Iterator[tuple[str, Path]]:
-    """The files that count, always in the same order, each with a name that is the same on every machine."""
+    """Yield the files that count, always in the same order, with names that are the same on every machine."""
     root, package = course.root(), Path(course.__file__).parent
     solutions = root / "solutions"
     of_chapters = (*solutions.glob("*ws"), *solutions.glob(f"*/{course.INTERFACES}"))

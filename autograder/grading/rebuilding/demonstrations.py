@@ -1,12 +1,12 @@
-"""Cells that only show something: left out while a class is graded, because no grade can depend on them.
+"""Cells that only show something: they are skipped while a class is graded, because no grade depends on them.
 
-A chapter shows the ``ros2`` command at work in some forty cells. Each starts processes that take half a second, and all
-of them together take longer than everything that a student wrote and the judge looks at. A check runs its subject on a
-domain of its own, so that nothing of such a cell reaches it.
+A chapter shows the ``ros2`` command in some forty cells. Each starts processes that take half a second, and together
+they take longer than all student code and checks. A check runs its subject in a ROS domain of its own, so such a cell
+cannot affect it.
 
-The master says which they are, by a tag. A cell that makes something, such as ``colcon build``, is
-none, unless it stands below the last cell that earns points. There a notebook has its nodes written into a package,
-built and run as programs, which its reader sees and no check looks at: its files and terminals are left out.
+The master marks these cells with a tag. A cell that makes something, such as ``colcon build``, is not a
+demonstration, unless it is below the last cell with points. There a notebook writes its nodes into a package and
+builds and runs them as programs, for its reader and for no check: its files and terminals are skipped.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ def is_demonstration(cell: NotebookNode) -> bool:
     """True if a cell of a rebuilt notebook only shows something.
 
     Args:
-        cell: Of a rebuilt notebook, in which only the master's own cells carry nbgrader's marks.
+        cell: A cell of a rebuilt notebook, in which only the master's own cells have nbgrader's marks.
     """
     given = cell.cell_type == CellType.CODE and is_the_masters(cell) and not _marks(cell).get("grade")
     return given and CellRole.DEMONSTRATION in cell.metadata.get("tags", ())
 
 
 def demonstrations_of(notebook: NotebookNode) -> frozenset[int]:
-    """The places of the cells that no grade depends on.
+    """Return the indexes of the cells on which no grade depends.
 
     Args:
         notebook: A rebuilt notebook.

@@ -1,7 +1,7 @@
-"""Fingerprints of submissions, by which a run knows those that have not changed, from their bytes alone.
+"""Fingerprints of submissions, from their bytes alone; a run uses them to find submissions that have not changed.
 
-Rebuilding a notebook says it more exactly, but a class of a hundred students has a thousand notebooks, and most runs
-find nothing new. What differs here is looked at again, cell by cell.
+Rebuilding a notebook would be more exact, but a class of a hundred students has a thousand notebooks, and in most
+runs few are new. A submission whose fingerprint differs is compared again, cell by cell.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Fingerprints:
-    """The fingerprints of one class as it is now.
+    """Computes the fingerprints of one class in its present state.
 
     Args:
         directory: The class.
@@ -34,7 +34,7 @@ class Fingerprints:
         self._directory = directory
 
     def of(self, submission: Submission) -> str:
-        """Changes with the submission and with everything that its grade, notebook and page are made from."""
+        """Return a hash of the submission and everything from which its grade, notebook and page are made."""
         files = [submission.folder / f"{name}{SUFFIX}" for name in self._notebooks(submission.assignment)]
         return _digest(
             [
@@ -48,7 +48,7 @@ class Fingerprints:
 
     @functools.cache  # noqa: B019  (lives as long as one batch)
     def of_sources(self, assignment: str) -> str:
-        """Changes with an assignment's sources, with the class's configuration and with the code."""
+        """Return a hash of an assignment's sources, the class's configuration and the code."""
         folder = self._directory.path / "source" / assignment
         files = sorted(path for path in folder.rglob("*") if path.is_file())
         return _digest(
@@ -66,12 +66,12 @@ class Fingerprints:
 
 
 def _trusted(path: Path) -> str:
-    """A hash of a file of the class itself, which may be a link or have a second name."""
+    """Return a hash of one of the class's own files, which may be a link or have a second name."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def _content(path: Path) -> str:
-    """A hash of a file that was handed in, or of the reason why it cannot be read."""
+    """Return a hash of a submitted file, or of the reason why it cannot be read."""
     try:
         return hashlib.sha256(read_bytes(path)).hexdigest()
     except UnreadableSubmission as error:

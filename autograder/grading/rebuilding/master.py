@@ -28,18 +28,18 @@ if TYPE_CHECKING:
 
 
 def read_master(source: Path, config: Config) -> NotebookNode:
-    """The notebook as ``nbgrader generate_assignment`` enters it into the gradebook.
+    """Return the notebook as ``nbgrader generate_assignment`` enters it into the gradebook.
 
-    The master is derived from the source, not read from ``release/``: it contains hidden tests but no solutions. It is
-    shared by all who ask for it, because a copy for each submission would take as long as reading it: copy what you
-    change.
+    The master is made from the source, not read from ``release/``: it has hidden tests but no solutions. All callers
+    share one object, because copying it for each submission would take as long as reading it. A caller that changes
+    it must copy it first.
 
     Args:
         source: The notebook in the class's ``source`` folder.
         config: The class's nbgrader configuration.
 
     Raises:
-        MasterUnusable: The file is not a notebook, two cells have one name, or a check cell names no exercise.
+        MasterUnusable: The file is not a notebook, two cells have the same name, or a check cell names no exercise.
     """
     try:
         data = source.read_bytes()
@@ -52,7 +52,7 @@ def read_master(source: Path, config: Config) -> NotebookNode:
 def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
     try:
         notebook = nodes.read(data.decode())
-    except Exception as error:  # nbformat raises what its JSON and schema libraries raise
+    except Exception as error:  # nbformat raises the errors of its JSON and schema libraries
         raise MasterUnusable(
             f"{source} is not a notebook: {error}. Make it again or put back a copy."
         ) from error
@@ -74,7 +74,7 @@ def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
 
 
 def _rubrics(source: NotebookNode) -> dict[str, dict[str, Any]]:
-    """The model answers and rules for points of the questions that a person grades, with pictures, by grade_id."""
+    """Return the model answers and grading rules of the questions that a person grades, with pictures, by grade_id."""
     found = {}
     for cell in source.cells:
         if cell.cell_type == "markdown" and is_answer(cell):
@@ -86,7 +86,7 @@ def _rubrics(source: NotebookNode) -> dict[str, dict[str, Any]]:
 
 
 def _given_part(source: str) -> str:
-    """The lines of a source's cell outside of its solution; empty where nbgrader replaces the whole cell."""
+    """Return the lines of a source's cell outside its solution; empty if nbgrader replaces the whole cell."""
     lines = source.splitlines()
     begin = next((place for place, line in enumerate(lines) if "BEGIN SOLUTION" in line), len(lines))
     end = next((place for place, line in enumerate(lines) if "END SOLUTION" in line), 0)
@@ -94,10 +94,10 @@ def _given_part(source: str) -> str:
 
 
 def check_of(cell: NotebookNode) -> Check | None:
-    """The check of a master's cell, or None for a cell without an automatic grade.
+    """Return the check of a master's cell, or None if the cell is not graded automatically.
 
     Raises:
-        LookupError: It asks the judge, but no exercise has its name.
+        LookupError: The cell asks the judge, but no exercise has its name.
     """
     if not is_check(cell):
         return None
@@ -120,11 +120,11 @@ def exercise_of(name: str) -> str:
 
 
 def _asks_the_judge(source: str) -> bool:
-    """True if a graded cell calls ``check`` with an exercise, so that no test of its own can decide."""
+    """True if a graded cell calls ``check`` with an exercise; then the cell's own tests do not decide."""
     try:
         tree = ast.parse(source)
     except SyntaxError:
-        return "check(" in source  # it has a magic
+        return "check(" in source  # a magic makes the cell invalid Python
     return any(
         isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "check"
         for node in ast.walk(tree)
@@ -148,7 +148,7 @@ def _check_cells(source: Path, notebook: NotebookNode) -> None:
 
 
 def _steps(config: Config) -> tuple[str, ...]:
-    """The steps that a source notebook takes before it is entered into the gradebook."""
+    """The steps that a source notebook goes through before it is entered into the gradebook."""
     configured = GenerateAssignment(
         config=Config({"GenerateAssignment": config.GenerateAssignment})
     ).preprocessors

@@ -1,4 +1,4 @@
-"""Which cell of the master each submitted cell is, even if an editor has dropped the marks by which nbgrader knows it.
+"""Matches submitted cells with cells of the master, even if an editor has dropped nbgrader's marks.
 
 A cell is recognized by its grade_id, else by its id, else by its text. If an answer has no such cell, it is looked for
 in the student's other cells, by what they define. All of this decides only which text of a student answers which cell:
@@ -28,15 +28,15 @@ _WRITES = re2.compile(r"\A\s*%%(?:writefile|program)[ \t]+(?:-a[ \t]+|--append[ 
 
 @dataclass(frozen=True)
 class Known:
-    """A cell of the master, with everything by which a submitted cell is recognized as this one.
+    """A cell of the master, with everything that identifies a submitted cell as this one.
 
     Attributes:
-        name: Its grade_id, empty for a text cell that nbgrader does not know.
+        name: The grade_id; empty for a text cell that nbgrader does not know.
         kind: Its type.
-        identifier: The id that the cell has in the released notebook.
-        texts: Its text as the master and the released notebook have it.
-        is_answer: Whether students write it.
-        given: The part of an answer's text that students are given, such as the question above the answer.
+        identifier: The cell's id in the released notebook.
+        texts: The cell's text in the master and in the released notebook.
+        is_answer: True if students write it.
+        given: The part of an answer's text that students receive, such as the question above the answer.
     """
 
     name: str
@@ -49,13 +49,13 @@ class Known:
 
 @dataclass(frozen=True)
 class Matches:
-    """The submitted cells, by the master's cells that they are.
+    """The submitted cells, grouped by the master's cells that they match.
 
     Attributes:
-        places: The places of the submitted cells that each of the master's cells has, by grade_id.
-        unmarked: The places of those that had lost their grade_id.
-        elsewhere: For answers without such a cell, the places of cells that define the same or write the same file.
-        own: The places of all cells that are none of the master's, and in which a student has written something.
+        places: The indexes of the submitted cells that match each of the master's cells, by grade_id.
+        unmarked: The indexes of the cells that had lost their grade_id.
+        elsewhere: For unmatched answers, the indexes of cells that define the same names or write the same file.
+        own: The indexes of the cells that match no cell of the master and contain a student's text.
     """
 
     places: Mapping[str, Sequence[int]]
@@ -65,7 +65,7 @@ class Matches:
 
 
 def match(master: Sequence[Known], submitted: Sequence[SubmittedCell]) -> Matches:
-    """Recognize the submitted cells.
+    """Match the submitted cells.
 
     Args:
         master: The master's cells, in their order.
@@ -83,7 +83,7 @@ def match(master: Sequence[Known], submitted: Sequence[SubmittedCell]) -> Matche
 
 
 def normalized(text: str) -> str:
-    """A text without what editors change by themselves: blanks at the ends of lines, empty lines around it."""
+    """Return a text without what editors change by themselves: blanks at line ends, empty lines around it."""
     return "\n".join(line.rstrip() for line in text.strip().splitlines())
 
 
@@ -95,7 +95,7 @@ class _Matching:
         self.written = {
             place for place, cell in enumerate(submitted) if normalized(cell.source) not in handed_out
         }
-        """The places of the cells in which a student has written something."""
+        """The indexes of the cells that contain a student's text."""
         self.unmarked: set[int] = set()
         self.places: dict[str, list[int]] = {}
         for place, cell in enumerate(submitted):
@@ -103,13 +103,13 @@ class _Matching:
                 self.places.setdefault(cell.grade_id, []).append(place)
 
     def by_id(self) -> None:
-        """Take cells without a known grade_id for the missing cells of the same id."""
+        """Match cells without a known grade_id by the cell id."""
         names = {cell.identifier: cell.name for cell in self._missing() if cell.identifier}
         for place, cell in self._left():
             self._take(names.get(cell.identifier, ""), place)
 
     def by_text(self) -> None:
-        """Take cells for the missing cells of exactly the same text; of several, the first for the first."""
+        """Match cells by exactly the same text; of several, the first with the first."""
         names: dict[str, list[str]] = {}
         for missing in self._missing():
             for text in {normalized(text) for text in missing.texts} - {""}:
@@ -119,7 +119,7 @@ class _Matching:
             self._take(next((name for name in same if name not in self.places), ""), place)
 
     def by_given_part(self) -> None:
-        """Take cells for missing answers that define nothing, such as texts, if the given part is in them alone."""
+        """Match missing answers that define nothing, such as texts, if only one cell contains the given part."""
         for missing in self._missing():
             if not missing.is_answer or _defines(missing) or not self._is_telling(missing):
                 continue
@@ -128,9 +128,9 @@ class _Matching:
                     self._take(missing.name, place)
 
     def elsewhere(self) -> dict[str, list[int]]:
-        """Find the cells that define what missing answers were to define.
+        """Find the cells that define what missing answers should define.
 
-        A given cell into which an answer was merged is the student's own from now on: the original is put back.
+        A given cell into which an answer was merged becomes the student's own; the original is put back.
         """
         code = {
             place: cell.source
@@ -171,7 +171,7 @@ class _Matching:
 
 
 def _defines(answer: Known) -> str:
-    """What a stub defines: the path of the file that it writes, else a pattern for its names; empty for neither."""
+    """Return what a stub defines: the path of the file that it writes, else a pattern for its names, else nothing."""
     return _file(answer.texts[0]) or (_names(answer.texts[0]) if answer.kind is CellType.CODE else "")
 
 
@@ -197,7 +197,7 @@ def _file(source: str) -> str:
 
 @functools.lru_cache(maxsize=1024)
 def _names(stub: str) -> str:
-    """A pattern for texts that define a name that a stub defines; empty if the stub defines none."""
+    """Return a pattern for texts that define one of the stub's names; empty if the stub defines none."""
     names = "|".join(map(re2.escape, _defined_names(stub)))
     return (
         rf"(?m)^(?:(?:async[ \t]+)?def|class)[ \t]+(?:{names})\b"
@@ -214,7 +214,7 @@ def _defined_names(stub: str) -> list[str]:
     try:
         body = ast.parse(python_of(stub)).body
     except SyntaxError:
-        return []  # an instructor's own stub, with a magic in it
+        return []  # an instructor's own stub that contains a magic
     names = []
     for node in body:
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):

@@ -1,4 +1,4 @@
-"""The named cells of all notebooks of a class: by them a notebook says which one it is, whatever its file is called."""
+"""The named cells of all notebooks of a class: they identify a notebook, whatever its file name is."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Target = tuple[str, str]
 
 
 class NamedCells:
-    """The named cells of the sources of a class, read when the first question is asked.
+    """The named cells of a class's sources, read at the first use.
 
     Args:
         sources: The file of each notebook.
@@ -29,14 +29,14 @@ class NamedCells:
     def __init__(self, sources: dict[Target, Path]) -> None:
         self._paths = sources
         self.notes: list[str] = []
-        """A sentence on each source that cannot be read."""
+        """A sentence about each source that cannot be read."""
 
     def closest(self, names: Collection[str], assignment: str = "") -> list[Target]:
-        """The notebooks that have most of these names; none if they have none of them.
+        """Return the notebooks that have most of these names; empty if none has any.
 
         Args:
             names: The names of cells.
-            assignment: Only notebooks of this one; of all by default.
+            assignment: Only notebooks of this assignment; of all by default.
         """
         shared = {
             target: len({cell.grade_id for cell in cells if cell.grade_id} & set(names))
@@ -47,13 +47,13 @@ class NamedCells:
         return [target for target, count in shared.items() if most and count == most]
 
     def assignments(self, cells: Iterable[SubmittedCell]) -> list[str]:
-        """The assignments whose graded cells are among these; without its name, a cell may still have its id."""
+        """Return the assignments whose graded cells are among these; a cell without its name may still have its id."""
         marks = {mark for cell in cells for mark in _marks(cell)}
         return sorted({self._graded[mark] for mark in marks & self._graded.keys()})
 
     @functools.cached_property
     def _graded(self) -> dict[str, str]:
-        """The assignments, by what tells a graded cell of theirs from those of all other assignments."""
+        """The assignments by the marks of graded cells that no other assignment has."""
         cells = [(assignment, cell) for (assignment, _), own in self._sources.items() for cell in own]
         often = Counter(
             mark for mark, _ in {(mark, assignment) for assignment, cell in cells for mark in _marks(cell)}
@@ -68,7 +68,7 @@ class NamedCells:
 
     @functools.cached_property
     def _sources(self) -> dict[Target, list[SubmittedCell]]:
-        """The cells of each notebook; none of what cannot be read."""
+        """The cells of each notebook; empty for a notebook that cannot be read."""
         found: dict[Target, list[SubmittedCell]] = {}
         for target, path in self._paths.items():
             try:
@@ -82,5 +82,5 @@ class NamedCells:
 
 
 def _marks(cell: SubmittedCell) -> set[str]:
-    """The marks by which a cell is told from others: its name and its id."""
+    """Return the marks that distinguish a cell from others: its name and its id."""
     return {f"{kind} {mark}" for kind, mark in (("name", cell.grade_id), ("id", cell.identifier)) if mark}

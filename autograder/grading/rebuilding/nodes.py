@@ -1,4 +1,4 @@
-"""nbformat's constructors with types: the library itself has none."""
+"""nbformat's constructors with types, which the library itself lacks."""
 
 from __future__ import annotations
 
@@ -41,17 +41,17 @@ _OUTPUT: Any = _Stream | _Display | _Result | _Error
 
 
 def notebook(cells: list[NotebookNode], metadata: dict[str, Any]) -> NotebookNode:
-    """A notebook of format 4.5, not validated: its cells come from the master, or from :func:`cell`."""
+    """Return a notebook of format 4.5 without validation: its cells come from the master, or from :func:`cell`."""
     return NotebookNode(metadata=_node(metadata), nbformat=4, nbformat_minor=5, cells=cells)
 
 
 def cell(kind: CellType, source: str, identifier: str = "") -> NotebookNode:
-    """A cell without outputs, and without nbformat's validation: it would take longer than all the rest.
+    """Return a cell without outputs, skipping nbformat's validation, which would take longer than everything else.
 
     Args:
         kind: Its type.
         source: Its text.
-        identifier: Its id; drawn at random by default.
+        identifier: The cell's id; random by default.
     """
     made = NotebookNode(
         id=identifier or uuid.uuid4().hex[:8], cell_type=str(kind), metadata=NotebookNode(), source=source
@@ -63,12 +63,12 @@ def cell(kind: CellType, source: str, identifier: str = "") -> NotebookNode:
 
 
 def output(**fields: Any) -> NotebookNode:
-    """An output from its fields as nbformat names them, of the kinds that boxes hand over.
+    """Return an output made of nbformat's fields, of the kinds that the boxes produce.
 
     This check replaces nbformat's, which takes a hundred times as long.
 
     Raises:
-        msgspec.ValidationError: They are not those of an output.
+        msgspec.ValidationError: The fields are not those of an output.
     """
     msgspec.convert(fields, _OUTPUT)
     made: NotebookNode = _node(fields)
@@ -76,20 +76,20 @@ def output(**fields: Any) -> NotebookNode:
 
 
 def read(text: str) -> NotebookNode:
-    """A notebook from its text.
+    """Return a notebook from its JSON text.
 
     Raises:
-        Exception: Whatever nbformat's JSON and schema libraries raise.
+        Exception: Any error of nbformat's JSON and schema libraries.
     """
     read_notebook: NotebookNode = _nbformat.reads(text, as_version=4)
     return read_notebook
 
 
 def read_own(data: bytes) -> NotebookNode:
-    """A notebook of format 4 from its text, without nbformat's validation: we have written it ourselves.
+    """Return a notebook of format 4 without nbformat's validation, because this package wrote it.
 
     Raises:
-        msgspec.DecodeError: It is not JSON.
+        msgspec.DecodeError: The data is not JSON.
     """
     rejoin: Any = rwbase.rejoin_lines
     joined: NotebookNode = rejoin(_node(msgspec.json.decode(data)))
@@ -97,19 +97,19 @@ def read_own(data: bytes) -> NotebookNode:
 
 
 def text(of: NotebookNode) -> str:
-    """The text of a notebook."""
+    """Return the JSON text of a notebook."""
     written: str = _nbformat.writes(of)
     return written
 
 
 def copied(of: NotebookNode) -> NotebookNode:
-    """A copy that shares nothing with the original that can be changed."""
+    """Return a copy that shares no mutable part with the original."""
     made: NotebookNode = _node(of)
     return made
 
 
 def _node(value: Any) -> Any:
-    """Copy JSON values, with each dictionary as a node."""
+    """Copy JSON values, turning each dictionary into a node."""
     if isinstance(value, str):
         return value
     if isinstance(value, dict):

@@ -1,9 +1,9 @@
-"""The notebook that is executed: built from the trusted master, with nothing but text from the submission.
+"""Builds the notebook that is executed from the trusted master, with nothing but text from the submission.
 
-Locked cells and check cells come from the master, in its order. From the submission come the text of the
-solution cells and the student's own cells, which keep their place relative to their neighbours, and the bitmaps that
-these texts show. Everything else that a submission brings (metadata, tags, outputs, ids) is left behind. The other
-figures that its text cells show are the master's, and each of them is there no more often than in the master.
+Locked cells and check cells come from the master, in its order. The submission contributes the text of solution
+cells, the student's own cells, which stay next to their neighbors, and the bitmaps that these texts show. Everything
+else in a submission (metadata, tags, outputs, ids) is dropped. Other figures in its text cells come from the master,
+and each appears no more often than in the master.
 """
 
 from __future__ import annotations
@@ -39,14 +39,13 @@ def rebuild(
     """Build the notebook that is executed and graded from the master and the submitted cells.
 
     Args:
-        master: As it was released: stubs in place of solutions, every cell that matters named by its
-            grade_id.
+        master: The released notebook: stubs instead of solutions, every important cell named by its grade_id.
         submitted: The submission's cells.
-        left_out: The number of cells that could not be read.
-        others: Other assignments of which the submission has graded cells.
+        left_out: The number of submitted cells that could not be read.
+        others: Other assignments whose graded cells are in the submission.
 
     Returns:
-        nbformat 4.5. Its first cell shows what was put right, where anything was; its metadata has that, too.
+        nbformat 4.5. If anything was repaired, the first cell tells it, and so does the metadata.
     """
     sorting = _Sorting(master, submitted)
     remarks = [
@@ -60,15 +59,15 @@ def rebuild(
 
 
 def rebuild_unreadable(master: NotebookNode, problem: str) -> NotebookNode:
-    """The notebook in place of a submission that cannot be read: the master without answers, and the reason."""
+    """Return the notebook for a submission that cannot be read: the master without answers, and the reason."""
     remarks = [f"This submission could not be graded. {problem}"]
     return _finished(master, [nodes.copied(cell) for cell in master.cells], remarks)
 
 
 def is_of_another(master: NotebookNode, submitted: Sequence[SubmittedCell]) -> bool:
-    """True if a notebook was made from another master: most of its named cells are not of this one, and no graded one.
+    """True if the notebook was made from another master: most of its named cells, and all graded ones, are foreign.
 
-    Labs have some cells of the same names. A notebook without any named cell may be anything.
+    Some labs share names of cells. A notebook without named cells may come from any master.
     """
     names = {cell.grade_id for cell in submitted if cell.grade_id}
     ours = {grade_id(cell) for cell in master.cells}
@@ -77,7 +76,7 @@ def is_of_another(master: NotebookNode, submitted: Sequence[SubmittedCell]) -> b
 
 
 class _Sorting:
-    """Finds for each cell of the master the submitted cell that answers it."""
+    """Finds the submitted cell that answers each cell of the master."""
 
     def __init__(self, master: NotebookNode, submitted: Sequence[SubmittedCell]) -> None:
         self._master = {grade_id(cell): cell for cell in master.cells if grade_id(cell)}
@@ -100,11 +99,11 @@ class _Sorting:
         for name, cell in self._master.items():
             if name not in late:
                 if name in self._chosen or is_check(cell):
-                    # A check that was deleted comes back behind the student's own cells, which it may need.
+                    # A deleted check comes back after the student's own cells, which it may need.
                     built += pending
                     pending = []
                 built.append(self._filled(name, cell))
-            # Any other deleted cell comes back before them: the student may have changed what it defines.
+            # Any other deleted cell comes back before the student's cells, which may change what it defines.
             pending += [_extra(extra) for extra in extras.get(name, [])]
             for check in [check for check, anchor in late.items() if anchor == name]:
                 built += [*pending, nodes.copied(self._master[check])]
@@ -112,7 +111,7 @@ class _Sorting:
         return built + pending
 
     def remarks(self) -> list[str]:
-        """The differences from the master that the student should know."""
+        """The differences from the master that the student should know about."""
         found = [*self._on_lost_marks(), *self._on_missing_cells()]
         for name, places in self._places.items():
             found += self._remarks_on(name, places)
@@ -177,9 +176,9 @@ class _Sorting:
         return found
 
     def _choose(self, name: str, places: Sequence[int]) -> int:
-        """The last submitted cell of that name before its check, as the check sees it when all cells are run.
+        """Return the last submitted cell of that name before its check: the one that counts when all cells are run.
 
-        An untouched copy of the stub does not count; a copy behind the check counts only if there is no other copy.
+        An untouched stub does not count; a copy after the check counts only if no other copy exists.
         """
         stub = self._master[name].source.strip()
         answered = [place for place in places if self._submitted[place].source.strip() != stub] or places
@@ -187,18 +186,18 @@ class _Sorting:
         return ([place for place in answered if place < check] or answered)[-1]
 
     def _place_of_next_check(self, name: str) -> int:
-        """The last place of the first check behind a cell of the master that is in the submission."""
+        """Return the index of the first later check of the master that is in the submission."""
         behind = itertools.dropwhile(lambda other: other != name, self._master)
         checks = (self._places[one] for one in behind if is_check(self._master[one]) and one in self._places)
         return max(next(checks, [len(self._submitted)]))
 
     def _anchor(self, place: int) -> str:
-        """The named cell that is at a place, or that a cell at this place follows."""
+        """Return the named cell at an index, or the nearest one before it."""
         before = {at: name for name, at in self._chosen.items() if at <= place}
         return before[max(before)] if before else _START
 
     def _is_in_its_place(self, name: str, place: int) -> bool:
-        """True if a cell stands exactly where the answer's own cell would: taking it as the answer moves nothing."""
+        """True if a cell is exactly where the missing answer was, so that using it as the answer moves nothing."""
         names, anchor = list(self._master), self._anchor(place)
         behind = {at: other for other, at in self._chosen.items() if at > place}
         return (
@@ -208,7 +207,7 @@ class _Sorting:
         )
 
     def _late_checks(self) -> dict[str, str]:
-        """The checks that wait for an answer in another cell, and the named cell behind which that one is."""
+        """The checks that wait for an answer in another cell, and the named cell after which that answer comes."""
         names = list(self._master)
         late: dict[str, str] = {}
         for name, place in self._elsewhere.items():
@@ -219,7 +218,7 @@ class _Sorting:
         return late
 
     def _extras_by_anchor(self) -> dict[str, list[SubmittedCell]]:
-        """The student's own cells, by the named cell that they follow."""
+        """The student's own cells, grouped by the named cell before them."""
         anchors = {place: name for name, place in self._chosen.items()}
         given = {
             place
@@ -244,12 +243,12 @@ class _Sorting:
             answer = self._submitted[self._chosen[name]]
             filled.update(source=answer.source, attachments=_attachments(answer))
         elif is_answer(cell) and self._may_be_answered_elsewhere(name):
-            # No stub: it would replace what the student has defined. For a person to see where to look.
+            # A stub would overwrite the student's definitions, so a note tells a person where to look.
             filled["source"] = _ELSEWHERE if cell.cell_type == CellType.MARKDOWN else f"# {_ELSEWHERE}"
         return filled
 
     def _may_be_answered_elsewhere(self, name: str) -> bool:
-        """True if another cell answers a missing one, or a person has to look: nbgrader gives a stub zero points."""
+        """True if another cell answers a missing one, or a person must look: nbgrader would give zero points for a stub."""
         by_a_person = self._master[name].metadata.nbgrader.get("grade", False) and bool(self._matches.own)
         return name in self._elsewhere or by_a_person
 
@@ -260,12 +259,12 @@ def grade_id(cell: NotebookNode) -> str:
 
 
 def is_answer(cell: NotebookNode) -> bool:
-    """True if the cell is one that students fill in."""
+    """True if students fill in the cell."""
     return bool(cell.metadata.get("nbgrader", {}).get("solution", False))
 
 
 def is_check(cell: NotebookNode) -> bool:
-    """True if the cell is one that is graded automatically."""
+    """True if the cell is graded automatically."""
     marked = bool(cell.metadata.get("nbgrader", {}).get("grade", False))
     return marked and not is_answer(cell) and cell.cell_type == CellType.CODE
 
@@ -282,18 +281,18 @@ def _known(cell: NotebookNode) -> Known:
 
 
 def _handed_out(cell: NotebookNode) -> tuple[str, str]:
-    """The text of a master's cell, and that of the same cell as students get it."""
+    """Return the text of a master's cell, and the text of the same cell as students receive it."""
     return cell.source, _without_hidden(cell.source)
 
 
 def is_the_masters(cell: NotebookNode) -> bool:
-    """True if a cell of a rebuilt notebook is the master's, word for word."""
+    """True if a cell of a rebuilt notebook is exactly the master's."""
     marks = cell.get("metadata", {}).get("nbgrader", {})
     return bool(marks.get("locked")) and not marks.get("solution")
 
 
 def _without_hidden(source: str) -> str:
-    """A master's cell as students get it: nbgrader leaves out its hidden tests and its mark scheme."""
+    """Return a master's cell as students receive it: nbgrader removes hidden tests and the mark scheme."""
     kept, hidden = [], False
     for line in source.splitlines():
         if _HIDDEN.search(line):
@@ -312,7 +311,7 @@ def _finished(master: NotebookNode, cells: list[NotebookNode], remarks: list[str
         if not is_the_masters(cell)
     )
     for index, cell in enumerate(cells):
-        # As items: to set an attribute, nbformat's nodes look for it in their class first.
+        # As items: nbformat's nodes look up an attribute in their class first, which is slower.
         cell["id"] = _cell_id(cell, index)
         attached = cell.pop("attachments", {})
         shown = attached if is_the_masters(cell) else pictures.of(cell["source"], attached)
@@ -347,13 +346,13 @@ def _remarks_cell(remarks: list[str]) -> NotebookNode:
 
 
 def _escaped(text: str) -> str:
-    """A remark may quote what a student wrote; none of it may become markup."""
+    """Escape a remark: it may quote a student's text, which must not become markup."""
     text = text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     return re.sub(r"([\\\[\]*#!|~$])", r"\\\1", " ".join(text.split()))
 
 
 def _were(names: Sequence[str]) -> str:
-    """The beginning of a sentence about cells."""
+    """Return the beginning of a sentence about cells."""
     return (
         f"The cell {_quoted(*names)} was"
         if len(names) == 1
@@ -362,7 +361,7 @@ def _were(names: Sequence[str]) -> str:
 
 
 def _listed(names: Sequence[str]) -> str:
-    """The names, of many only the first."""
+    """Return the names, or only the first few if there are many."""
     return ", ".join(map(_quoted, names[:_MOST_NAMED])) + (" …" if len(names) > _MOST_NAMED else "")
 
 
@@ -371,5 +370,5 @@ def _quoted(name: str) -> str:
 
 
 def _cell_id(cell: NotebookNode, index: int) -> str:
-    """The same text gives the same notebook, byte for byte; nbformat draws ids at random."""
+    """Return an id made from the text, so that equal notebooks are equal in every byte; nbformat's ids are random."""
     return re.sub(r"[^A-Za-z0-9_-]", "-", f"{index}-{grade_id(cell) or 'own'}")[:64]

@@ -1,4 +1,4 @@
-"""The pictures that the text cells of a rebuilt notebook show."""
+"""The pictures in the text cells of a rebuilt notebook."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 MOST_CHARACTERS = 10_000_000
-"""Of all bitmaps that a student has attached to a notebook together; a screenshot has a million."""
+"""The limit for all bitmaps attached to a notebook together, in bytes; a screenshot has a million."""
 _SHOWN = re2.compile(r"\(attachment:([\w.%+-]+)\)")
 
 
 class ShownPictures:
-    """The pictures for the text cells that show them: a student's own, else the master's.
+    """Finds the pictures for the text cells that show them: a student's own, else the master's.
 
     Args:
-        given: The text that students get of each of the master's cells, and what is attached to the cell. A picture
-            that no such text shows is of a solution: no student gets it.
+        given: The text of each of the master's cells as students receive it, and its attachments. A picture that no
+            such text shows belongs to a solution: no student receives it.
     """
 
     def __init__(self, given: Iterable[tuple[str, Mapping[str, Mapping[str, str]]]]) -> None:
@@ -36,11 +36,11 @@ class ShownPictures:
                 self._left[name] += 1
 
     def of(self, text: str, own: Mapping[str, Mapping[str, str]]) -> NotebookNode:
-        """The pictures that a text shows, of those that are left: copies of one cell must not swell a page.
+        """Return the pictures that a text shows; each is used up, because copies of one cell must not bloat a page.
 
         Args:
             text: The text of a cell.
-            own: The pictures that its student has attached to it.
+            own: The pictures that the student attached to the cell.
         """
         found: dict[str, Mapping[str, str]] = {}
         for name in dict.fromkeys(_SHOWN.findall(text)):

@@ -1,6 +1,6 @@
-"""The cells with points in the sources of a class, compared with those in the gradebook.
+"""The cells with points in a class's sources, compared with those in the gradebook.
 
-Reading a source means running nbgrader's steps on it, which takes a second for a chapter; what came of it is kept.
+Reading a source takes a second for a chapter, because nbgrader's steps run on it, so the result is stored.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class GradedCell:
-    """A cell of a source that carries points.
+    """A cell of a source that has points.
 
     Attributes:
-        notebook: The notebook it is in.
+        notebook: The name of its notebook.
         name: Its grade_id.
         exercise: The exercise's id, or the cell's name if it checks no exercise.
-        worth: Points it carries.
-        by_judge: Whether the judge or the cell's own tests give the points, and not a person.
+        worth: The points in the gradebook.
+        by_judge: True if the judge or the cell's own tests give the points, False if a person does.
     """
 
     notebook: str
@@ -54,7 +54,7 @@ class Released:
 
 
 def read_released(directory: ClassDirectory, store: ClassStore, fingerprints: Fingerprints) -> Released:
-    """The cells with points of all assignments."""
+    """Return the cells with points of all assignments."""
     assignments = directory.assignments()
     fingerprint = " ".join(fingerprints.of_sources(assignment) for assignment in assignments)
     with contextlib.suppress(msgspec.MsgspecError):
@@ -116,7 +116,7 @@ def _read(directory: ClassDirectory, assignment: str) -> list[GradedCell]:
 
 
 def _check_names(directory: ClassDirectory, assignment: str, names: list[str]) -> None:
-    """See that each line of the table will have a name of its own."""
+    """Check that each line of the table will have a different name."""
     twice = next((name for name in names if [*names, *NO_EXERCISE].count(name) > 1), "")
     if twice:
         raise MasterUnusable(

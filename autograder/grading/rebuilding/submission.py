@@ -22,7 +22,7 @@ MAX_BYTES = 50_000_000
 """A notebook with many pictures in its outputs has a few megabytes."""
 MAX_CELLS = 2_000
 MAX_CELL_CHARACTERS = 100_000
-"""Of one cell; what students write has a few thousand."""
+"""The limit for the text of one cell in characters; students write a few thousand."""
 MAX_CHARACTERS = 1_000_000
 """Of all cells together."""
 LONGEST_REASON = 300
@@ -43,7 +43,7 @@ _KINDS = {
 
 
 class UnreadableSubmission(ValueError):
-    """The submission cannot be taken as a notebook; the message is a sentence for the student."""
+    """The submission cannot be read as a notebook; the message is a sentence for the student."""
 
 
 _Name = Annotated[str, msgspec.Meta(max_length=LONGEST_NAME)]
@@ -52,15 +52,15 @@ Picture = tuple[_Name, str, str]
 
 @dataclass(frozen=True)
 class SubmittedCell:
-    """All that is taken over from a submitted cell.
+    """The parts of a submitted cell that are used.
 
     Attributes:
-        kind: The cell's type as it was submitted.
+        kind: The type of the submitted cell.
         source: Its text.
-        grade_id: The name it claims to have, empty for none.
-        identifier: Its id, empty for none.
-        is_graded: Whether it claims to carry points; believed only of a source.
-        pictures: The bitmaps attached to a text cell: name, type and contents as base64.
+        grade_id: The name that the cell claims to have; empty for none.
+        identifier: The cell's id; empty for none.
+        is_graded: True if the cell claims to have points; trusted only in a source.
+        pictures: The bitmaps attached to a text cell: name, type and content in base64.
     """
 
     kind: CellType
@@ -98,15 +98,15 @@ class NotAFile(UnreadableSubmission):
 
 
 def read_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
-    """The bytes of a submitted file.
+    """Return the bytes of a submitted file.
 
     Args:
         path: The file's path.
-        most: Bytes that it may have.
+        most: The limit in bytes.
 
     Raises:
-        NotAFile: It is a link, a pipe, a device or the like, or cannot be opened.
-        UnreadableSubmission: It is missing or too large.
+        NotAFile: The path is a link, a pipe, a device or similar, or cannot be opened.
+        UnreadableSubmission: The file is missing or too large.
     """
     with _opened(path) as file:
         size = os.fstat(file.fileno()).st_size
@@ -134,7 +134,7 @@ def reason_against_file(path: Path) -> str:
 
 @contextlib.contextmanager
 def _opened(path: Path) -> Iterator[IO[bytes]]:
-    """An ordinary file, open. It is looked at before (to open a device may do something) and after."""
+    """Open an ordinary file. Its type is checked before, because opening a device may have effects, and after."""
     try:
         _check(path, path.lstat())
         with opened(path) as file:
@@ -161,11 +161,11 @@ def _check(path: Path, status: os.stat_result) -> None:
 
 
 def _is_somebody_elses(path: Path, status: os.stat_result) -> bool:
-    """True if a file of several names was in another place of the class first.
+    """True if a file with several names first had another name in the class, and so belongs to another student.
 
-    The first owner keeps the file, so that a student cannot get another student's work refused by giving it a second
-    name. Only the system sets a folder's time of change, when a name is made in it. Names outside of
-    the class are a backup's.
+    The first owner keeps the file, so that a student cannot make another student's work fail by giving it a second
+    name. A folder's change time shows when a name was made in it, and only the system can set it. Names outside the
+    class are a backup's.
     """
     submitted = next((folder for folder in path.parents if folder.name == "submitted"), path.parent)
     places = itertools.chain(files_below(submitted), files_below(submitted.parent / "source"))
@@ -184,7 +184,7 @@ def _same_file(place: Path, status: os.stat_result) -> bool:
 
 
 def _found_instead(folder: Path) -> str:
-    """Other notebooks in a folder: mostly, a browser has numbered the name."""
+    """Mention other notebooks in a folder: often, a browser has added a number to the name."""
     try:
         others = sorted(entry.name for entry in os.scandir(folder) if entry.name.endswith(".ipynb"))
     except OSError:
@@ -193,6 +193,6 @@ def _found_instead(folder: Path) -> str:
 
 
 def _shown(name: str) -> str:
-    """A file's name as it can be in any text: a student chose it, or a program that a student wrote."""
+    """Make a file's name printable: a student, or a student's program, chose it."""
     name = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in name)
     return name if len(name) <= _LONGEST_SHOWN else f"{name[:_LONGEST_SHOWN]}…"

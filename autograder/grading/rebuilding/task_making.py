@@ -1,4 +1,4 @@
-"""Makes a task of a submission, in the same way for a run, a dry run and the conversion."""
+"""Makes tasks from a submission, in the same way for a run, a dry run and the conversion."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 def tasks_of(directory: ClassDirectory, submission: Submission) -> list[Task]:
-    """The tasks of a submission, one a notebook of the assignment.
+    """Return the tasks of a submission, one for each notebook of the assignment.
 
     Raises:
         MasterUnusable: A source notebook cannot be graded against.
@@ -44,7 +44,7 @@ def tasks_of(directory: ClassDirectory, submission: Submission) -> list[Task]:
 
 
 def task_of(directory: ClassDirectory, submission: Submission, notebook: str) -> tuple[Task, NotebookNode]:
-    """The task that executes a notebook of a submission under the class's limits, and the rebuilt notebook.
+    """Return the task for a notebook of a submission under the class's limits, and the rebuilt notebook.
 
     Raises:
         MasterUnusable: The source notebook cannot be graded against.
@@ -99,13 +99,13 @@ def _hash_of_pictures(rebuilt: NotebookNode) -> str:
 def cells_of(
     notebook: NotebookNode, *, demonstrations: bool = True, prose: Iterable[str] = ()
 ) -> tuple[Cell, ...]:
-    """The cells of a rebuilt notebook as they are executed.
+    """Return the cells of a rebuilt notebook in the form for execution.
 
     Args:
         notebook: The notebook.
-        demonstrations: Also run the cells that only show something.
-        prose: Texts of the course's own. Nothing locks their cells, and no student wrote them. A copy is its
-            student's: a page with thousands of them would cost the grader seconds.
+        demonstrations: True to also run the cells that only show something.
+        prose: Texts from the course. No student wrote them, although their cells are not locked. A copy of one counts
+            as the student's: rendering a page with thousands of them would take the grader seconds.
     """
     left_out = frozenset() if demonstrations else demonstrations_of(notebook)
     left = Counter(prose)
