@@ -67,7 +67,7 @@ def _appeal(
         seen, cells = unpack(kept.checks[exercise_id]), kept.run_cells()
     except (NoEvidence, ValueError) as error:
         raise GradingError(
-            f"What is kept of {exercise_id} by {student} is damaged ({error}). Have it judged anew: {again} --again"
+            f"What is kept of {exercise_id} by {student} is damaged ({error}). Judge it again: {again} --again"
         ) from error
     return Appeal(
         student=student,
@@ -110,8 +110,8 @@ def _why_nothing(
                 return (
                     f"Nothing that a judge saw of {exercise_id} by {student} is kept. The table says: {row.state}"
                     f"{f', {row.diagnosis}' if row.diagnosis else ''}. {row.reason}".rstrip()
-                    + " Where a check never began, as behind a cell that raised an error, there is nothing to keep. "
-                    f"Where it was graded before evidence was kept, type: {again} --again"
+                    + " If a check never began, as after a cell that raised an error, there is nothing to keep. "
+                    f"If it was graded before evidence was kept, type: {again} --again"
                 )
     return (
         f"No check of {exercise_id} by {student!r} was graded here: the class has the assignments "

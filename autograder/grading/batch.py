@@ -178,7 +178,7 @@ class _Batch:
 
         Raises:
             ClassIncomplete: The gradebook does not know an assignment that was asked for.
-            GradingError: There is no assignment or student of a name that was asked for.
+            GradingError: A name that was asked for is not an assignment or a student.
         """
         assignments = self._asked.assignments
         asked = {name: found for name, found in self._cells.items() if not assignments or name in assignments}

@@ -1,4 +1,4 @@
-"""One notebook of one student, ready to be executed anywhere, and the points that its verdicts are worth."""
+"""One notebook of one student, ready to be executed anywhere, and the points for its verdicts."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from autograder.boxes.verdicts_without_judge import grader_trouble, zero_points
 from autograder.verdict import State, Verdict
 
 UNREADABLE = "unreadable"
-"""The diagnosis of what was handed in and is no notebook."""
+"""The diagnosis for a submission that is not a notebook."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """A task for a worker: what it needs to know, and nothing else.
+    """A task for a worker: everything that it needs, and nothing else.
 
     Attributes:
         student: The student's id, for messages.
@@ -27,14 +27,14 @@ class Task:
         notebook: The notebook's name.
         cells: The rebuilt notebook.
         seed: The seed of the judge's random inputs.
-        course: Stands for the version of everything that decides a grade.
+        course: A hash of everything that decides a grade.
         limits: All limits.
-        files: Files of the assignment that are beside the notebook, by relative path.
-        problem: Why there is nothing to execute; empty for a notebook that can be.
-        remarks: Sentences on what was put right in the notebook.
-        pictures: Stands for the pictures that the student has attached: work with others is other work.
-        boxed: Execute in boxes, or not at all. False is for the course's own notebooks, and for an instructor who has
-            typed so; such a result never counts as one from a box.
+        files: The assignment's files next to the notebook, by relative path.
+        problem: Why nothing can be executed; empty if the notebook can be.
+        remarks: Sentences about repairs of the notebook.
+        pictures: A hash of the pictures that the student attached: other pictures make it other work.
+        boxed: True to execute in boxes, or not at all. False is for the course's own notebooks, and for an instructor
+            who asked for it; such a result never counts as one from a box.
     """
 
     student: str
@@ -51,7 +51,7 @@ class Task:
     boxed: bool = True
 
     def beside_others(self, beside: bool) -> Task:
-        """The task as a worker gets it: with its share of memory where others are beside it, else with all limits."""
+        """Return the task as a worker gets it: with its share of memory if other tasks run, else with all limits."""
         return replace(self, limits=replace(self.limits, beside=beside))
 
     @property
@@ -60,11 +60,11 @@ class Task:
         return f"{self.student}/{self.assignment}/{self.notebook}"
 
     def key(self) -> str:
-        """A hash of everything that the execution depends on: equal for two tasks with the same result."""
+        """Return a hash of everything that the execution depends on: equal tasks have the same result."""
         return hashlib.sha256(msgspec.json.encode(self, order="deterministic")).hexdigest()
 
     def without_execution(self) -> Execution:
-        """The result of a task with a problem: no cell runs, every check is zero with the reason."""
+        """Return the result of a task with a problem: no cell runs, and every check is zero with the reason."""
         verdicts = {
             index: zero_points(
                 cell.check, UNREADABLE, self.problem, "Hand in the notebook as JupyterLab saves it."
@@ -75,10 +75,10 @@ class Task:
         return Execution(cells=(), verdicts=verdicts)
 
     def in_trouble(self, reason: str) -> Execution:
-        """The result of a task that the grader could not execute: no cell runs, no check is anyone's fault.
+        """Return the result of a task that the grader could not execute: no check is the student's fault.
 
         Args:
-            reason: Why it could not.
+            reason: Why the task could not be executed.
         """
         verdicts = {
             index: grader_trouble(cell.check, reason) for index, cell in enumerate(self.cells) if cell.check
@@ -87,13 +87,13 @@ class Task:
 
 
 def points(check: Check, verdict: Verdict) -> float:
-    """The points that a verdict is worth: the judge's share of what the cell carries."""
+    """Return the points for a verdict: the judge's share of the cell's points."""
     share = verdict.score / verdict.max_score if verdict.max_score > 0 else 0.0
     return round(min(1.0, max(0.0, share)) * check.worth, 4)
 
 
 def scores_of(task: Task, execution: Execution) -> dict[str, float]:
-    """The points of each check cell of a task, by grade_id."""
+    """Return the points of each check cell of a task, by grade_id."""
     return {
         cell.name: points(cell.check, execution.verdicts[index])
         for index, cell in enumerate(task.cells)
@@ -102,7 +102,7 @@ def scores_of(task: Task, execution: Execution) -> dict[str, float]:
 
 
 def unchecked(task: Task, execution: Execution) -> set[str]:
-    """The check cells of a task that could not be checked, by grade_id."""
+    """Return the check cells of a task that could not be checked, by grade_id."""
     return {
         cell.name
         for index, cell in enumerate(task.cells)

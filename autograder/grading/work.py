@@ -1,4 +1,4 @@
-"""The work of a batch: what it is asked to grade, a submission on its way through it, and what may be said of that."""
+"""The work of a batch: what to grade, the state of each submission, and what a dry run reports."""
 
 from __future__ import annotations
 
@@ -31,24 +31,24 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class AskedFor:
-    """The choice of what a run is to grade.
+    """The choice of what a run grades.
 
     Attributes:
-        assignments: Only these; all where there is none.
-        students: Only these; all where there is none.
+        assignments: Only these assignments; all if empty.
+        students: Only these students; all if empty.
     """
 
     assignments: Sequence[str]
     students: Sequence[str]
 
     def has(self, student: str, assignment: str) -> bool:
-        """True if a student's work for an assignment was asked for."""
+        """True if a student's work for an assignment is chosen."""
         return (not self.assignments or assignment in self.assignments) and (
             not self.students or student in self.students
         )
 
     def tells_of(self, refused: Refused, class_folder: Path) -> bool:
-        """True if what was refused belongs to the students and assignments that were named."""
+        """True if a refused file belongs to the chosen students and assignments."""
         submitted = class_folder / "submitted"
         if submitted not in refused.path.parents:
             return True
@@ -60,16 +60,16 @@ class AskedFor:
 
 @dataclass
 class Work:
-    """A submission on its way through the batch.
+    """The state of a submission in the batch.
 
     Attributes:
-        submission: Its place.
-        fingerprint: Of what it is made from, as it was at the start.
+        submission: The submission.
+        fingerprint: A hash of its sources, as they were at the start.
         notebooks: The names of its notebooks.
         results: The results that are not entered yet, by notebook.
-        rows: The judge's results, or the reason why there are none; None while nothing is known.
+        rows: The judge's results, or the reason why there are none; None if nothing is known yet.
         written: True if the gradebook holds exactly these results.
-        shown: Stands for what the gradebook said when its pages were made; empty where there are none of these results.
+        shown: A hash of the gradebook's entries behind its pages; empty if these results have no pages.
     """
 
     submission: Submission
@@ -82,7 +82,7 @@ class Work:
 
     @property
     def key(self) -> tuple[str, str]:
-        """Student and assignment, by which the gradebook knows it."""
+        """Student and assignment, by which the gradebook knows the submission."""
         return self.submission.student, self.submission.assignment
 
     @property
@@ -101,9 +101,9 @@ class FoundWork:
     """The work that was found.
 
     Attributes:
-        works: The submissions that were asked for.
-        others: The rest of the class.
-        refused: Files and folders that cannot be graded where they are, with the reason.
+        works: The chosen submissions.
+        others: The other submissions of the class.
+        refused: Files and folders that cannot be graded under their path, with the reason.
         notices: Remarks for the instructor, each a sentence.
     """
 
@@ -121,19 +121,19 @@ def find_work(
     fingerprints: Fingerprints,
     beside: Iterable[Refused],
 ) -> FoundWork:
-    """Find what was handed in, and what of it was asked for.
+    """Find the submissions of a class, and those that are chosen.
 
     Args:
         directory: The class.
         asked: The choice of what is graded.
         released: The cells with points of the class.
         roster: The students of the class.
-        fingerprints: Those of the class as it is now.
-        beside: Files in ``submitted`` that are not at their place.
+        fingerprints: The fingerprints of the class in its present state.
+        beside: Files in ``submitted`` that are in the wrong folder.
 
     Raises:
         MasterUnusable: An assignment that was asked for by name cannot be graded.
-        GradingError: A name that was asked for is not an assignment or a student.
+        GradingError: A chosen name is not an assignment or a student.
     """
     submissions, refused = directory.submissions()
     found = FoundWork([], [], refused, [])
@@ -141,7 +141,7 @@ def find_work(
     submissions = [one for one in submissions if one.assignment in released.cells]
     check_known(asked.assignments, directory.assignments(), "assignment")
     there = {submission.student for submission in submissions}
-    # A folder that was refused is known, too: its line in the report says why.
+    # A refused folder also counts as known: its line in the report gives the reason.
     there |= {one.path.name for one in refused if one.path.parent == directory.path / "submitted"}
     check_known(asked.students, sorted(there | roster.students.keys()), "student")
     names = {assignment: directory.notebooks(assignment) for assignment in released.cells}
@@ -159,10 +159,10 @@ def find_work(
 
 
 def _unusable(directory: ClassDirectory, asked: AskedFor, released: Released) -> Iterator[Refused]:
-    """The assignments that cannot be graded, which hold up no other.
+    """Yield the assignments that cannot be graded; they do not stop the others.
 
     Raises:
-        MasterUnusable: It was asked for by name.
+        MasterUnusable: Such an assignment was chosen by name.
     """
     for name, reason in released.unusable.items():
         if name in asked.assignments:
@@ -172,7 +172,7 @@ def _unusable(directory: ClassDirectory, asked: AskedFor, released: Released) ->
 
 
 def _unplaced(directory: ClassDirectory, asked: AskedFor) -> Iterator[Refused]:
-    """Collected files without a place, named to the instructor until they have one."""
+    """Yield collected files without a place; the instructor is told of them until they have one."""
     table = Table(directory)
     for one in table.waiting():
         if asked.has(one.student, one.assignment) or not (one.student and one.assignment):
@@ -188,7 +188,7 @@ def would_change(
     entries: Entries,
     cells: Mapping[str, Sequence[GradedCell]],
 ) -> list[Difference]:
-    """The students who would get other points from the judge, or lose others for being late.
+    """Return the students whose points would change, by the judge or by a late penalty.
 
     Args:
         directory: The class.
@@ -225,7 +225,7 @@ def would_change(
 def _foreseen(
     work: Work, entry: SubmissionEntry, by_exercise: Mapping[str, GradedCell], due: datetime | None
 ) -> SubmissionEntry:
-    """The entry that a submission would have after a run, with the penalty of before."""
+    """Return the entry that a submission would have after a run, with the earlier penalty."""
     cells = {notebook: dict(of_notebook) for notebook, of_notebook in entry.cells.items()}
     for row in () if work.written else work.rows or ():
         cell = by_exercise[row.exercise]
@@ -238,6 +238,6 @@ def _foreseen(
 
 
 def without_grade(row: Row) -> Row:
-    """The row of a result that could not be entered."""
+    """Return the row of a result that could not be entered."""
     reason = "The result could not be entered into the gradebook; it has zero points there."
     return replace(row, score=0.0, state="not_checked", diagnosis="not_written_down", reason=reason)

@@ -80,11 +80,11 @@ class ClassDirectory:
     def __init__(self, path: Path) -> None:
         self.path = path.absolute()
         if not self.path.is_dir():
-            raise NotAClass(path, "there is no such folder")
+            raise NotAClass(path, "the folder does not exist")
         if not (self.path / CONFIG_NAME).is_file():
-            raise NotAClass(path, f"there is no {CONFIG_NAME} in it")
+            raise NotAClass(path, f"the folder contains no {CONFIG_NAME}")
         if not (self.path / "source").is_dir():
-            raise NotAClass(path, "there is no folder named source in it")
+            raise NotAClass(path, "the folder contains no folder named source")
         refuse_students_folder(self.path)
         with contextlib.suppress(OSError):
             course.use(Path((self.state / COURSE_NAME).read_text(encoding="utf-8")))
@@ -139,7 +139,7 @@ class ClassDirectory:
             return ZoneInfo(str(name))
         except (ValueError, OSError, LookupError) as error:
             raise ClassIncomplete(
-                f"{self.path / CONFIG_NAME} sets c.NbGraderAPI.timezone to {name!r}, and there is no such time zone. "
+                f"{self.path / CONFIG_NAME} sets c.NbGraderAPI.timezone to {name!r}, but that zone does not exist. "
                 "A name looks like Europe/Berlin."
             ) from error
 
@@ -234,7 +234,7 @@ class ClassDirectory:
                 else:
                     known = ", ".join(notebooks) or "none"
                     refused.append(
-                        Refused(folder, f"there is no assignment of that name (the class has: {known})")
+                        Refused(folder, f"the class has no assignment of that name (it has: {known})")
                     )
         return taken, refused
 

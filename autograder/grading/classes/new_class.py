@@ -55,7 +55,7 @@ from autograder.masters.release_steps import ReleaseSteps
 c = get_config()  # noqa: F821  (nbgrader defines it)
 c.CourseDirectory.root = os.path.dirname(os.path.abspath(__file__))
 
-# What students get: each solution replaced by its TODO comment, given cells locked.
+# Students get this: each solution replaced by its TODO comment, given cells locked.
 c.GenerateAssignment.preprocessors = ReleaseSteps()
 
 # How a submission is graded: the judge watches each check cell on the wire, whether it is `{command} grade`,
@@ -63,7 +63,7 @@ c.GenerateAssignment.preprocessors = ReleaseSteps()
 c.Autograde.exporter_class = "autograder.grading.nbgrader_commands.SubmissionExporter"
 c.Autograde.autograde_preprocessors = ["autograder.grading.nbgrader_commands.WireExecute"]
 
-# What you and the students read: no script, no frame and no address that a submission brought along.
+# You and the students read this: no script, frame or address from a submission.
 c.GenerateFeedback.exporter_class = "autograder.grading.nbgrader_commands.FeedbackExporter"
 c.HTMLExporter.filters = {{"markdown2html": "autograder.grading.returning.page_exporter.markdown_to_html"}}
 
@@ -202,7 +202,7 @@ def sources_of(course_root: Path, wanted: Sequence[str]) -> Sources:
         known = {lab_name(master): master for master in masters(course_root)}
         for name in wanted:
             if name not in known:
-                raise GradingError(f"There is no master named {name}. The course has: {', '.join(known)}.")
+                raise GradingError(f"The course has no master named {name}. It has: {', '.join(known)}.")
         made = {name: (known[name], source_notebook(known[name])) for name in wanted or known}
     except MasterError as error:
         raise GradingError(str(error)) from error
@@ -321,7 +321,7 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
     lines = [
         f"{name}: as the course has it now; hand out {directory.path / 'release' / name}" for name in made
     ]
-    return [*lines, f"what was there before is in {kept}"]
+    return [*lines, f"the earlier files are in {kept}"]
 
 
 @contextlib.contextmanager

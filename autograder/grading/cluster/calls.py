@@ -1,16 +1,16 @@
 """Functions that a Dask worker calls by name: bytes in, bytes out.
 
-Without an import of its own, since the client process has to name these functions too, and is to hold little else.
+It has no imports at the top, because the client process also imports it, and should load little else.
 """
 
 from __future__ import annotations
 
 
 def offer_as_json(slots: int) -> bytes:
-    """The worker's offer, as JSON of an :class:`autograder.grading.running.orders.Offer`.
+    """Return the worker's offer, as JSON of an :class:`autograder.grading.running.orders.Offer`.
 
     Args:
-        slots: Notebooks at once: the threads that Dask gives it.
+        slots: The number of notebooks at once: the threads that Dask gives the worker.
     """
     import msgspec
 
@@ -20,7 +20,7 @@ def offer_as_json(slots: int) -> bytes:
 
 
 def execute_order(order: bytes) -> bytes:
-    """Do an order; the execution as JSON.
+    """Execute an order, and return the execution as JSON.
 
     Args:
         order: An :class:`autograder.grading.running.orders.Order` as JSON.

@@ -1,4 +1,4 @@
-"""The way into a cluster: connect, look who can be given work, and leave nothing behind."""
+"""Connects to a cluster, finds the workers that can be given work, and cleans up afterwards."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _ADDRESS = re.compile(r"(tcp|tls)://[^\s/]+:\d{1,5}")
 
 
 def check_dask() -> None:
-    """Make sure that Dask is there.
+    """Check that Dask is installed.
 
     Raises:
-        GradingError: It is not.
+        GradingError: Dask is not installed.
     """
     if importlib.util.find_spec("distributed") is None:
         raise GradingError(
@@ -33,15 +33,15 @@ def check_dask() -> None:
 
 
 def check_address(address: str) -> None:
-    """Make sure that this can be the address of a scheduler.
+    """Check that a text can be the address of a scheduler.
 
     Raises:
-        GradingError: It is none.
+        GradingError: The text is not such an address.
     """
     if not _ADDRESS.fullmatch(address):
         raise GradingError(
-            f"{address!r:.200} is no address of a Dask scheduler. One looks like tcp://host:8786, "
-            "or tls://host:8786 where Dask is set up for TLS."
+            f"{address!r:.200} is not an address of a Dask scheduler. An address looks like tcp://host:8786, "
+            "or tls://host:8786 if Dask is set up for TLS."
         )
 
 
@@ -49,18 +49,18 @@ def check_address(address: str) -> None:
 def connected(
     address: str, *, judge: str, boxed: bool, tell: Callable[[str], None] = lambda _: None
 ) -> Iterator[Dispatcher]:
-    """The acceptable workers of a cluster. Leaving it takes back whatever is queued, within seconds.
+    """Give access to the acceptable workers of a cluster. Leaving the context cancels queued tasks, within seconds.
 
     Args:
-        address: The scheduler's, such as ``tcp://host:8786`` or ``tls://host:8786``.
-        judge: What makes a judge, as ``module:class``.
-        boxed: Whether tasks are executed in boxes; a worker that cannot is refused then.
+        address: The scheduler's address, such as ``tcp://host:8786`` or ``tls://host:8786``.
+        judge: The class that makes a judge, as ``module:class``.
+        boxed: True if tasks are executed in boxes; then a worker that cannot make boxes is refused.
         tell: Called with a sentence for the instructor.
 
     Raises:
         GradingError: Dask is not installed.
-        SchedulerGone: There is no scheduler at that address.
-        NoWorkers: It has no worker that can be given work.
+        SchedulerGone: No scheduler answers at that address.
+        NoWorkers: The scheduler has no worker that can be given work.
     """
     with Link(address) as link:
         pool = Dispatcher(link, address, judge=judge, boxed=boxed, tell=tell)

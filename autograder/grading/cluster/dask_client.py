@@ -1,11 +1,11 @@
-"""The process that speaks with a Dask cluster for the grader, in lines of JSON on its standard input.
+"""A process that talks to a Dask cluster for the grader, and to the grader in lines of JSON on its standard input.
 
-It is a process of its own for four reasons. Dask's client unpickles what workers say, and here nothing that comes
-out of a pickle runs (see inert_pickle.py). A limit on its memory ends an answer that is too large to be one. The
-grader stays without Dask's threads and event loop. And when it is killed, the scheduler takes back what was queued.
+There are four reasons for a separate process. Dask's client unpickles workers' messages, and in this process nothing in
+a pickle can run (see inert_pickle.py). A limit on memory stops an answer that is too large. The grader stays free of
+Dask's threads and event loop. And if the process is killed, the scheduler cancels its queued tasks.
 
-It knows nothing of a class: it hands orders to the workers it is told, and tells what comes back and who comes
-and goes.
+The process knows nothing about the class: it passes orders to the workers that the grader names, and reports answers
+and which workers come and go.
 """
 
 from __future__ import annotations
@@ -45,16 +45,16 @@ _MEMORY = 3 << 30
 """Bytes of address space. 0.2 GB of them are Python and Dask."""
 _CONNECT_SECONDS = 10
 _OFFER_SECONDS = 60.0
-"""A worker that never made a box looks whether it can, which takes a second where the machine is busy."""
+"""Seconds for a worker's offer; its first try to make a box takes a second on a busy machine."""
 _LINK_SECONDS = 5.0
-"""Between two looks at whether the scheduler is there, when nothing else was heard of it."""
+"""Seconds of silence after which the connection to the scheduler is checked."""
 
 
 def main(address: str) -> None:
-    """Serve until the grader hangs up or the scheduler is gone.
+    """Serve until the grader closes the connection or the scheduler is gone.
 
     Args:
-        address: The scheduler's, such as ``tcp://host:8786``.
+        address: The scheduler's address, such as ``tcp://host:8786``.
     """
     resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
     logging.disable(logging.CRITICAL)
@@ -96,7 +96,7 @@ class _Carrier:
         self._changed = asyncio.Event()
 
     async def take_commands(self) -> None:
-        """Do what the grader says, until it says nothing more."""
+        """Carry out the grader's commands until the connection ends."""
         while True:
             try:
                 line = await asyncio.to_thread(self._grader.hear_json)
@@ -109,7 +109,7 @@ class _Carrier:
                 self._drop(command.number)
 
     async def watch_workers(self) -> None:
-        """Tell who comes and goes. The scheduler's events only say when to look."""
+        """Report workers that come and go. The scheduler's events only tell when to check."""
         self._client.subscribe_topic("all", self._on_event)
         try:
             await asyncio.gather(*(self._introduce(*who) for who in await self._look()))
@@ -124,7 +124,7 @@ class _Carrier:
             _tell(self._grader, Broken(f"the scheduler is gone: {_first_line(error)}"))
 
     async def _look(self) -> list[tuple[str, str, int]]:
-        """Tell who left; address, name and threads of those who are new."""
+        """Report workers that left. Return address, name and threads of new ones."""
         known = (await self._client.scheduler.identity())["workers"]
         for address in self._workers - known.keys():
             for number, worker_address in list(self._given.items()):
@@ -145,7 +145,7 @@ class _Carrier:
 
     async def _introduce(self, address: str, name: str, threads: int) -> None:
         try:
-            # Outside of the worker's threads: also one that is busy can answer.
+            # Outside the worker's threads, so that a busy worker can answer.
             asking = self._client.run(calls.offer_as_json, threads, workers=[address])
             said = (await asyncio.wait_for(asking, _OFFER_SECONDS))[address]
         except TimeoutError:
@@ -185,13 +185,13 @@ class _Carrier:
         await wait([future])
         if future.status == "error":
             return Failed(number, _first_line(await future.exception()))
-        # As the scheduler has it from the worker: nothing is fetched that says itself that it is too large.
+        # The size that the worker reported to the scheduler: an answer that is too large is not fetched.
         size = (await self._client.nbytes(keys=[key], summary=False)).get(key, 0)
         if size > 2 * LARGEST_ANSWER:
             return Failed(number, f"its answer has {size} bytes", forged=True)
         try:
             data = await future
-        except (TypeError, MemoryError) as error:  # it is no plain bytes, or claims a size that it has not
+        except (TypeError, MemoryError) as error:  # the answer is not plain bytes, or claims a wrong size
             return Failed(number, _first_line(error), forged=True)
         if not isinstance(data, bytes):
             return Failed(number, "its answer is not bytes", forged=True)
@@ -215,7 +215,7 @@ def _first_line(error: BaseException) -> str:
 
 
 def _tell(grader: Lines, news: News) -> None:
-    with contextlib.suppress(Hangup):  # then it is told nothing more, and this process ends
+    with contextlib.suppress(Hangup):  # the grader is gone, and this process will end
         grader.say_json(msgspec.json.encode(news))
 
 

@@ -1,10 +1,10 @@
-"""A stand-in for ``pickle.loads`` that makes plain values and inert exceptions, and runs nothing.
+"""A replacement for ``pickle.loads`` that makes plain values and inert exceptions, and runs nothing.
 
-Dask's client unpickles more than results: the type of each result, errors, warnings. Whoever writes such a pickle
-chooses which function is called with which arguments. :func:`install` takes that choice away for the whole process;
-it belongs into a process that does nothing else than to speak with a cluster.
+Dask's client unpickles more than results: the type of each result, errors, warnings. The writer of a pickle
+chooses which function is called with which arguments. :func:`install` prevents that for the whole process; use it only
+in a process that does nothing but communicate with a cluster.
 
-The way is the one that the documentation of :mod:`pickle` names under "Restricting Globals".
+The method is described in the documentation of :mod:`pickle` under "Restricting Globals".
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ _PLAIN |= {"set", "str", "tuple"}
 
 
 class Inert(Exception):
-    """A stand-in for an object whose class was not made here. Its class has the name of the one that was meant."""
+    """A replacement for an object whose class is not loaded. The replacement's class has the same name."""
 
     def __call__(self, *_: Any, **__: Any) -> Any:
-        """Nothing happens."""
+        """Do nothing."""
         return self
 
 
 class _InertUnpickler(pickle.Unpickler):
     def find_class(self, module: str, name: str) -> Any:
-        """A plain type, or something harmless under that name; nothing is imported."""
+        """Return a plain type, or a harmless replacement with that name; nothing is imported."""
         if module == "builtins" and name in _PLAIN:
             return getattr(builtins, name)
-        # Under these two names tblib, which Dask brings along, writes errors.
+        # tblib, which Dask uses, writes errors under these two names.
         if name == "unpickle_traceback":
             return _no_traceback
         if name.startswith("unpickle_exception"):
@@ -42,7 +42,7 @@ class _InertUnpickler(pickle.Unpickler):
         return type(name, (Inert,), {"__module__": module})
 
     def persistent_load(self, _: Any) -> Any:
-        """Nothing stands for itself here."""
+        """Return None: no object refers to one outside the pickle."""
         return None
 
 
@@ -50,13 +50,13 @@ def loads(data: Any, /, *, buffers: Iterable[Any] | None = None, **_: Any) -> An
     """Read a pickle without running anything; takes the arguments of :func:`pickle.loads`.
 
     Raises:
-        Exception: It is no pickle, or asks for what plain values and inert objects do not do.
+        Exception: The data is not a pickle, or needs more than plain values and inert objects.
     """
     return _InertUnpickler(io.BytesIO(data), buffers=buffers).load()
 
 
 def install() -> None:
-    """Put it in the place of pickle's own functions, in this process, before anything else has fetched those."""
+    """Replace pickle's own functions in this process; call it before other modules import them."""
     replaced: Any = pickle
     replaced.loads = loads
     replaced.load = lambda file, **options: loads(file.read(), **options)
@@ -68,7 +68,7 @@ def _no_traceback(*_: Any) -> None:
 
 
 def _exception(kind: Any, *said: Any) -> Any:
-    """An error with its words, from what tblib keeps of it."""
+    """Return an inert error with the message that tblib stored."""
     if not (isinstance(kind, type) and issubclass(kind, Inert)):
         return Inert()
     for part in said:

@@ -1,4 +1,4 @@
-"""The grader's end of the line to the client process."""
+"""The grader's end of the connection to the client process."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ _GOODBYE_SECONDS = 1.5
 
 
 class Link:
-    """A client process while it is needed.
+    """A running client process; leaving the context ends it.
 
     Args:
-        address: The scheduler's.
+        address: The scheduler's address.
     """
 
     def __init__(self, address: str) -> None:
@@ -53,7 +53,7 @@ class Link:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End the client process, at once where something went wrong. The scheduler takes back what it was given."""
+        """End the client process, at once after an error. The scheduler then cancels its tasks."""
         if kind is not None:
             self._client.kill()
         self._lines.finish()
@@ -62,15 +62,15 @@ class Link:
         self._log.close()
 
     def say(self, command: Command) -> None:
-        """Tell the client process to do something. Where it is gone, :meth:`hear` says so."""
+        """Send a command to the client process. If it is gone, :meth:`hear` reports it."""
         with contextlib.suppress(Hangup):
             self._lines.say_json(msgspec.json.encode(command))
 
     def hear(self, within: float | None) -> News | None:
-        """The next thing that happened; None where nothing did.
+        """Return the next message; None if none came in time.
 
         Args:
-            within: Seconds to wait for it; None for as long as it takes.
+            within: Seconds to wait; None for no limit.
         """
         try:
             return self._news.get(timeout=None if within is None else max(0.0, within))
@@ -78,7 +78,7 @@ class Link:
             return None
 
     def _listen(self) -> None:
-        """Take up what the client process says, always: one that has to wait for us would not listen to us."""
+        """Read the client's messages all the time: a client that waits for us would not read our commands."""
         try:
             while True:
                 self._news.put(msgspec.json.decode(self._lines.hear_json(), type=News))

@@ -1,4 +1,4 @@
-"""``autograder worker``: a Dask worker on this machine, after a look at what it can offer."""
+"""``autograder worker``: starts a Dask worker on this machine, after checking what the machine can do."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 _CONNECT_SECONDS = 30
 _GOODBYE_SECONDS = 2.0
 
-# Dask watches the memory of its own process, and there nothing is: submissions have processes and limits of their own.
+# Dask watches only the memory of its own process, but submissions run in other processes with limits of their own.
 _SETTINGS = {
     "distributed.worker.profile.enabled": False,
     "distributed.admin.system-monitor.gil.enabled": False,
@@ -35,10 +35,10 @@ _SETTINGS = {
 
 
 def offer(slots: int) -> Offer:
-    """Return what this machine offers to a cluster: which course it has, and whether it can execute in boxes.
+    """Return this machine's offer to a cluster: its version of the course, and whether it can execute in boxes.
 
     Args:
-        slots: Notebooks at once.
+        slots: The number of notebooks at once.
     """
     return Offer(course_version(), slots, why_impossible())
 
@@ -46,17 +46,17 @@ def offer(slots: int) -> Offer:
 def start_worker(
     address: str | None, *, jobs: int | None, name: str | None, sandbox: bool, tell: Callable[[str], None]
 ) -> None:
-    """Work for a scheduler until it ends or this process is told to.
+    """Work for a scheduler until it ends or this process is asked to end.
 
     Args:
-        address: The scheduler's; by default Dask's own setting, which its deployments set.
-        jobs: Notebooks at once; as many as there are processors by default.
-        name: What the worker is called in messages; Dask's setting, or host and process, by default.
-        sandbox: Whether to start only where boxes are possible.
-        tell: Called with a line on what is offered.
+        address: The scheduler's address; by default Dask's own setting, which its deployments set.
+        jobs: The number of notebooks at once; as many as there are processors by default.
+        name: The worker's name in messages; Dask's setting, or host and process, by default.
+        sandbox: True to start only if boxes are possible.
+        tell: Called with a line about the offer.
 
     Raises:
-        GradingError: There is no scheduler, or nothing to offer.
+        GradingError: The scheduler does not answer, or this machine cannot execute anything.
     """
     address = address or os.environ.get("DASK_SCHEDULER_ADDRESS")
     if not address:
@@ -92,7 +92,7 @@ async def _work(address: str, name: str, slots: int, folder: str, tell: Callable
         await worker
     except (OSError, ValueError, TimeoutError) as error:
         raise SchedulerGone(
-            f"There is no Dask scheduler at {address} ({error}). Start one with: dask scheduler"
+            f"No Dask scheduler answers at {address} ({error}). Start one with: dask scheduler"
         ) from error
     told = asyncio.Event()
     for number in (signal.SIGINT, signal.SIGTERM):

@@ -197,7 +197,7 @@ class _Sorting:
         return before[max(before)] if before else _START
 
     def _is_in_its_place(self, name: str, place: int) -> bool:
-        """True if a cell is exactly where the missing answer was, so that using it as the answer moves nothing."""
+        """True if a cell is exactly in the missing answer's place, so that using it as the answer moves nothing."""
         names, anchor = list(self._master), self._anchor(place)
         behind = {at: other for other, at in self._chosen.items() if at > place}
         return (
@@ -248,7 +248,7 @@ class _Sorting:
         return filled
 
     def _may_be_answered_elsewhere(self, name: str) -> bool:
-        """True if another cell answers a missing one, or a person must look: nbgrader would give zero points for a stub."""
+        """True if another cell answers a missing one, or a person must look: nbgrader would give a stub zero points."""
         by_a_person = self._master[name].metadata.nbgrader.get("grade", False) and bool(self._matches.own)
         return name in self._elsewhere or by_a_person
 

@@ -142,7 +142,7 @@ def _opened(path: Path) -> Iterator[IO[bytes]]:
             yield file
     except FileNotFoundError:
         raise UnreadableSubmission(
-            f"There is no notebook named {path.name} in the submission.{_found_instead(path.parent)}"
+            f"The submission contains no notebook named {path.name}.{_found_instead(path.parent)}"
         ) from None
     except OSError as error:
         raise NotAFile(f"{_shown(path.name)} could not be read: {error.strerror}.") from None

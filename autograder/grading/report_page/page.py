@@ -1,4 +1,4 @@
-"""The page: one file without script and without anything from a network, readable in black and white."""
+"""The page about a class: one file without scripts or network access, readable in black and white."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ _LONGEST_NAME = 200
 
 @dataclass(frozen=True)
 class _Person:
-    """A student, as the page shows them.
+    """A student as shown on the page.
 
     Attributes:
-        shown: The name, or a number where names are left out.
-        links: Feedback pages by assignment, relative to the page; empty where names are left out.
+        shown: The name, or a number if names are hidden.
+        links: The feedback pages by assignment, relative to the page; empty if names are hidden.
     """
 
     shown: str
@@ -49,15 +49,15 @@ def write_report(
 
     Args:
         path: The class directory.
-        names: Show names, with links to the pages of feedback.
+        names: True to show names, with links to the pages of feedback.
         to: The file to write; ``report.html`` in the class by default.
-        sections: Only the students of these; all where empty.
+        sections: Only the students of these sections; all students if empty.
 
     Returns:
         The absolute path of the file.
 
     Raises:
-        GradingError: Nothing was handed in, or the class cannot be read.
+        GradingError: No work was handed in, or the class cannot be read.
     """
     directory = ClassDirectory(path)
     to = (to or directory.path / NAME).absolute()
@@ -114,17 +114,17 @@ def _people(directory: ClassDirectory, table: ClassTable, *, names: bool, folder
         for assignment in table.assignments:
             pages = sorted((directory.path / "feedback" / student / assignment).glob("*.html"))
             if pages:
-                # A page that was written elsewhere keeps the whole path.
+                # A page outside the class's folder keeps its whole path.
                 inside = pages[0].is_relative_to(folder)
                 links[assignment] = quote(str(pages[0].relative_to(folder))) if inside else pages[0].as_uri()
         name = table.roster.students[student].name
-        # In an LMS, people name themselves.
+        # In an LMS, users name themselves.
         people[student] = _Person(one_line(f"{name} ({student})" if name else student, _LONGEST_NAME), links)
     return people
 
 
 def _dropped(table: ClassTable) -> dict[str, list[str]]:
-    """The assignments that ``drop_lowest`` leaves out of a student's total; empty where it leaves out none."""
+    """Return the assignments that ``drop_lowest`` leaves out of a student's total; empty if it leaves out none."""
     found: dict[str, list[str]] = {}
     for row in table.rows:
         if row.exercise == DROPPED:
@@ -139,13 +139,13 @@ def _cell(row: Row | None) -> str:
 
 
 def _progress(store: ClassStore, table: ClassTable) -> list[figures.Progress]:
-    """The students who handed in again after a grading, those who gained most first."""
+    """Return the students whose work was graded more than once, those who gained most first."""
     found = [one for student in table.students for one in figures.progress(student, store.attempts(student))]
     return sorted(found, key=lambda one: one.first - one.last)
 
 
 def _times(directory: ClassDirectory, table: ClassTable) -> list[dict[str, object]]:
-    """The times of handing in, before or after it was due, beside the points."""
+    """Return the times of handing in relative to the due date, with the points."""
     records = CollectedRecords(directory.state)
     found: list[dict[str, object]] = []
     for (student, assignment), entry in sorted(

@@ -1,4 +1,4 @@
-"""Statistics of a class from its table: numbers only, no page."""
+"""Statistics of a class, computed from its table."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ if TYPE_CHECKING:
 BANDS = 10
 _ABSENT = (NOT_SUBMITTED, EXCUSED)
 _FEWEST = 3
-"""The number of students from which on a correlation says something."""
+"""The smallest number of students for a meaningful correlation."""
 
 
 @dataclass(frozen=True)
 class Band:
-    """A tenth of the points.
+    """A tenth of the range of points.
 
     Attributes:
-        low: Its lower end, in percent.
-        high: Its upper end; the last band has the full points, too.
-        students: The students in it.
+        low: The lower end in percent.
+        high: The upper end in percent; the last band includes full points.
+        students: The number of students in the band.
     """
 
     low: int
@@ -44,8 +44,8 @@ class CriterionFigures:
 
     Attributes:
         title: The criterion's title.
-        passed: The number of submissions that meet it.
-        of: The number of submissions in which it was looked for.
+        passed: The number of submissions that meet the criterion.
+        of: The number of submissions in which the criterion was judged.
     """
 
     title: str
@@ -55,19 +55,19 @@ class CriterionFigures:
 
 @dataclass(frozen=True)
 class ItemFigures:
-    """The statistics of one exercise, over those who have handed it in.
+    """The statistics of one exercise, over the students who handed it in.
 
     Attributes:
-        exercise: Its id; where several assignments have cells of that name, with the assignment's in front.
-        max_score: Points that can be had.
+        exercise: The exercise's id, preceded by the assignment's name if several assignments have cells of that name.
+        max_score: The most points for the exercise.
         handed_in: The number of students who have handed it in.
         mean: Their mean points.
-        full: The number of them who have all points.
-        none: The number of them who have no points.
-        difficulty: The mean as a share of the points that can be had: a high one is an easy exercise.
-        discrimination: The correlation (Pearson's) of its points with those of all other exercises, from -1 to 1; None
-            where there is none.
-        criteria: Its criteria, in the order of the exercise.
+        full: The number of these students with full points.
+        none: The number of these students without points.
+        difficulty: The mean as a share of the most points: a high value means an easy exercise.
+        discrimination: The correlation (Pearson's) of its points with those of all other exercises, from -1 to 1;
+            None if it cannot be computed.
+        criteria: The figures of its criteria, in the order of the exercise.
     """
 
     exercise: str
@@ -83,13 +83,13 @@ class ItemFigures:
 
 @dataclass(frozen=True)
 class MistakeFigures:
-    """A mistake that was recognised.
+    """A recognized mistake.
 
     Attributes:
         assignment: The assignment's name.
         exercise: The exercise's id.
         key: The mistake's key.
-        reason: The words that the first of them was told.
+        reason: The text that the first of these students got.
         students: The students who made it.
     """
 
@@ -102,15 +102,15 @@ class MistakeFigures:
 
 @dataclass(frozen=True)
 class Progress:
-    """The judge's points of somebody's first and last attempt at an assignment.
+    """The judge's points of a student's first and last attempt at an assignment.
 
     Attributes:
         student: The student's id.
         assignment: The assignment's name.
-        attempts: The number of times that different work was graded.
-        first: Points of the first one.
-        last: Points of the last one.
-        max_score: Points that the judge can give.
+        attempts: The number of times that changed work was graded.
+        first: The points of the first attempt.
+        last: The points of the last attempt.
+        max_score: The most points that the judge gives.
     """
 
     student: str
@@ -122,15 +122,15 @@ class Progress:
 
 
 def progress(student: str, attempts: Iterable[Attempt]) -> list[Progress]:
-    """The course of a student's attempts.
+    """Return how a student's points developed over the attempts.
 
     Args:
         student: The student's id.
-        attempts: All that were graded, the first one first. What was graded with another version of the course than
-            the last one is left out: its points say nothing about the student.
+        attempts: All graded attempts, the first one first. Those graded with another version of the course than the
+            last one are left out, because their points are not comparable.
 
     Returns:
-        An entry for each assignment of which different work was graded.
+        An entry for each assignment that was graded with changed work.
     """
     found: dict[str, list[Attempt]] = defaultdict(list)
     for attempt in attempts:
@@ -147,7 +147,7 @@ def progress(student: str, attempts: Iterable[Attempt]) -> list[Progress]:
 
 
 def bands(table: ClassTable) -> list[Band]:
-    """The spread of the students over the share of the points that each can have, without those who have none yet."""
+    """Return the distribution of students by their share of the points, without students who have none yet."""
     found: dict[int, list[str]] = defaultdict(list)
     for student in handed_in(table):
         if (points := table.score(student)) is None:
@@ -160,7 +160,7 @@ def bands(table: ClassTable) -> list[Band]:
 
 
 def handed_in(table: ClassTable) -> list[str]:
-    """The students who have handed in anything."""
+    """Return the students who have handed in at least one assignment."""
     return [
         student
         for student in table.students
@@ -169,7 +169,7 @@ def handed_in(table: ClassTable) -> list[str]:
 
 
 def totals(table: ClassTable) -> list[float]:
-    """The points of everybody who has any; where nothing is graded yet, there are none."""
+    """Return the points of every student who has any; empty if nothing is graded yet."""
     return [points for student in handed_in(table) if (points := table.score(student)) is not None]
 
 
@@ -210,7 +210,7 @@ def _key(row: Row) -> tuple[str, str]:
 
 
 def mistakes(table: ClassTable) -> list[MistakeFigures]:
-    """The mistakes that were recognised, the commonest first."""
+    """Return the recognized mistakes, the most common first."""
     found: dict[tuple[str, str, str], list[Row]] = defaultdict(list)
     for row in table.rows:
         if row.diagnosis:
@@ -232,7 +232,7 @@ def _correlation(ours: Sequence[float], others: Sequence[float]) -> float | None
 
 
 def _criteria(table: ClassTable, store: ClassStore) -> dict[tuple[str, str], list[CriterionFigures]]:
-    """The figures of each criterion, from the verdicts that the table's points came from."""
+    """Return the figures of each criterion, from the verdicts behind the points in the table."""
     counted = {(row.student, row.assignment) for row in table.rows if row.state in ("passed", "failed")}
     seen: dict[tuple[str, str], dict[str, CriterionFigures]] = defaultdict(dict)
     for student, assignment in sorted(counted):

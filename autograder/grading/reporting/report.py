@@ -1,4 +1,4 @@
-"""The result of grading a class, and the same as one JSON object: what ``grade --json`` prints."""
+"""The result of grading a class, as an object and as the JSON that ``grade --json`` prints."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from autograder.grading.table.point_differences import Difference
 
 FORM = 2
-"""Of the JSON object: goes up when a field is renamed or taken away."""
+"""The version of the JSON object: increased when a field is renamed or removed."""
 
 
 @dataclass(frozen=True)
@@ -32,18 +32,18 @@ class GradeReport:
 
     Attributes:
         path: The class.
-        rows: By student, in the order of the course.
-        refused: Files in ``submitted`` that cannot be graded under that name.
-        problems: Other problems, each a sentence; none of them earned anybody points.
-        notices: Sentences that are worth reading, on nobody's mistake.
-        would_change: The points that would change, where nothing was entered; None where the points were entered.
-        executed: Notebooks that were run.
-        reused: Notebooks whose result was known.
-        written: Submissions entered into the gradebook in this run.
-        seconds: Wall time.
-        timings: The parts of that time.
-        note: A warning for readers of the points, where the class was graded without boxes; else empty.
-        gradebook: The file of nbgrader's gradebook; None where that is in a database server.
+        rows: The rows by student, in the order of the course.
+        refused: Files in ``submitted`` that cannot be graded under their name.
+        problems: Other problems, each a sentence; none of them gave a student points.
+        notices: Sentences that the instructor should read, but that are not about a mistake.
+        would_change: The points that would change, if nothing was entered; None if the points were entered.
+        executed: The number of notebooks that were run.
+        reused: The number of notebooks whose result was known.
+        written: The number of submissions entered into the gradebook in this run.
+        seconds: The wall time of the run in seconds.
+        timings: How this time was spent.
+        note: A warning for readers of the points, if the class was graded without boxes; else empty.
+        gradebook: The file of nbgrader's gradebook; None if a database server holds it.
         due: The due date of each assignment that has one, in the time zone of the class.
     """
 
@@ -64,23 +64,23 @@ class GradeReport:
 
     @property
     def csv(self) -> Path:
-        """The file of all rows."""
+        """The CSV file of all rows."""
         return self.path / "grades.csv"
 
     @property
     def feedback(self) -> Path:
-        """The folder of pages that go back to the students."""
+        """The folder of pages for the students."""
         return self.path / "feedback"
 
     @property
     def exit_code(self) -> int:
-        """0 when everything was graded; 2 when something could not be checked or could not be taken."""
+        """0 if everything was graded; 2 if something could not be checked or was refused."""
         unchecked = any(row.state == State.NOT_CHECKED for row in self.rows)
         return 2 if self.refused or self.problems or unchecked else 0
 
 
 def report_json(report: GradeReport) -> bytes:
-    """One line of JSON: the batch, each submission, totals and where the time went."""
+    """Return one line of JSON: the batch, each submission, totals and times."""
     return msgspec.json.encode(
         {
             "form": FORM,
@@ -112,7 +112,7 @@ def report_json(report: GradeReport) -> bytes:
 
 
 def table_json(page: Path, table: ClassTable) -> bytes:
-    """One line of JSON: each submission of a class, what waits for a person, and where the page is."""
+    """Return one line of JSON: each submission of a class, what waits for a person, and the path of the page."""
     return msgspec.json.encode(
         {
             "form": FORM,
@@ -126,7 +126,7 @@ def table_json(page: Path, table: ClassTable) -> bytes:
 
 
 def _submissions(rows: tuple[Row, ...]) -> list[dict[str, Any]]:
-    """One object for each student and assignment, in the order of the rows."""
+    """Return one object for each student and assignment, in the order of the rows."""
     found = []
     for (student, assignment), group in groupby(rows, key=lambda row: (row.student, row.assignment)):
         all_rows = list(group)

@@ -37,13 +37,13 @@ if TYPE_CHECKING:
 
 _WIDE = 130
 _NAME = 30
-"""Columns of a terminal that a student's id or name may have before it is folded."""
+"""The width of a student's id or name, in columns of a terminal, above which it is folded."""
 _ANY_WIDTH = 10_000
 _STYLES = {State.PASSED: "green", State.FAILED: "red", State.NOT_CHECKED: "yellow", WAITS: "yellow"}
 
 
 def show(report: GradeReport, console: Console | None = None) -> None:
-    """Print the table, what could not be graded, and where everything is.
+    """Print the table, what could not be graded, and the paths of the results.
 
     Args:
         report: The result of the run.
@@ -96,16 +96,16 @@ def show(report: GradeReport, console: Console | None = None) -> None:
 
 
 def tables(rows: Sequence[Row], console: Console, *, diagnoses: bool) -> Iterator[Table]:
-    """Students down, exercises across: in several tables below each other where one is too wide, the total in the last.
+    """Yield tables with students down and exercises across; several if one is too wide, with the total in the last.
 
     Args:
         rows: The rows to show.
-        console: The console that they have to fit.
-        diagnoses: Also what is wrong where points are missing; takes about 130 columns for four exercises.
+        console: The console into which they must fit.
+        diagnoses: Also show what is wrong if points are missing; needs about 130 columns for four exercises.
     """
     grid = _Grid.of(rows, diagnoses=diagnoses)
     left = list(grid.names)
-    # A class has many rows, and rich is slow to measure a cell: of each column only the widest one is measured.
+    # rich is slow to measure a cell and a class has many rows, so only the widest cell of each column is measured.
     widest = grid.of_the_widest()
     no_column = _needs(widest.table([]), console)
     widths = {key: _needs(widest.table([key]), console) - no_column for key in left}
@@ -122,19 +122,19 @@ def tables(rows: Sequence[Row], console: Console, *, diagnoses: bool) -> Iterato
 
 
 def _needs(shown: Table, console: Console) -> int:
-    """The columns of a terminal that a table takes where nothing in it is cut off or folded."""
+    """Return the columns of a terminal that a table needs so that nothing is cut off or folded."""
     return console.measure(shown, options=console.options.update(width=_ANY_WIDTH)).maximum
 
 
 @dataclass(frozen=True)
 class _Grid:
-    """The content of the cells.
+    """The content of the table's cells.
 
     Attributes:
         names: The heading of each column, by assignment and exercise.
         students: The rows of each student.
         results: The row of each cell, by student, assignment and exercise.
-        diagnoses: Whether cells say what is wrong.
+        diagnoses: True if cells also say what is wrong.
     """
 
     names: Mapping[tuple[str, str], str]
@@ -151,21 +151,21 @@ class _Grid:
         return cls(columns(rows), students, results, diagnoses)
 
     def of_the_widest(self) -> Self:
-        """A grid of one student who has the widest cell of each column."""
+        """Return a grid of one student who has the widest cell of each column."""
         student = next(iter(self.students))
         by_width = sorted(self.results.values(), key=lambda row: cell_len(_cell(row, self.diagnoses).plain))
-        # Of the rows of one column the last one stays, which is the widest.
+        # The last row of each column stays, which is the widest.
         results = {(student, row.assignment, row.exercise): row for row in by_width}
         return replace(self, students={student: self.students[student]}, results=results)
 
     def table(self, keys: Sequence[tuple[str, str]], *, is_last: bool = False) -> Table:
-        """A table of these columns; the last one has what being late costs, what is dropped and the total, too."""
+        """Return a table of these columns; the last also has the late penalty, dropped assignments and the total."""
         there = {exercise for _, _, exercise in self.results} if is_last else set()
         late, dropped = LATE in there, DROPPED in there
         shown = Table(header_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
         shown.add_column("student", overflow="fold", max_width=_NAME)
         for key in keys:
-            # In two lines, so that four exercises fit a terminal of 80 columns.
+            # In two lines, so that four exercises fit into a terminal of 80 columns.
             shown.add_column(self.names[key].replace(".", "\n."), no_wrap=True)
         if late:
             shown.add_column("late", justify="right", no_wrap=True)
@@ -194,7 +194,7 @@ def _taken_off(rows: Sequence[Row]) -> Text:
 
 
 def _diagnoses(rows: Sequence[Row]) -> Table:
-    """A line for each exercise in which a mistake was recognised."""
+    """Return a table with a line for each exercise in which a mistake was recognized."""
     names = columns(rows)
     shown = Table.grid(padding=(0, 2))
     for row in rows:
@@ -204,7 +204,7 @@ def _diagnoses(rows: Sequence[Row]) -> Table:
 
 
 def _unreadable(report: GradeReport) -> list[tuple[str, str]]:
-    """A line, with the reason, for each file that is no notebook; refused ones are listed elsewhere."""
+    """Return a line, with the reason, for each file that is not a notebook; refused files are listed elsewhere."""
     refused = {(entry.path.parent.parent.name, entry.path.parent.name) for entry in report.refused}
     reasons = {
         f"{row.student}/{row.assignment}": row.reason
@@ -224,7 +224,7 @@ def _cell(row: Row | None, diagnoses: bool) -> Text:
 
 
 def _legend(rows: Sequence[Row]) -> list[str]:
-    """The meaning of the marks behind points, as far as there are any."""
+    """Return the meaning of the marks after points, if there are any."""
     waiting = sum(row.waits for row in rows)
     marks = {row.mark for row in rows}
     found = ["*  a person gave these points, or some of them"] if "*" in marks else []
@@ -234,6 +234,6 @@ def _legend(rows: Sequence[Row]) -> list[str]:
 
 
 def _near(path: Path) -> Path:
-    """A path as short as it can be typed from here."""
+    """Return the shortest form of a path that can be typed in the current folder."""
     here = path.cwd()
     return path.relative_to(here) if path.is_relative_to(here) else path

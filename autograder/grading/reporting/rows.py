@@ -21,17 +21,17 @@ if TYPE_CHECKING:
 
 NOT_SUBMITTED = "not_submitted"
 NOT_GRADED = "not_graded"
-"""Handed in, but left out of each run so far."""
+"""The state of an exercise that was handed in but not yet graded by any run."""
 WAITS = "waits"
-"""A cell that a person gives points for, and that has none yet."""
+"""The state of a cell that a person grades, and that has no points yet."""
 BY_HAND = "by_hand"
-"""A cell that a person has given points for."""
+"""The state of a cell for which a person has given points."""
 EXCUSED = "excused"
-"""The student need not do the assignment, as students.csv says: it counts neither for nor against anybody."""
+"""The state of an assignment that students.csv excuses the student from: it counts for no student."""
 LATE = "late"
-"""Stands in place of the exercise in the row with the points that are taken off for being late."""
+"""Replaces the exercise's name in the row with the late penalty."""
 DROPPED = "dropped"
-"""Stands there in the row that takes one of a student's lowest assignments out of the total, and of nothing else."""
+"""Replaces it in the row that takes one of a student's lowest assignments out of the total."""
 NO_EXERCISE = (LATE, DROPPED)
 COLUMNS = (
     "student",
@@ -55,7 +55,7 @@ _NOTHING_JUDGED = (NOT_SUBMITTED, NOT_GRADED, EXCUSED, State.NOT_CHECKED)
 
 
 def total(rows: Iterable[Row]) -> float | None:
-    """The points of several rows together; None where none of them is judged."""
+    """Return the points of several rows together; None if none of them is judged."""
     scores = [score for row in rows if (score := row.shown_score) is not None]
     return round(sum(scores), 4) if scores else None
 
@@ -67,19 +67,19 @@ class Row:
     Attributes:
         student: The student's id.
         assignment: The assignment's name.
-        exercise: The exercise's id; the name of a cell that a person gives points for; ``late`` or ``dropped``.
-        score: Points in the gradebook, those that a person gave included.
-        max_score: Points that can be had.
+        exercise: The exercise's id; the name of a cell that a person grades; ``late`` or ``dropped``.
+        score: The points in the gradebook, including those that a person gave.
+        max_score: The most points for the exercise.
         state: ``passed``, ``failed``, ``not_checked``, ``not_graded``, ``not_submitted``, ``excused``, ``waits``,
             ``by_hand``, ``late`` or ``dropped``.
-        diagnosis: The key of the mistake, empty for none.
-        reason: Its text, empty for none.
-        judged: The judge's points in the gradebook; None where it has none.
-        by_hand: Points that a person gave in their place; None where nobody did.
+        diagnosis: The key of the mistake; empty for none.
+        reason: The text of the mistake; empty for none.
+        judged: The judge's points in the gradebook; None if there are none.
+        by_hand: The points that a person gave instead; None if no person did.
         extra: Points that a person gave on top.
-        waits: Whether a person has to look at it.
-        name: The student's name, empty where it is not known.
-        remarks: Sentences on what was put right in the notebook, such as cells that were missing.
+        waits: True if a person has to look at it.
+        name: The student's name; empty if unknown.
+        remarks: Sentences about repairs of the notebook, such as missing cells.
     """
 
     student: str
@@ -99,34 +99,34 @@ class Row:
 
     @property
     def is_blank(self) -> bool:
-        """True if nothing is judged yet: such a row has no points, which is not zero points."""
+        """True if nothing is judged yet: such a row has no points, which differs from zero points."""
         return self.state in _NOTHING_JUDGED and self.by_hand is None and not self.extra
 
     @property
     def is_unchecked(self) -> bool:
-        """True if it was handed in and nothing is known of it: the next run may have its points."""
+        """True if it was handed in but not judged: the next run may give points."""
         return self.is_blank and self.state in (NOT_GRADED, State.NOT_CHECKED)
 
     @property
     def is_to_come(self) -> bool:
-        """True if its points are still to come: from the next run, or from a person."""
+        """True if its points are still to come, from the next run or from a person."""
         return self.is_unchecked or self.state == WAITS
 
     @property
     def shown_score(self) -> float | None:
-        """The points; None where there are none to be had."""
+        """The points; None if nothing is judged yet."""
         return None if self.is_blank else self.score
 
     @property
     def mark(self) -> str:
-        """Behind the points: ``?`` where they wait for a person, ``*`` where a person gave some of them, or nothing."""
+        """The mark after the points: ``?`` if they wait for a person, ``*`` if a person gave some of them, or none."""
         return "?" if self.waits else "*" if self.by_hand is not None or self.extra else ""
 
 
 def columns(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
-    """The name of the column for each exercise, by assignment and exercise.
+    """Return the column name of each exercise, by assignment and exercise.
 
-    Cells of an instructor's own are often called alike in several assignments; then the assignment is in front.
+    Instructors often use one cell name in several assignments; then the assignment's name comes first.
     """
     keys = list(
         dict.fromkeys((row.assignment, row.exercise) for row in rows if row.exercise not in NO_EXERCISE)
@@ -160,7 +160,7 @@ def rows_of(task: Task, execution: Execution) -> list[Row]:
 
 
 def remarks_on(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
-    """The remarks on the notebooks of each student and assignment, in one line; only of those that have any."""
+    """Return the remarks on the notebooks of each student and assignment, in one line; only if there are any."""
     found: dict[tuple[str, str], dict[str, None]] = {}
     for row in rows:
         found.setdefault((row.student, row.assignment), {}).update(dict.fromkeys(row.remarks))
@@ -168,16 +168,16 @@ def remarks_on(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
 
 
 def write_csv(path: Path, rows: Iterable[Row]) -> None:
-    """Write the rows as UTF-8 CSV with the mark by which Excel knows it, replacing the file as a whole.
+    """Write the rows as CSV in UTF-8 with the mark by which Excel recognizes it, replacing the file as a whole.
 
     Raises:
-        OSError: It could not be written; an earlier file is still there then.
+        OSError: The file could not be written; an earlier file is then unchanged.
     """
     write_whole(path, csv_text([COLUMNS, *map(csv_cells, rows)]).encode("utf-8-sig"))
 
 
 def csv_cells(row: Row) -> tuple[str | float, ...]:
-    """A row as the cells of :data:`COLUMNS`."""
+    """Return a row as the cells of :data:`COLUMNS`."""
     return (
         row.student,
         row.assignment,

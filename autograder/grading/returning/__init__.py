@@ -1,1 +1,1 @@
-"""The pages that go back to the students, with nothing harmful in them."""
+"""The feedback pages for students, with nothing harmful in them."""

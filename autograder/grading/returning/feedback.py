@@ -1,4 +1,4 @@
-"""The pages that go back to the students, made one after the other with templates that are read once."""
+"""Makes the feedback pages for students, one after the other, with templates that are read once."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ class FeedbackPages:
         """Make the page of each notebook of a graded submission.
 
         Args:
-            submission: It is in ``autograded/`` and in the gradebook.
-            notebooks: Their names.
+            submission: A submission that is in ``autograded/`` and in the gradebook.
+            notebooks: The names of its notebooks.
 
         Raises:
             OSError: A page could not be written.
@@ -75,7 +75,7 @@ class FeedbackPages:
 
 
 def _fill_in(cell: Any, cells: Mapping[str, CellEntry]) -> None:
-    """Put into a cell what nbgrader's GetGrades puts there for the template."""
+    """Put into a cell what nbgrader's GetGrades would put there for the template."""
     marks: Mapping[str, Any] = cell.metadata.get("nbgrader", {})
     known = cells.get(marks.get("grade_id", ""))
     if known is None:

@@ -1,10 +1,9 @@
-"""A budget for the texts of one notebook when a page is made of them.
+"""A time budget for rendering the texts of one notebook on a page.
 
-Parsers of Markdown and of code can be kept busy for minutes by a text that was made for it. So what a student wrote is
-rendered for trial by the worker that has executed it, which may be interrupted and holds nobody else up. The trial
-takes the same steps as nbconvert's template of a page. What goes beyond the notebook's budget is shown as it was typed
-and cut short (:func:`autograder.grading.returning.sanitize.make_harmless`), in nbgrader's pages and in formgrader
-alike.
+A text can be crafted to keep parsers of Markdown and code busy for minutes. So the worker that has executed a
+student's notebook also renders its texts for trial: it can be interrupted without delaying other work. The trial
+takes the same steps as nbconvert's template of a page. Text beyond the notebook's budget is shown as typed and cut
+short (:func:`autograder.grading.returning.sanitize.make_harmless`), both in nbgrader's pages and in formgrader.
 """
 
 from __future__ import annotations
@@ -21,17 +20,17 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 SECONDS = 0.5
-"""Of processor time for a notebook; what students usually write takes a few hundredths."""
+"""Processor time for a notebook; usual texts take a few hundredths of a second."""
 
 
 def too_costly(cells: Sequence[Cell], seconds: float = SECONDS) -> tuple[int, ...]:
-    """The places of the cells that have to be shown as they were typed.
+    """Return the indexes of the cells that must be shown as typed.
 
-    Call it in a process that may be interrupted, from its main thread.
+    Call it in the main thread of a process that may be interrupted.
 
     Args:
         cells: The cells of a rebuilt notebook.
-        seconds: Of processor time for all of them together.
+        seconds: Processor time for all cells together.
     """
     own = [(place, cell) for place, cell in enumerate(cells) if cell.own and cell.source]
     if sum(len(cell.source) for _, cell in own) <= HARMLESS_LENGTH:
@@ -46,7 +45,7 @@ def too_costly(cells: Sequence[Cell], seconds: float = SECONDS) -> tuple[int, ..
 
 
 def _beyond(seconds: float, cells: Sequence[tuple[int, Cell]]) -> tuple[int, ...]:
-    """The places of the first cell that goes beyond the budget, and of all behind it."""
+    """Return the indexes of the first cell that goes beyond the budget, and of all cells after it."""
     render = _renderer()
     found = []
     left = seconds
@@ -65,7 +64,7 @@ def _beyond(seconds: float, cells: Sequence[tuple[int, Cell]]) -> tuple[int, ...
 
 
 def _renderer() -> Callable[[Cell], object]:
-    """A function that renders the text of a cell as a page does; its imports are only for those who need it."""
+    """Return a function that renders a cell's text as a page does; its imports are made only if it is needed."""
     from bs4 import BeautifulSoup
     from nbconvert.filters.highlight import Highlight2HTML
     from nbconvert.filters.markdown_mistune import markdown2html_mistune
@@ -76,13 +75,13 @@ def _renderer() -> Callable[[Cell], object]:
     highlight = Highlight2HTML(pygments_lexer="ipython3")
 
     def render(cell: Cell) -> object:
-        # nbconvert/templates/lab/base.html.j2: its blocks "markdowncell" and "input".
+        # The blocks "markdowncell" and "input" of nbconvert/templates/lab/base.html.j2.
         if cell.kind is CellType.CODE:
             piece = clean_html(highlight(cell.source))
         elif cell.kind is CellType.MARKDOWN:
             piece = strip_files_prefix(clean(markdown2html_mistune(harmless_markdown(cell.source))))
         else:
-            return None  # shown as it was typed in any case
+            return None  # always shown as typed
         return BeautifulSoup(piece, "html.parser")  # nbconvert/exporters/html.py: from_notebook_node
 
     for kind in (CellType.CODE, CellType.MARKDOWN):

@@ -1,4 +1,4 @@
-"""The making of a feedback page: nbgrader's template, with nothing in it that a browser executes or fetches."""
+"""Makes a feedback page: nbgrader's template without anything that a browser executes or fetches."""
 
 from __future__ import annotations
 
@@ -32,7 +32,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
-"""The rights of a browser on a page: show its own text, styles and pictures (W3C, "Content Security Policy")."""
+"""A browser's rights on a page: it may show the page's own text, styles and pictures (W3C, "Content Security
+Policy").
+"""
 
 _OURS = Path(__file__).parents[1] / "page_templates"
 _FORMGRADER = Path(nbgrader.__file__).parent / "server_extensions" / "formgrader"
@@ -40,19 +42,19 @@ _NBGRADERS = _FORMGRADER / "templates"
 _BOOTSTRAP = _FORMGRADER / "static" / "node_modules" / "bootstrap" / "dist" / "css"
 _SCRIPT = re.compile(r"<script\b.*?</script\s*>", re.DOTALL | re.IGNORECASE)
 _REMEMBERED = 1024
-"""Pieces of code; the given cells of a chapter are a few hundred."""
+"""The number of pieces of code to remember; the given cells of a chapter are a few hundred."""
 _REMEMBERED_CHARACTERS = 8_000_000
-"""Of rendered parts of pages; those that the students of a chapter share have about a million."""
+"""Characters of rendered parts to remember; those that a chapter's students share have about a million."""
 _PICTURE = re2.compile(r"(?i)<img\b[^>]*")
 _SHOWS_ATTACHED = re2.compile(r'(?P<before><img\b(?:\s+[\w-]+="[^"]*")*?\s+)src="attachment:(?P<name>[^"]*)"')
 _ALTERNATIVE = re2.compile(r"(?i)\salt=")
 
 
 class Remembered:
-    """A cache of values by what they were made of; the longest unused is forgotten first.
+    """A cache of texts by the values they were made from; the longest unused text is dropped first.
 
     Args:
-        characters: Of all texts together, at most.
+        characters: The limit for all texts together.
     """
 
     def __init__(self, characters: int) -> None:
@@ -60,13 +62,13 @@ class Remembered:
         self._texts: OrderedDict[bytes, str] = OrderedDict()
 
     def get(self, of: Any, make: Callable[[], str]) -> str:
-        """The text that was made of exactly this, made now where it is not known.
+        """Return the text made from these values; make it if it is not in the cache.
 
         Args:
-            of: All that the text depends on, as JSON has it.
+            of: Everything that the text depends on, as JSON values.
             make: Makes the text.
         """
-        # Students write a part of it: a hash for which nobody can find two values, and not the values themselves.
+        # Students write a part of it, so the key is a hash for which no student can find two values.
         key = hashlib.sha256(msgspec.json.encode(of)).digest()
         known = self._texts.get(key)
         if known is not None:
@@ -82,16 +84,17 @@ class Remembered:
 
 
 class PageExporter(HTMLExporter):
-    """nbgrader's feedback page without scripts, for notebooks that cannot be trusted.
+    """nbgrader's feedback page without scripts, safe for untrusted notebooks.
 
-    nbgrader's own page loads MathJax from the network. Without it, formulas are shown as TeX. The parts that many
-    students share are rendered once. Nbconvert copies and validates a notebook twice on its way to the template, for
-    preprocessors that may change it. Here there are none, so the template is rendered from the notebook itself.
+    nbgrader's own page loads MathJax from the network; without it, formulas are shown as TeX. Parts that many
+    students share are rendered once. Nbconvert copies and validates a notebook twice before it reaches the template,
+    in case a preprocessor changes it. There are no preprocessors here, so the template is rendered from the notebook
+    itself.
     """
 
     @property
     def default_config(self) -> Config:
-        """Our page, built upon nbgrader's."""
+        """The settings of this page, in addition to nbgrader's."""
         config = Config(
             {
                 "PageExporter": {
@@ -115,7 +118,7 @@ class PageExporter(HTMLExporter):
         self._set_filter("markdown2html", markdown_to_html)
 
     def default_filters(self) -> Iterator[tuple[str, Any]]:
-        """The filters of nbconvert, with ours in their place."""
+        """The filters of nbconvert, some replaced by those of this module."""
         filters: Any = super().default_filters
         yield from filters()
         yield "without_scripts", without_scripts
@@ -126,8 +129,8 @@ class PageExporter(HTMLExporter):
         """Make the page of one notebook.
 
         Args:
-            notebook: As it is in ``autograded/``, with points and comments filled in; it is changed.
-            names: What the template asks of the student, the notebook and the points.
+            notebook: The notebook from ``autograded/``, with points and comments filled in; it is changed.
+            names: The values of the template for the student, the notebook and the points.
         """
         language = notebook.metadata.get("language_info", {})
         lexer = language.get("pygments_lexer", language.get("name", None))
@@ -140,20 +143,20 @@ class PageExporter(HTMLExporter):
 
     @functools.cached_property
     def _resources(self) -> dict[str, Any]:
-        """The resources that nbconvert hands to a template: the same for all, so made for an empty notebook."""
+        """The resources that nbconvert passes to a template: always the same, so an empty notebook provides them."""
         initialise: Any = self._init_resources
         names = {"notebook": "", "score": 0.0, "max_score": 0.0, "late_penalty": 0.0}
-        # Below it nbconvert looks for custom/custom.css; without it, below the current folder.
+        # nbconvert looks for custom/custom.css below this folder, or else below the current one.
         resources: dict[str, Any] = initialise({"nbgrader": names, "config_dir": str(_OURS)})
         shown: Any = WidgetsDataTypeFilter(notebook_metadata={}, parent=self, resources=resources)
         self._set_filter("filter_data_type", shown)
-        convert: Any = TemplateExporter.from_notebook_node  # HTMLExporter's would parse the page anew
+        convert: Any = TemplateExporter.from_notebook_node  # HTMLExporter's method would parse the page again
         _, resources = convert(self, nodes.notebook([], {}), resources)
         return resources
 
     def _part(self, lexer: str | None, render: Callable[[], str], depends_on: Any) -> str:
         if isinstance(depends_on, NotebookNode) and is_check(depends_on):
-            return render()  # its card is this student's
+            return render()  # it contains this student's card
         return self._parts.get((lexer, depends_on), render)
 
     def _set_filter(self, name: str, function: Callable[..., Any]) -> None:
@@ -163,26 +166,26 @@ class PageExporter(HTMLExporter):
 
 @pass_context
 def markdown_to_html(context: Any, source: str) -> str:
-    """Stands for nbconvert's filter of that name; what does not come from the master word for word is cleaned.
+    """Replaces nbconvert's filter of that name; text that differs from the master is cleaned.
 
-    In ``nbgrader_config.py`` it is ``HTMLExporter.filters["markdown2html"]``, for formgrader. A picture that is not
-    attached is left out: nbconvert would make no page at all.
+    ``nbgrader_config.py`` sets it as ``HTMLExporter.filters["markdown2html"]`` for formgrader. A picture that is not
+    attached is left out, because nbconvert would make no page at all.
     """
     cell = context.get("cell", {})
     rendered = MarkdownWithMath(renderer=Renderer(escape=False)).render(source)
     harmless = rendered if is_the_masters(cell) else clean(rendered)
-    # Neither nbgrader's pages nor nbconvert's classic template keep a picture within its column.
+    # nbgrader's pages and nbconvert's classic template let a picture grow beyond its column.
     page = without_dead_links(harmless.replace("<img ", '<img style="max-width: 100%" '))
     attached = dict(cell.get("attachments", {}))
     return _with_pictures(page, attached.get if is_the_masters(cell) else attached.pop)
 
 
 def _with_pictures(page: str, take: Callable[[str, dict[str, str]], Mapping[str, str]]) -> str:
-    """A piece of a page with the pictures that are attached to its cell.
+    """Return a piece of a page with the pictures that are attached to its cell.
 
     Args:
         page: HTML in which a picture is the name of an attachment.
-        take: Takes an attachment by its name. A student's is there once: a page must not swell.
+        take: Returns an attachment by its name. A student's attachment is returned once, so that a page cannot grow.
     """
 
     def shown(tag: Any) -> str:
@@ -192,13 +195,13 @@ def _with_pictures(page: str, take: Callable[[str, dict[str, str]], Mapping[str,
     return _SHOWS_ATTACHED.sub(shown, page)
 
 
-# The same for all students of an assignment, and most of a page.
+# The head is the same for all students of an assignment, and most of a page.
 @functools.lru_cache(maxsize=16)
 def without_scripts(head: str) -> str:
-    """The head of a page without its scripts, and with the policy that forbids any other.
+    """Return the head of a page without its scripts, and with the policy that forbids any other.
 
     Args:
-        head: From a template that is trusted.
+        head: The head from a trusted template.
     """
     policy = f'<meta http-equiv="Content-Security-Policy" content="{POLICY}" />'
     return _SCRIPT.sub("", head).replace("<head>", f"<head>\n{policy}", 1)
@@ -206,7 +209,7 @@ def without_scripts(head: str) -> str:
 
 @functools.lru_cache(maxsize=8)
 def _highlighter(lexer: str | None) -> Any:
-    """Nbconvert's highlighter, with a memory of the code that it has seen."""
+    """Return nbconvert's highlighter with a cache of the code that it has seen."""
     make: Any = Highlight2HTML
     highlight = make(pygments_lexer=lexer)
 
@@ -221,7 +224,7 @@ def _highlighter(lexer: str | None) -> Any:
 
 
 def _with_alternative_texts(page: str) -> str:
-    """The last step of nbconvert on a whole page, which parses it anew, also where no picture lacks words."""
+    """Do nbconvert's last step on a whole page, which parses it again, only if a picture lacks an alternative text."""
     if all(_ALTERNATIVE.search(picture[0]) for picture in _PICTURE.finditer(page)):
         return page
     soup = BeautifulSoup(page, features="html.parser")

@@ -1,6 +1,6 @@
-"""The head of a feedback page: the student, then each exercise with its points.
+"""The head of a feedback page: the student, and a table of the exercises with their points.
 
-nbgrader's own head names nobody, and calls each exercise "Test cell".
+nbgrader's own head has no student's name, and calls each exercise "Test cell".
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from autograder.grading.entering.gradebook_reading import CellEntry
 
 WAITS = "waits_for_a_person"
-"""The mark, among nbgrader's own metadata, of a cell whose points are still to come, with the words for it."""
+"""The key, in a cell's nbgrader metadata, that marks points as still to come; its value is the text for that."""
 _FOR_A_PERSON, _TRIED_AGAIN = "waits for your instructor", "could not be checked, and is tried again"
 _BEGIN, _END = '<div id="toc">', "</div>"
 _LINK = re2.compile(r'(?s)<a\b[^>]*\bhref="([^"]*)"[^>]*>(.*?)</a>')
@@ -33,12 +33,12 @@ _CELL = "padding: 4px 14px 4px 0; vertical-align: top; text-align: left"
 
 
 def with_summary(body: str, notebook: NotebookNode, names: Mapping[str, Any]) -> str:
-    """A page with the student and a table of the exercises at the top, in the place of nbgrader's list.
+    """Return a page with the student and a table of the exercises at the top, instead of nbgrader's list.
 
     Args:
-        body: The page; nothing that a student wrote is before the list.
-        notebook: The notebook that it was made of, with points filled in.
-        names: The names that the template has for the student and the points.
+        body: The page; it has no student's text before the list.
+        notebook: The notebook of the page, with points filled in.
+        names: The template's values for the student and the points.
     """
     before, begin, rest = body.partition(_BEGIN)
     _, end, after = rest.partition(_END)
@@ -58,7 +58,7 @@ def cards_first(notebook: NotebookNode) -> list[tuple[bool, bool]]:
     """Move the checks, whose outputs are the cards, to the top of a notebook.
 
     Returns:
-        For each cell, whether the text of the lab begins with it and whether that ends with it: a page folds it.
+        For each cell, whether the lab's text begins with it, and whether it ends with it; a page folds that text.
     """
     notebook.cells = sorted(notebook.cells, key=lambda cell: not is_check(cell))
     given = [is_the_masters(cell) and not is_check(cell) for cell in notebook.cells]
@@ -69,11 +69,11 @@ def cards_first(notebook: NotebookNode) -> list[tuple[bool, bool]]:
 
 
 def mark_waiting(notebook: NotebookNode, cells: Mapping[str, CellEntry]) -> None:
-    """Mark the cells whose points a person, or the judge, still has to give.
+    """Mark the cells whose points are still to come from a person or the judge.
 
     Args:
-        notebook: A graded one; it is changed.
-        cells: The gradebook's entries of it, by grade_id.
+        notebook: A graded notebook; it is changed.
+        cells: The notebook's entries in the gradebook, by grade_id.
     """
     for cell in notebook.cells:
         entry = cells.get(grade_id(cell))
@@ -83,12 +83,12 @@ def mark_waiting(notebook: NotebookNode, cells: Mapping[str, CellEntry]) -> None
 
 
 def without_dead_links(page: str) -> str:
-    """A piece of HTML in which what would lead to a file beside the page is plain text: the page travels alone."""
+    """Turn links to files next to the page into plain text, because the page is sent alone."""
     return _LINK.sub(lambda link: link[0] if _LEADS_SOMEWHERE.match(link[1]) else link[2], page)
 
 
 def _lines(notebook: NotebookNode, names: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
-    """Name, points and a word on each of the cells with points, as HTML."""
+    """Yield the name, the points and a remark for each cell with points, as HTML."""
     for cell in notebook.cells:
         marks = cell.metadata.get("nbgrader", {})
         if not (marks.get("grade") or marks.get("task")):
@@ -106,7 +106,7 @@ def _lines(notebook: NotebookNode, names: Mapping[str, Any]) -> Iterator[tuple[s
 
 
 def _title(cell: NotebookNode) -> str:
-    """The exercise's title for a check of the judge; the cell's own name for any other."""
+    """Return the exercise's title for a check by the judge; the cell's own name for any other cell."""
     name = grade_id(cell)
     if is_check(cell) and is_the_masters(cell):
         with contextlib.suppress(LookupError):

@@ -1,7 +1,8 @@
-"""The points of a picture that a browser has to hold, read from the picture's header: nothing is decoded here.
+"""The number of pixels of a picture, read from its header without decoding it.
 
-A PNG of 30 kB may have 16,000 x 16,000 points, which take a gigabyte in a browser. Of an animated picture, each frame
-counts. Sources: PNG specification (W3C, third edition), 11.2 and 11.3.6; GIF89a, 18 to 26; ITU-T T.81, B.2.2; RFC 9649.
+A PNG of 30 kB may have 16,000 x 16,000 pixels, which take a gigabyte in a browser. Each frame of an animated picture
+counts. Sources: PNG specification (W3C, third edition), 11.2 and 11.3.6; GIF89a, 18 to 26; ITU-T T.81, B.2.2; RFC
+9649.
 """
 
 from __future__ import annotations
@@ -15,22 +16,22 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 MOST_POINTS = 100_000_000
-"""Points of all pictures of a notebook that a page may have: 400 MB in a browser, or a dozen screenshots of 4K."""
+"""The limit on pixels of all pictures of a notebook on a page: 400 MB in a browser, or a dozen screenshots of 4K."""
 _PNG = b"\x89PNG\r\n\x1a\n"
 _NO_SIZE = {0xC4, 0xC8, 0xCC}
-"""Markers of JPEG between those of a frame that begin none: tables, a reserved one, conditioning."""
+"""JPEG markers in the range of start-of-frame markers that start no frame: tables, a reserved one, conditioning."""
 _ALONE = {0x01, *range(0xD0, 0xD8)}
-"""Markers of JPEG without a segment."""
+"""JPEG markers without a segment."""
 
 
 class Pictures:
-    """The points that the pictures of a notebook may still have."""
+    """Counts the pixels of the pictures of a notebook."""
 
     def __init__(self) -> None:
         self._left = MOST_POINTS
 
     def fit(self, encoded: Iterable[str]) -> bool:
-        """Return whether there is room for all of these pictures, in base64, which take it then."""
+        """Return True, and count them, if all of these base64 pictures are within the limit."""
         wanted = sum(points_of(picture) or 0 for picture in encoded)
         if wanted > self._left:
             return False
@@ -39,15 +40,15 @@ class Pictures:
 
 
 def is_shown(encoded: str) -> bool:
-    """Return whether a page may show a picture in base64: a browser can show it, and it is not too large by itself."""
+    """True if a page may show a base64 picture: a browser can show it, and it is not too large by itself."""
     points = points_of(encoded)
     return points is not None and points <= MOST_POINTS
 
 
 def points_of(encoded: str) -> int | None:
-    """Return the points of a picture in base64, all frames together; None if it is no PNG, JPEG, GIF or WebP.
+    """Return the pixels of a base64 picture, all frames together; None if it is not a PNG, JPEG, GIF or WebP.
 
-    A browser goes by the content of a picture, not by the type that a text claims, and so does this.
+    Like a browser, this goes by the content of a picture, not by its claimed type.
     """
     try:
         data = base64.b64decode(encoded)
@@ -60,7 +61,7 @@ def points_of(encoded: str) -> int | None:
         if data[:4] == b"RIFF" and data[8:12] == b"WEBP":
             return _points_of_webp(data)
     except (binascii.Error, ValueError, struct.error, IndexError):
-        pass  # cut off, or no picture
+        pass  # incomplete, or not a picture
     return None
 
 
@@ -80,7 +81,7 @@ def _points_of_gif(data: bytes) -> int | None:
     while place < len(data) and data[place] != 0x3B:
         if data[place] == 0x2C:
             left, top, wide, high, flags = struct.unpack_from("<HHHHB", data, place + 1)
-            # A browser widens the screen to a frame that reaches beyond it.
+            # A browser enlarges the screen for a frame that reaches beyond it.
             width, height, frames = max(width, left + wide), max(height, top + high), frames + 1
             place += 11 + _colors(flags)
         else:
@@ -92,7 +93,7 @@ def _points_of_gif(data: bytes) -> int | None:
 
 
 def _colors(flags: int) -> int:
-    """The bytes of a table of colors."""
+    """Return the size of a color table in bytes."""
     return 3 << (flags & 7) + 1 if flags & 0x80 else 0
 
 
@@ -127,7 +128,7 @@ def _points_of_webp(data: bytes) -> int | None:
 
 
 def _chunks(data: bytes) -> Iterator[tuple[bytes, int]]:
-    """The kinds of a WebP's chunks, and where their contents begin."""
+    """Yield the type of each WebP chunk, and the start of its content."""
     place = 12
     while place + 8 <= len(data):
         yield data[place : place + 4], place + 8

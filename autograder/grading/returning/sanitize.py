@@ -1,10 +1,9 @@
-"""Makes a submission's texts and outputs harmless for the browser in which they are read.
+"""Makes a submission's texts and outputs harmless for a browser.
 
-nbconvert hands raw HTML, Mermaid diagrams and any address through to the page, in nbgrader's feedback and in
-formgrader alike. So a student's text is looked at with nbconvert's own Markdown parser before it is written
-into ``autograded/``: plain Markdown stays as it was written, anything else is rendered, cleaned with nh3 and
-kept as that HTML. The pages are cleaned once more where they are made
-(:mod:`autograder.grading.returning.page_exporter`).
+nbconvert passes raw HTML, Mermaid diagrams and any address to the page, in nbgrader's feedback and in formgrader. So
+a student's text is checked with nbconvert's own Markdown parser before it is written into ``autograded/``: plain
+Markdown stays as written; anything else is rendered, cleaned with nh3 and stored as HTML. The pages are cleaned again
+when they are made (:mod:`autograder.grading.returning.page_exporter`).
 """
 
 from __future__ import annotations
@@ -32,14 +31,14 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 LONGEST_MARKDOWN = 50_000
-"""Characters of a text cell that are rendered; a longer one is shown as it was typed."""
+"""The longest text cell, in characters, that is rendered; a longer one is shown as typed."""
 _MOST_PLACES = 50_000
-"""Places in the tables of a text, rows times columns: a browser keeps the borders of each, filled or not."""
+"""The limit on rows times columns of a text's tables: a browser stores the borders of each, filled or not."""
 SHOWN = (*IMAGES, "text/plain")
-"""The types of output that a cell of a submission may show; none can carry code."""
+"""The types of output that a submission's cell may show; none can contain code."""
 
 _FORMATTING = frozenset(("a", "b", "code", "em", "i", "s", "small", "strike", "strong", "tt", "u"))
-"""Elements that a parser of HTML opens anew in each block, until they are closed."""
+"""Elements that an HTML parser opens again in each block, until they are closed."""
 _TAGS = _FORMATTING | {
     *("abbr", "blockquote", "br", "caption", "center", "dd", "del", "details", "div", "dl", "dt"),
     *("h1", "h2", "h3", "h4", "h5", "h6", "hr", "img", "input", "ins", "kbd", "li", "mark", "ol", "p", "pre"),
@@ -51,26 +50,28 @@ _ATTRIBUTES = {
     "abbr": {"title"},
     "details": {"open"},
     "img": {"alt", "height", "src", "title", "width"},
-    "input": {"disabled", "type"},  # a task list's box; it cannot be ticked or typed into
+    "input": {"disabled", "type"},  # a task list's box; no one can tick it or type into it
     "ol": {"start"},
-    "td": {"colspan", "rowspan", "style"},  # mistune's way of aligning a column
+    "td": {"colspan", "rowspan", "style"},  # mistune sets the style for alignment
     "th": {"colspan", "rowspan", "style"},
     "*": {"class"},
 }
 _MOST_OPENED = 200_000
-"""Elements that a parser may have to make because formatting stays open: a text of the course has 1,700 at most."""
-# A comment; a tag, with attributes in which a quoted ">" does not end it; or a "<" that begins neither.
+"""The limit on elements that a parser may have to make for unclosed formatting; a text of the course has up to
+1,700.
+"""
+# Matches a comment; a tag, in which a quoted ">" does not end it; or a "<" that begins neither.
 _MARKUP = re2.compile(r"""<!--|</?([a-zA-Z][^\s/>]*)(?:[^<>"']|"[^"]*"|'[^']*')*>|<""")
-# The beginning of a tag, up to where it ends, or its first quotation mark.
+# Matches the beginning of a tag, up to its end or its first quotation mark.
 _TAG = re2.compile(r"""<([a-zA-Z][^\s/>]*)[^<>"']*["']?""")
 _CONTROL = dict.fromkeys((*range(1, 9), 11, 12, *range(14, 32)), "?")
-# Only what opens a page when it is clicked. No "//" at the beginning: it would be another host.
+# Only links that open a page on a click. No "//" at the beginning: it would be another host.
 _LINK = re2.compile(r"https?://\S+|mailto:[^\s:]+|#\S*|(/|/?[\w%.-][\w%./-]*)(#\S*)?")
 _PICTURE = re2.compile(r"data:image/(?:png|jpeg|gif|webp);base64,([A-Za-z0-9+/=\s]*)")
 _ATTACHED = "attachment:"
 _ATTACHMENT = re2.compile(rf"{_ATTACHED}[\w.%+-]+")
-# Those that Pygments gives to pieces of code, and mistune to a block of it: others could dress a text up as a
-# verdict, or lay it over the page.
+# Only the classes that Pygments gives to pieces of code, and mistune to code blocks: others could make a text look
+# like a verdict, or cover the page.
 _CLASSES = {name for name in STANDARD_TYPES.values() if name} | {"highlight"}
 _LANGUAGE = re2.compile(r"language-[\w+-]{1,30}")
 
@@ -79,24 +80,24 @@ _TURNS = {
     code: f"\\u{code:04x}"
     for code in (0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A))
 }
-"""Characters that turn the direction of writing: a text may look like another (Unicode TR 36, "Bidirectional Text")."""
+"""Characters that change the direction of writing: a text may look different (Unicode TR 36, "Bidirectional Text")."""
 
 
 def visible(text: str) -> str:
-    """``text`` with whatever turns the direction of writing shown as an escape."""
+    """Return ``text`` with direction changes shown as escapes."""
     return text if text.isascii() else text.translate(_TURNS)
 
 
 def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> NotebookNode:
-    """Change what a student wrote so that no browser executes, fetches or is misled by any of it.
+    """Change a student's texts and outputs so that no browser executes, fetches or is misled by any of it.
 
-    Cells that the master brought along stay as they are, and so do the outputs of its check cells, which the
-    judge's verdict is in. Nothing else of a notebook is believed.
+    Cells that come from the master stay unchanged, and so do the outputs of its check cells, which show the judge's
+    verdict. Nothing else in a notebook is trusted.
 
     Args:
         notebook: A rebuilt or graded notebook; it is changed.
-        as_they_are: The places of cells whose text nobody is to render, as it would take too long. Even what is shown
-            letter by letter goes through nbconvert's filters, so all of them together are cut to a length.
+        as_they_are: The indexes of cells whose text must not be rendered, because that would take too long. They are
+            shown literally, but that also goes through nbconvert's filters, so they are cut to a total length.
 
     Returns:
         The same notebook.
@@ -119,20 +120,20 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
             elif cell.cell_type == CellType.RAW:
                 cell.update(nodes.cell(CellType.MARKDOWN, as_typed(cell.source)) | {"id": cell.id})
             elif place in as_they_are:
-                cell.metadata["magics_language"] = "text"  # what nbconvert then takes the code for
+                cell.metadata["magics_language"] = "text"  # nbconvert then does not highlight the code
         if cell.cell_type == CellType.CODE and not (is_check(cell) and is_the_masters(cell)):
             cell.outputs = [_with_pictures_that_fit(harmless_output(o), pictures) for o in cell.outputs]
     return notebook
 
 
 def _pictures_of(cell: NotebookNode) -> list[str]:
-    """The pictures of a text cell, in base64: each once, however often the text shows it."""
+    """Return the pictures of a text cell, in base64: each once, however often the text shows it."""
     attached = [data for kinds in cell.get("attachments", {}).values() for data in kinds.values()]
     return [*attached, *{found[1] for found in _PICTURE.finditer(cell.source)}]
 
 
 def _with_pictures_that_fit(output: NotebookNode, pictures: Pictures) -> NotebookNode:
-    """An output in which a sentence stands for each picture that a page may not show; it is changed."""
+    """Return an output in which a sentence replaces each picture that a page may not show; the output is changed."""
     for kind in IMAGES:
         encoded = output.get("data", {}).get(kind)
         if encoded is not None and not (is_shown(text := "".join(encoded)) and pictures.fit([text])):
@@ -141,14 +142,14 @@ def _with_pictures_that_fit(output: NotebookNode, pictures: Pictures) -> Noteboo
     return output
 
 
-# Most text cells of a class are the ones that were handed out: looked at once, not once a student.
+# Most text cells of a class are unchanged ones, checked once instead of once for each student.
 @functools.lru_cache(maxsize=1024)
 def harmless_markdown(source: str, figures: tuple[str, ...] = ()) -> str:
-    """Markdown that says the same as ``source`` and can do nothing.
+    """Return Markdown with the same text as ``source`` that can do nothing harmful.
 
     Args:
-        source: Whatever a student typed into a text cell.
-        figures: The names of the bitmaps that are attached to the cell; each may be shown once.
+        source: A student's text cell.
+        figures: The names of the bitmaps attached to the cell; each may be shown once.
     """
     if len(source) > LONGEST_MARKDOWN:
         return as_typed(source)
@@ -161,21 +162,21 @@ def harmless_markdown(source: str, figures: tuple[str, ...] = ()) -> str:
         if looking.is_plain and cleaned.count("&lt;") == rendered.count("&lt;"):
             return source
         if (in_one_line := _in_one_line(cleaned)) == source:
-            return source  # it has been here before
+            return source  # the text was cleaned before
         block = f"<div>{in_one_line}</div>"
         return block if _as_shown(block).strip() == block else as_typed(source)
-    except Exception:  # what is nested too deeply, for one; a parser may raise anything on hostile text
+    except Exception:  # such as for too deep nesting; a parser may raise anything on hostile text
         return as_typed(source)
 
 
 def as_typed(source: str) -> str:
-    """Markdown that shows ``source`` letter by letter."""
+    """Return Markdown that shows ``source`` literally."""
     fence = "`" * (3 + max((len(run) for run in re2.findall(r"`+", source)), default=0))
     return f"{fence}text\n{_cut(source, LONGEST_MARKDOWN)}\n{fence}"
 
 
 def _figures(cell: Any) -> tuple[str, ...]:
-    """The names of the bitmaps of a text cell; anything else that is attached to it is taken off."""
+    """Return the names of the bitmaps of a text cell; other attachments are removed."""
     attached = cell.pop("attachments", {})
     bitmaps = {
         name: {kind: data}
@@ -189,7 +190,7 @@ def _figures(cell: Any) -> tuple[str, ...]:
 
 
 def _longest_shown(lengths: Iterable[int]) -> int:
-    """To how many characters texts of these lengths are cut, so that all of them together are harmless."""
+    """Return the length to cut texts of these lengths to, so that all of them together are harmless."""
     left, fewest_first = HARMLESS_LENGTH, sorted(lengths)
     for place, length in enumerate(fewest_first):
         share = left // (len(fewest_first) - place)
@@ -204,16 +205,16 @@ def _cut(source: str, length: int) -> str:
 
 
 def _in_one_line(page: str) -> str:
-    """HTML without line breaks: a blank line would end the block, and Markdown would be read again behind it."""
+    """Return HTML without line breaks: a blank line would end the block, and Markdown would be parsed after it."""
     pieces = re2.split(r"(?s)(<pre\b.*?</pre>)", page.strip())
     return "".join(("&#10;" if i % 2 else " ").join(piece.splitlines()) for i, piece in enumerate(pieces))
 
 
 @functools.lru_cache(maxsize=1024)
 def clean(page: str) -> str:
-    """A piece of HTML with nothing in it but text, its structure, links and pictures that it brings along.
+    """Return HTML with nothing but text, its structure, links and embedded pictures.
 
-    A tag that may not stay is shown as text: nh3 would drop it, and with it what was meant in "List<int>".
+    A forbidden tag is shown as text: nh3 would drop it, and with it the meaning of "List<int>".
     """
     if _may_open(page) > _MOST_OPENED:
         return f"<pre>{escape(page)}</pre>"
@@ -222,20 +223,20 @@ def clean(page: str) -> str:
 
 
 def _may_open(page: str) -> int:
-    """A limit on the number of elements that nh3 makes of formatting that stays open.
+    """Return a limit on the number of elements that nh3 makes for formatting that stays open.
 
-    At each tag, it opens anew each kind of formatting that is still open, three of a kind at most. A text of 50,000
-    characters can have it make gigabytes of them, and it cannot be interrupted.
+    At each tag, nh3 opens each kind of unclosed formatting again, up to three times a kind. A text of 50,000
+    characters can make it create gigabytes of elements, and it cannot be interrupted.
     """
     tags = list(_TAG.finditer(page))
     formatting = [tag[0] for tag in tags if tag[1].lower() in _FORMATTING]
-    # A tag is not read beyond a quotation mark, so each tag with one counts as a kind of its own.
+    # A tag is read up to its first quotation mark, so each tag with one counts as a kind of its own.
     kinds = {tag for tag in formatting if tag[-1] not in "\"'"}
     return len(tags) * (3 * len(kinds) + sum(tag not in kinds for tag in formatting))
 
 
 def _shown_or_kept(markup: Any) -> str:
-    """A tag that may stay and a comment as they are, anything else as text."""
+    """Return an allowed tag or a comment unchanged, anything else as text."""
     stays = markup[0] == "<!--" or (markup[1] or "").lower() in _TAGS
     return markup[0] if stays else markup[0].replace("<", "&lt;")
 
@@ -277,7 +278,7 @@ _CLEANER = nh3.Cleaner(
 
 
 class Renderer(IPythonRenderer):
-    """nbconvert's, but for attached pictures: they come into the page last, as a megabyte takes long to be parsed."""
+    """nbconvert's renderer, except that attached pictures are inserted last, as a megabyte takes long to parse."""
 
     def _embed_image_or_attachment(self, src: str) -> str:
         embedded: str = super()._embed_image_or_attachment("" if src.startswith(_ATTACHED) else src)
@@ -285,7 +286,7 @@ class Renderer(IPythonRenderer):
 
 
 class _Looking(Renderer):
-    """Renders as nbconvert does, and notes whatever is more than plain Markdown."""
+    """Renders as nbconvert does, and notes everything that is more than plain Markdown."""
 
     def __init__(self, figures: tuple[str, ...] = ()) -> None:
         super().__init__(escape=False, exclude_anchor_links=True)
@@ -293,28 +294,25 @@ class _Looking(Renderer):
         self._left = set(figures)
 
     def block_html(self, html: str) -> str:
-        """HTML on lines of its own."""
         self.is_plain = False
         return super().block_html(html)
 
     def inline_html(self, html: str) -> str:
-        """HTML within a line."""
         self.is_plain = False
         return super().inline_html(html)
 
     def block_mermaidjs(self, code: str) -> str:
-        """A diagram, which nbconvert writes into the page without escaping it."""
+        """Note a diagram, which nbconvert writes into the page without escaping it."""
         self.is_plain = False
         return f"<pre>{escape(code)}</pre>"
 
     def link(self, text: str, url: str, title: str | None = None) -> str:
-        """A link."""
         if not _LINK.fullmatch(unescape(url)):
             self.is_plain = False
         return super().link(text, url, title)
 
     def image(self, text: str, url: str, title: str | None = None) -> str:
-        """A picture: one that comes from elsewhere would tell who reads the page, and when."""
+        """Note a picture: one from elsewhere would reveal who reads the page, and when."""
         if (name := url.removeprefix(_ATTACHED)) != url and name in self._left:
             self._left.remove(name)
             return super().image(text, url, title)
@@ -325,12 +323,12 @@ class _Looking(Renderer):
 
 
 def _as_shown(markdown: str) -> str:
-    """The form in which nbconvert will show it."""
+    """Return the form in which nbconvert will show it."""
     return MarkdownWithMath(renderer=IPythonRenderer(escape=False)).render(markdown)
 
 
 def harmless_output(output: NotebookNode) -> NotebookNode:
-    """An output of a student's cell with nothing in it but texts and bitmaps; it is changed."""
+    """Return an output of a student's cell with nothing but texts and bitmaps; the output is changed."""
     if "data" in output:
         output.data = {kind: _visible(output.data[kind]) for kind in SHOWN if kind in output.data}
         output.metadata = {}
@@ -341,7 +339,7 @@ def harmless_output(output: NotebookNode) -> NotebookNode:
 
 
 def _visible(words: Any) -> Any:
-    """The same for the text, or the lines, of an output."""
+    """Return the text, or the lines, of an output with direction changes shown as escapes."""
     if isinstance(words, str):
         return visible(words)
     return [_visible(line) for line in words] if isinstance(words, list) else words

@@ -1,7 +1,7 @@
-"""The places of the tables of a page: rows times columns.
+"""The size of the tables on a page: rows times columns.
 
-A browser keeps the borders of each place, whether a cell fills it or not. A cell of twenty characters may span 1,000
-columns, so 46 kB of text can make a table that no browser opens.
+A browser stores the borders of each position in a table, filled or not. A cell of twenty characters may span 1,000
+columns, so 46 kB of text can make a table that no browser can open.
 """
 
 from __future__ import annotations
@@ -10,13 +10,13 @@ from dataclasses import dataclass
 
 import re2
 
-# As nh3 writes tags, always with quotation marks, and with none between these.
+# Tags as nh3 writes them: attributes in quotation marks, with no quotation mark inside.
 _OF_TABLES = re2.compile(r"""<(/?table|tr|td|th)\b((?: [a-z]+="[^"]*")*)>""")
 _SPAN = re2.compile(r' (colspan|rowspan)="([0-9]+)"')
 
 
 def places_in_tables(page: str) -> int:
-    """Return an upper limit of the rows times the columns of each table, of all tables together.
+    """Return an upper limit on rows times columns, of all tables together.
 
     Args:
         page: HTML that nh3 has cleaned.
@@ -36,13 +36,13 @@ def places_in_tables(page: str) -> int:
 
 @dataclass
 class _Table:
-    """A table while it is read.
+    """A table while it is being read.
 
     Attributes:
-        rows: Its rows until now.
-        width: Columns that the cells of this row take.
-        widest: The most of these.
-        reaching: Columns of all cells that reach into later rows, where they move other cells aside.
+        rows: The number of rows so far.
+        width: The columns that the cells of the current row take.
+        widest: The largest width of any row.
+        reaching: The columns of all cells that span into later rows, and so move other cells aside.
     """
 
     rows: int = 0
@@ -51,7 +51,7 @@ class _Table:
     reaching: int = 0
 
     def add(self, name: str, columns: int, rows: int) -> None:
-        """Take the beginning of a row, or a cell, into account."""
+        """Count a new row, or a cell."""
         if name == "tr":
             self.rows, self.width = self.rows + 1, 0
             return
@@ -61,5 +61,5 @@ class _Table:
 
     @property
     def places(self) -> int:
-        """Rows times columns."""
+        """The rows times the columns."""
         return self.rows * (self.widest + self.reaching)

@@ -1,1 +1,1 @@
-"""Tasks executed, as many at once as the machine bears, by worker processes with boxes and fork servers."""
+"""Executes tasks in parallel, by worker processes with boxes and fork servers."""

@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from autograder.grading.task import Task
 
     Execute = Callable[[Iterable[Task], Callable[[Task], None]], Generator[Done, None, None]]
-    """Tasks in the order in which they are begun, and what to call when one is; results as they are ready."""
+    """Takes tasks in their order and a function to call when one begins; yields results as they are ready."""
 
 
 def remove_leftovers(directory: ClassDirectory) -> None:
-    """Remove what a killed batch has left among the temporary files, also where nothing is to be executed.
+    """Remove temporary files of a killed batch, even if nothing will be executed.
 
-    To be called by whoever holds the class's lock: nobody else is at work in it.
+    The caller must hold the class's lock, so that no other process uses the files.
     """
     sweep(directory.scratch_prefix)
 
@@ -32,8 +32,8 @@ def local(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[E
 
     Args:
         directory: The class.
-        jobs: Notebooks at once; as many as processors and memory allow where it is None.
-        judge: What makes a judge, as ``module:class``; the real one where empty.
+        jobs: The number of notebooks at once; None for as many as processors and memory allow.
+        judge: The class that makes a judge, as ``module:class``; the real one if empty.
 
     Raises:
         SandboxMissing: Submissions cannot be boxed on this machine; the message says what to do.
@@ -59,7 +59,7 @@ def cluster(
     Args:
         directory: The class.
         scheduler: The scheduler's address.
-        judge: What makes a judge, as ``module:class``; the real one where empty.
+        judge: The class that makes a judge, as ``module:class``; the real one if empty.
         tell: Called with a sentence for the instructor.
 
     Raises:

@@ -149,7 +149,7 @@ class Dispatcher:
 
         Raises:
             SchedulerGone: The scheduler cannot be reached.
-            NoWorkers: There is no worker, or none that can be given work.
+            NoWorkers: No worker exists, or none can be given work.
         """
         while not self._workers:
             news = self._link.hear(None)
@@ -356,7 +356,7 @@ class Dispatcher:
             return
         for held in self._workers[address].flights:
             self._flights[held].job.attempts -= 1  # the fault of the worker, not of the notebook
-        self._turn_out(address, f"what it says cannot be: {reason}. Look at that machine")
+        self._turn_out(address, f"it sent an impossible answer: {reason}. Look at that machine")
 
     def _turn_out(self, address: str, reason: str) -> None:
         """Give an accepted worker no more work; other workers do its tasks."""

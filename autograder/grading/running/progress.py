@@ -1,7 +1,7 @@
-"""Progress while a class is graded: a bar in a terminal, plain lines in a log file or in a notebook.
+"""Progress while a class is graded: a bar in a terminal, plain lines in a log file or a notebook.
 
-The time left is reckoned from the notebooks that are done. Where that time has passed and somebody still runs, it was
-no good measure, and what is said then is who runs for how long, and when that one is stopped at the latest.
+The time left is estimated from the finished notebooks. If that time has passed and a notebook still runs, the
+estimate was wrong; then the text names the notebook, how long it has run, and when it will be stopped at the latest.
 """
 
 from __future__ import annotations
@@ -21,39 +21,39 @@ if TYPE_CHECKING:
     from rich.progress import Task
 
 _LINES = 20
-"""Lines at most that a whole batch puts into a log file."""
+"""The most lines that a batch writes into a log file."""
 _SILENCE = 30.0
-"""Seconds after which a log file is told of whoever takes longer than was said."""
+"""Seconds after which a log file reports a notebook that runs longer than estimated."""
 
 
 def plain_line(console: Console, text: str, style: str = "") -> None:
-    """Print a text as it is: not taken for markup, not coloured by what it says, and not broken into lines."""
+    """Print a text as it is: without markup, highlighting and line breaks."""
     console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
 
 
 class _Now(ProgressColumn):
-    """The text on what is going on now: asked whenever the bar is drawn, not only when a notebook begins or ends."""
+    """Shows what is going on now: computed whenever the bar is drawn, not only when a notebook begins or ends."""
 
     def __init__(self, now: Callable[[], str]) -> None:
         super().__init__()
         self._now = now
 
     def render(self, task: Task) -> Text:
-        """The words beside the bar."""
+        """Return the text next to the bar."""
         del task
         return Text(self._now())
 
 
 class BatchProgress:
-    """Counts notebooks done, running, waiting and failed. Safe to call from any thread.
+    """Counts notebooks done, running, waiting and failed; safe to call from any thread.
 
     Args:
-        console: Where to show it.
-        total: Notebooks to execute.
-        doing: What is being done to them, as the bar says it.
-        did: The same when it is done.
-        longest: Seconds after which a notebook is stopped in any case; None where nobody knows.
-        clock: Tells seconds.
+        console: The console for the progress.
+        total: The number of notebooks to execute.
+        doing: The word for the work in the bar.
+        did: The word for finished work.
+        longest: Seconds after which a notebook is stopped in any case; None if unknown.
+        clock: Returns the time in seconds.
     """
 
     def __init__(
@@ -77,7 +77,7 @@ class BatchProgress:
         self._began = self._last = clock()
         self._closed = threading.Event()
         self._lock = threading.Lock()
-        # A notebook is no terminal: what moves the cursor there is shown as it is.
+        # A notebook is not a terminal: it would show the characters that move the cursor.
         self._lively = console.is_terminal and not console.is_jupyter
         self._bar = Progress(
             Words(doing),
@@ -104,21 +104,21 @@ class BatchProgress:
             self._bar.stop()
 
     def started(self, label: str) -> None:
-        """A notebook is being executed now.
+        """Note that a notebook begins.
 
         Args:
-            label: What it is called.
+            label: The name of the notebook.
         """
         with self._lock:
             self._running[label] = self._clock()
 
     def finished(self, label: str, failed: bool, note: str = "") -> None:
-        """A notebook is done.
+        """Note that a notebook is done.
 
         Args:
-            label: What it is called, here and when it began.
-            failed: Whether the grader itself had trouble with it.
-            note: What a line says behind its name.
+            label: The name of the notebook, as in :meth:`started`.
+            failed: True if the grader itself failed on it.
+            note: The text after the name.
         """
         with self._lock:
             self._running.pop(label, None)
@@ -133,7 +133,7 @@ class BatchProgress:
             plain_line(self._console, text)
 
     def tell(self) -> None:
-        """Say in a log file who takes longer than was said, where somebody does."""
+        """Write into a log file which notebook runs longer than estimated, if one does."""
         with self._lock:
             late = self._is_late() and f"still {', '.join(self._now())}"
         if late:
@@ -144,7 +144,7 @@ class BatchProgress:
             self.tell()
 
     def _rest(self) -> str:
-        """The text in brackets at the end of a line of the log; empty for the last line."""
+        """The text in parentheses at the end of a line of the log; empty for the last line."""
         return f" ({', '.join(self._now())})" if self._done < self._total else ""
 
     def _now(self) -> list[str]:
@@ -160,18 +160,18 @@ class BatchProgress:
         return words
 
     def _each(self) -> float:
-        """Seconds from one notebook that was done to the next."""
+        """Return the seconds from one finished notebook to the next."""
         return max(1e-3, self._last - self._began) / max(1, self._done)
 
     def _rest_of_all(self) -> float:
         return self._each() * (self._total - self._done)
 
     def _is_late(self) -> bool:
-        """True if the time that was said has passed, and somebody still runs."""
+        """True if the estimated time has passed, and a notebook still runs."""
         return bool(self._running and self._done) and self._clock() > self._last + self._rest_of_all()
 
     def _slowest(self) -> list[str]:
-        # A copy, since notebooks begin and end in other threads.
+        # A copy, because notebooks begin and end in other threads.
         label, since = min(self._running.copy().items(), key=lambda one: one[1])
         seconds = self._clock() - since
         words = [f"{label} for {_duration(seconds)} now"]

@@ -1,4 +1,4 @@
-"""The need of a sandbox: without one grading stops, or says that somebody has asked for it all the same."""
+"""Requires a sandbox: without one, grading stops unless the user explicitly asked for it."""
 
 from __future__ import annotations
 
@@ -15,33 +15,33 @@ NOTE = (
     "Graded without a sandbox: what was handed in ran with all rights of whoever graded it "
     "and could have changed any grade."
 )
-"""In the report and on each page of feedback."""
+"""Shown in the report and on each page of feedback."""
 
 
 class SandboxMissing(GradingError):
-    """Submissions cannot be boxed on this machine, and nobody has asked to grade without boxes."""
+    """Submissions cannot be boxed on this machine, and the user has not asked to grade without boxes."""
 
 
 _off: set[Path] = set()
-"""Folders of the classes that ``--unsafe-no-sandbox`` was given for; several objects may stand for one class."""
+"""Folders of the classes for which ``--unsafe-no-sandbox`` was given; several objects may stand for one class."""
 
 
 def switch_off(path: Path) -> None:
-    """Grade the class at ``path`` without boxes, from now on in this process: the option ``--unsafe-no-sandbox``."""
+    """Grade the class at ``path`` without boxes from now on, in this process: the option ``--unsafe-no-sandbox``."""
     _off.add(path.resolve())
 
 
 def switched_off(directory: ClassDirectory) -> bool:
-    """True if this class is graded without boxes, by its configuration or by :func:`switch_off`."""
+    """True if this class is graded without boxes, because of its configuration or :func:`switch_off`."""
     configured = directory.config.WireExecute.get("unsafe_no_sandbox", False)
     return bool(configured) or directory.path.resolve() in _off
 
 
 def require(directory: ClassDirectory) -> None:
-    """Make sure that submissions of this class can be boxed, or that it was said to go on without.
+    """Check that submissions of this class can be boxed, or that the user allowed grading without boxes.
 
     Raises:
-        SandboxMissing: The message says why there is none and what to do.
+        SandboxMissing: The message gives the reason, and says what to do.
     """
     if switched_off(directory):
         return

@@ -15,17 +15,17 @@ if TYPE_CHECKING:
 
 @dataclass
 class Timings:
-    """Seconds of wall time by what they were spent on; those of notebooks that ran side by side are added up.
+    """Seconds of wall time for each part of a batch; the times of parallel notebooks are added up.
 
     Attributes:
-        boxes: Boxes, kernels and judges, until they were ready and until they were gone.
-        students: Cells that are no checks: the student's own, and those that were given.
-        judge: Check cells, with the subject that is judged in them.
+        boxes: Starting and ending boxes, kernels and judges.
+        students: Cells without a check: the student's own, and given cells.
+        judge: Check cells, including the subject that is judged in them.
         rebuild: Reading submissions and building the notebooks that run.
         gradebook: Converting notebooks and entering grades.
-        feedback: Making pages.
-        first_started: When the first notebook began, in seconds since the start of the batch.
-        last_ended: When the last one was done, in the same seconds.
+        feedback: Making feedback pages.
+        first_started: The start of the first notebook, in seconds since the start of the batch.
+        last_ended: The end of the last notebook, in seconds since the start of the batch.
     """
 
     boxes: float = 0.0
@@ -38,7 +38,7 @@ class Timings:
     last_ended: float = 0.0
 
     def count(self, cells: Sequence[Cell], execution: Execution) -> None:
-        """Add one notebook's execution."""
+        """Add the times of one notebook."""
         spent = [run.seconds for run in execution.cells]
         checks = sum(
             seconds
@@ -51,7 +51,7 @@ class Timings:
 
     @contextmanager
     def measure(self, part: str) -> Iterator[None]:
-        """Add the time that the block takes to ``part``."""
+        """Add the duration of the block to ``part``."""
         began = time.monotonic()
         try:
             yield
@@ -59,7 +59,7 @@ class Timings:
             setattr(self, part, getattr(self, part) + time.monotonic() - began)
 
     def line(self) -> str:
-        """One line for a person; empty where nothing took any time."""
+        """The times as one line of text; empty if nothing took any time."""
         parts = (
             ("boxes and kernels", self.boxes),
             ("students' code", self.students),

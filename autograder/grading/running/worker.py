@@ -1,8 +1,7 @@
 """A process that executes tasks one after the other: lines of JSON on the socket that is its standard input.
 
-It is a process of its own also when there is only one notebook to grade, because it makes itself the parent
-of every daemon that a submission starts, and ends them all. When the grader that started it goes away, so
-does it.
+Even a single notebook gets a process of its own, because the process becomes the parent of every daemon that a
+submission starts, and ends them all. It ends when its grader ends.
 """
 
 from __future__ import annotations
@@ -49,17 +48,17 @@ if TYPE_CHECKING:
 
 JUDGE = "autograder.judge.serving.process:JudgeProcess"
 LAST_SECONDS = 10.0
-"""Seconds that a worker has to end in good order once its grader is gone; a grader that lives gives it less."""
+"""Seconds for a worker to end cleanly once its grader is gone; a living grader allows less."""
 MOST_EVIDENCE = 4_000_000
-"""Bytes of evidence of one notebook, as much as ten checks can have; that of later checks is not kept."""
+"""The limit on one notebook's evidence in bytes, enough for ten checks; evidence of later checks is dropped."""
 
 
 def main(arguments: list[str]) -> None:
-    """Work until the grader hangs up.
+    """Work until the grader closes the connection.
 
     Args:
-        arguments: The scratch folder, what makes a judge (``module:class``), and where the fork servers listen,
-            as JSON.
+        arguments: The scratch folder, the class that makes a judge (``module:class``), and the addresses of the fork
+            servers, as JSON.
     """
     scratch, judge = Path(arguments[0]), _imported(arguments[1])
     addresses = msgspec.json.decode(arguments[2], type=Addresses)
@@ -74,13 +73,13 @@ def main(arguments: list[str]) -> None:
 
 
 def execute(task: Task, scratch: Path, judge: Any, addresses: Addresses) -> Execution:
-    """Execute one task; whatever fails on our side is in the result.
+    """Execute one task; a failure of the grader itself is part of the result.
 
     Args:
         task: The task.
-        scratch: Where a folder for it is made.
-        judge: Makes a judge from a socket's path, a seed and what starts its process.
-        addresses: Where the fork servers listen; without one for supervisors there is no sandbox.
+        scratch: The folder in which the task gets a folder.
+        judge: Makes a judge from a socket's path, a seed and a function that starts its process.
+        addresses: The addresses of the fork servers; without one for supervisors there is no sandbox.
     """
     try:
         with contextlib.ExitStack() as stack:
@@ -90,7 +89,7 @@ def execute(task: Task, scratch: Path, judge: Any, addresses: Addresses) -> Exec
     except Exception as error:
         return task.in_trouble(f"{type(error).__name__}: {error}")
     finally:
-        # Also when we are being ended: nothing of the submission may outlive us.
+        # Even if this process is being ended: nothing of the submission may outlive it.
         end_descendants()
 
 
@@ -144,9 +143,9 @@ def _execute(
 
 
 def a_check_was_stopped(cells: Sequence[Cell], execution: Execution) -> bool:
-    """Return whether a check that the judge makes came to its cell's time limit.
+    """Return True if one of the judge's checks reached its cell's time limit.
 
-    Each wait of the judge's has a limit of its own, so that mostly tells of a crowded machine.
+    Each wait of the judge has a limit of its own, so this usually means that the machine is busy.
     """
     judged = [cell.check is not None and not cell.check.asserts for cell in cells]
     runs = zip(judged, execution.cells, strict=True)
@@ -154,24 +153,24 @@ def a_check_was_stopped(cells: Sequence[Cell], execution: Execution) -> bool:
 
 
 def patiently(seconds: float) -> Left:
-    """For so many seconds that the machine has for it, as the judge counts its own: crowded, each lasts longer."""
+    """A deadline that stretches while the machine is overloaded, as the judge's own deadlines do."""
     patience = Patience(seconds)
     return lambda: patience.left
 
 
 class _Judges:
-    """A judge for each check, on the network where the check takes place; one lives at a time.
+    """A judge for each check, on the network of that check; one judge lives at a time.
 
-    Tells a check that nobody asked for from one that the judge itself had trouble with.
+    It distinguishes a check that was never requested from one in which the judge itself failed.
 
     Args:
-        made: Makes a judge that is not started, for programs or for the notebook's own nodes.
+        made: Makes an unstarted judge: True for programs, False for the notebook's own nodes.
         runners: The exercises whose subjects are programs.
-        first: The exercise of the first check; its judge starts beside the kernel.
+        first: The exercise of the first check; its judge starts together with the kernel.
 
     Attributes:
-        evidence: What the verdicts follow from, by exercise.
-        crowded: One of them may be due to a crowded machine.
+        evidence: The evidence of the verdicts, by exercise.
+        crowded: True if one of the verdicts may be due to a busy machine.
     """
 
     def __init__(self, made: Callable[[bool], Any], runners: Collection[str], first: str) -> None:
@@ -213,9 +212,9 @@ class _Judges:
 
 
 def _ros_variables(stack: contextlib.ExitStack, *, boxed: bool) -> Mapping[str, str]:
-    """Loopback only, plain logs on stdout, and a domain of its own for the notebook's demonstrations."""
+    """Return variables for loopback only, plain logs on stdout, and a domain for the notebook's own demonstrations."""
     if boxed:
-        # Nobody else is on the network: any domain is the notebook's own.
+        # The network has no other nodes, so any domain is free.
         return {**boxed_ros_environment(), "ROS_DOMAIN_ID": "0"}
     return {**ros_environment(), "ROS_DOMAIN_ID": str(stack.enter_context(lease()))}
 
@@ -226,10 +225,10 @@ def _imported(name: str) -> Any:
 
 
 def _tasks(grader: Lines) -> Iterator[bytes]:
-    """Tasks as they come. When the grader goes away, end this process; in the middle of a task by force, if it must be.
+    """Yield tasks as they come. When the grader goes away, end this process, if necessary by force during a task.
 
-    The end of the conversation is the one sign of it: the system sends its own (PR_SET_PDEATHSIG) when the thread ends
-    that has started this process, and in a grader threads come and go.
+    The end of the connection is the only usable sign: the system's signal (PR_SET_PDEATHSIG) comes when the thread
+    ends that started this process, and a grader's threads come and go.
     """
     lines: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
     idle = threading.Event()
@@ -242,7 +241,7 @@ def _tasks(grader: Lines) -> Iterator[bytes]:
         if not idle.is_set():
             os.kill(os.getpid(), signal.SIGTERM)
         time.sleep(LAST_SECONDS)
-        # Something waits for what does not come, and so does whoever would tidy up.
+        # A thread is stuck, and so is the clean-up that waits for it.
         end_descendants()
         os._exit(1)
 

@@ -1,8 +1,8 @@
-"""A worker process that is kept from task to task, the conversation with it, and the fork servers that it asks.
+"""A worker process that is kept from task to task, the connection to it, and the fork servers that it uses.
 
-The fork servers are started at the first need and kept until this process ends: a batch starts them once, and so does
-plain ``nbgrader autograde``, which executes one notebook after the other. They end with this process, in whatever way
-it ends.
+The fork servers are started at first use and kept until this process ends: a batch starts them once, and so does
+plain ``nbgrader autograde``, which executes one notebook after the other. They end with this process, however it
+ends.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from autograder.grading.task import Task
 
 ATTEMPTS = 2
-"""The number of times that a task is tried: a second time where its worker died."""
+"""The number of times that a task is tried, because a worker may die."""
 GOODBYE_SECONDS = 2.0
 """Seconds after which a worker that was asked to end is killed, so that Ctrl-C takes less than three in all."""
 _RESULT_BYTES = 64_000_000
@@ -45,23 +45,24 @@ _changing = threading.Lock()
 
 
 class WorkerLost(RuntimeError):
-    """A worker ended or fell silent; the message says which."""
+    """A worker ended or stopped answering; the message says which."""
 
 
 class WorkerProcess:
-    """One worker process, for tasks one by one; started again when it dies.
+    """One worker process that executes tasks one by one; it is started again when it dies.
 
     Args:
-        scratch: Where submissions run; for this worker alone.
-        judge: What makes a judge, as ``module:class``.
-        boxed: Whether the first task will be executed in a box.
+        scratch: The folder in which submissions run; for this worker alone.
+        judge: The class that makes a judge, as ``module:class``.
+        boxed: True if the first task will be executed in a box.
     """
 
     def __init__(self, scratch: Path, *, judge: str = JUDGE, boxed: bool = True) -> None:
         self._scratch = scratch
         self._command = ("-m", "autograder.grading.running.worker", str(scratch), judge)
         self._boxed = boxed
-        # What the worker prints goes to a file: a pipe that nobody reads would fill up. Lives with the worker.
+        # The worker prints to a file, because a pipe that is not read would fill up. The file lives as long as the
+        # worker.
         self._log = unnamed_file()
         self._worker: subprocess.Popen[bytes] | None = None
         self._lines: Lines | None = None
@@ -70,7 +71,7 @@ class WorkerProcess:
         self._changing = threading.Lock()
 
     def stop(self) -> None:
-        """End the worker and what it runs, from any thread; a task that is being executed ends with trouble."""
+        """End the worker and what it runs, from any thread; a task in progress ends with trouble."""
         with self._changing:
             self._stopping = True
             if self._lines is not None:
@@ -78,17 +79,17 @@ class WorkerProcess:
 
     @property
     def stopping(self) -> bool:
-        """True if it was stopped: then trouble says nothing."""
+        """True if it was stopped: then a failure means nothing."""
         return self._stopping
 
     def kill(self) -> None:
-        """End a worker that does not end by itself, from any thread."""
+        """Kill a worker that does not end by itself, from any thread."""
         with self._changing:
             if self._worker is not None:
                 self._worker.kill()
 
     def execute(self, task: Task) -> Execution:
-        """Execute a task. For one thread at a time; whatever goes wrong is in the result."""
+        """Execute a task, for one thread at a time; any failure is part of the result."""
         reason = ""
         for _ in range(ATTEMPTS):
             try:
@@ -104,7 +105,7 @@ class WorkerProcess:
         return task.in_trouble(reason)
 
     def _is_stale(self) -> bool:
-        """True if the worker knows other fork servers than there are: another worker may have started them anew."""
+        """True if the worker has the addresses of old fork servers, because another worker has restarted them."""
         holds = _fork_servers_run(self._boxed)
         return not holds or self._addresses != _addresses_of_fork_servers(self._boxed)
 
@@ -129,12 +130,10 @@ class WorkerProcess:
         except Hangup as error:
             raise WorkerLost("the grader's worker process ended while it ran this submission") from error
         except msgspec.MsgspecError as error:
-            raise WorkerLost(
-                f"the grader's worker process said something else than a result: {error}"
-            ) from error
+            raise WorkerLost(f"the grader's worker process sent an invalid result: {error}") from error
 
     def _conversation(self) -> Lines:
-        """The conversation with the worker, which is started where it does not run."""
+        """Return the connection to the worker; start the worker if it does not run."""
         with self._changing:
             if self._stopping:
                 raise WorkerLost("the grading run was stopped")
@@ -150,21 +149,21 @@ class WorkerProcess:
                         stdin=its_own.fileno(),
                         stdout=self._log,
                         stderr=self._log,
-                        # Ctrl-C goes to the grader, which then ends its workers in good order.
+                        # Ctrl-C goes to the grader, which then ends its workers cleanly.
                         start_new_session=True,
                     )
                 self._lines = lines
             return self._lines
 
     def end(self) -> None:
-        """End the worker in good order. Only for the thread that executes: it alone listens to the worker."""
+        """End the worker cleanly. Only for the thread that executes, because only that one reads from the worker."""
         worker, lines = self._worker, self._lines
         if worker is None or lines is None:
             return
         lines.finish()
         end_soon(worker, GOODBYE_SECONDS)
         if worker.returncode != 0:
-            # It may not have come to tidying up after itself.
+            # It may not have cleaned up after itself.
             end_processes_in(self._scratch)
         with self._changing:
             self._worker = self._lines = None
@@ -172,10 +171,10 @@ class WorkerProcess:
 
 
 def _addresses_of_fork_servers(sandbox: bool) -> Addresses:
-    """The addresses of the fork servers, which are started where they do not run.
+    """Return the addresses of the fork servers, starting those that do not run.
 
     Args:
-        sandbox: With one for the supervisors of boxes.
+        sandbox: True to include the one for supervisors of boxes.
     """
     with _changing:
         kept = _fork_servers.get(sandbox)
@@ -194,7 +193,7 @@ def _addresses_of_fork_servers(sandbox: bool) -> Addresses:
 
 
 def _fork_servers_run(sandbox: bool) -> bool:
-    """True if all of them run that were started."""
+    """True if every fork server that was started still runs."""
     with _changing:
         kept = _fork_servers.get(sandbox)
         return kept is not None and kept.alive
@@ -202,7 +201,7 @@ def _fork_servers_run(sandbox: bool) -> bool:
 
 @atexit.register
 def _stop_fork_servers() -> None:
-    """End them all with what came from them."""
+    """End all fork servers, with the processes that they started."""
     with _changing:
         for kept in _fork_servers.values():
             kept.stop()

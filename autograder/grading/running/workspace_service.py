@@ -1,4 +1,4 @@
-"""The service beside a notebook for its checks of workspaces and launch files."""
+"""The service next to a notebook for its checks of workspaces and launch files."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ _BUILDS, _PROGRAMS = "builds", "bin"
 
 @dataclass(frozen=True)
 class Arrangement:
-    """The places of one notebook's sockets and folders.
+    """The paths of one notebook's sockets and folders.
 
     Attributes:
-        folder: Ours alone.
-        boxed: Whether there are boxes.
-        runners: The exercises whose subjects the grader builds and starts by itself.
+        folder: A folder for this notebook alone.
+        boxed: True if the notebook runs in boxes.
+        runners: The exercises whose subjects the grader builds and starts itself.
     """
 
     folder: Path
@@ -45,16 +45,16 @@ class Arrangement:
 
     @property
     def judges_folder(self) -> Path:
-        """The folder that the judge's box must see, and the student's must not."""
+        """The folder that the judge's box must see, and the student's box must not."""
         return self.folder / "jobs"
 
     @property
     def judges_socket(self) -> Path:
-        """The judge's socket, for the judge and here alike."""
+        """The judge's socket, at the same path for the judge and for the grader."""
         return self.judges_folder / "sock"
 
     def variables(self) -> Mapping[str, str]:
-        """More variables of the notebook's environment."""
+        """More environment variables for the notebook."""
         if not self.boxed:
             return {}
         path = f"{SHARED_FOLDER / _PROGRAMS}{os.pathsep}{os.environ.get('PATH', os.defpath)}"
@@ -62,11 +62,11 @@ class Arrangement:
 
 
 def arrange(task: Task, folder: Path) -> Arrangement:
-    """Prepare what there is to prepare before there are boxes.
+    """Prepare everything that is needed before the boxes are made.
 
     Args:
         task: The notebook.
-        folder: Ours alone; short, because a Unix socket will be in it.
+        folder: A folder for this notebook alone; its path is short, because it will contain a Unix socket.
     """
     checks = [cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts]
     runners = {name: exercises.get(name).runner for name in checks if name in exercises.all_ids()}
@@ -80,11 +80,11 @@ def arrange(task: Task, folder: Path) -> Arrangement:
 def served(
     arrangement: Arrangement, place: BoxedPlace | UnboxedPlace, addresses: Addresses
 ) -> WorkspaceService:
-    """The service whose sockets are open for as long as the notebook runs.
+    """Return the service; its sockets are open for as long as the notebook runs.
 
     Args:
-        arrangement: What :func:`arrange` has prepared.
-        place: Where the notebook runs.
+        arrangement: The result of :func:`arrange`.
+        place: The boxes of the notebook.
         addresses: The fork servers.
     """
     folder = arrangement.folder / "work-of-jobs"
@@ -104,13 +104,13 @@ def served(
         jobs = PlainJobs(kernel_environment(folder / "home", {}), handed_in=True)
         ros = ros_environment()
         sockets = ServiceSockets(arrangement.judges_socket, None)
-    # Programs that hang can be asked where, and what they say comes at once.
+    # A program that hangs can be asked for its traceback, and output comes without delay.
     variables = {**ros, "PYTHONUNBUFFERED": "1", "PYTHONFAULTHANDLER": "1"}
     return WorkspaceService(sockets, jobs, builds, variables, folder, ahead)
 
 
 def _furnish(shared: Path) -> None:
-    """Put into the folder that the student's box can read what stands in for colcon, and nothing of solutions."""
+    """Write the replacement for colcon into the folder that the student's box can read; nothing from solutions."""
     programs = shared / _PROGRAMS
     programs.mkdir()
     colcon = programs / "colcon"

@@ -1,1 +1,1 @@
-"""Pairs of submissions that are closer to each other than the task explains: a hint for a person, never a grade."""
+"""Pairs of submissions that are more similar than the task explains: a hint for a person, never a grade."""

@@ -1,4 +1,4 @@
-"""The close pairs of a class, and what could not be compared."""
+"""Finds the similar pairs of a class, and lists what could not be compared."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from autograder.grading.classes.class_directory import ClassDirectory, Refused
 
 MOST = 100
-"""Pairs of students that are shown: nobody reads more, and they are the closest."""
+"""The most pairs of students to show; a reader needs no more, and they are the closest."""
 
 
 @dataclass(frozen=True)
@@ -29,12 +29,12 @@ class Similar:
 
     Attributes:
         path: The class.
-        pairs: The close pairs of answers, the closest first.
-        more: The number of further pairs of students, which are not shown.
+        pairs: The similar pairs of answers, the closest first.
+        more: The number of further pairs of students that are not shown.
         names: The students' names, by id.
         compared: The number of notebooks that were compared.
-        notes: Lines that are worth reading.
-        troubles: A line for each file that could not be compared, or only in part.
+        notes: Lines that the instructor should read.
+        troubles: A line for each file that could not be compared, or only partly.
     """
 
     path: Path
@@ -47,19 +47,19 @@ class Similar:
 
     @property
     def exit_code(self) -> int:
-        """2 where something could not be compared, 0 otherwise: a pair is a hint and no failure."""
+        """2 if something could not be compared, else 0: a pair is a hint, not a failure."""
         return 2 if self.troubles else 0
 
 
 def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
-    """Compare what was handed in.
+    """Compare the submissions of a class.
 
     Args:
         directory: The class.
-        assignment: Only this one; all by default.
+        assignment: Only this assignment; all by default.
 
     Raises:
-        GradingError: Nothing was handed in, or there is no assignment of that name, or a source cannot be used.
+        GradingError: No work was handed in, the assignment does not exist, or a source cannot be used.
     """
     known = directory.assignments()
     check_known([assignment] if assignment else [], known, "assignment")
@@ -107,9 +107,9 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
 
 
 def _not_looked_at(directory: ClassDirectory, refused: Iterable[Refused], assignment: str) -> Iterator[str]:
-    """A line for each file that may be an answer and is not at its place."""
+    """Yield a line for each file that may be an answer but is in the wrong folder."""
     for one in (*refused, *beside_their_place(directory)[0]):
-        # Where a file is too high for an assignment, it may be for any.
+        # A file above the assignment's folder may belong to any assignment.
         below = one.path.relative_to(directory.path / "submitted").parts[1:]
         if not assignment or not below or below[0] == assignment:
             yield f"refused      {one.path}: {one.reason}"

@@ -1,4 +1,4 @@
-"""A student's own part of an answer: neither the task's text, nor its solution, nor what many wrote."""
+"""A student's own part of an answer: not the task's text, not its solution, not what many wrote."""
 
 from __future__ import annotations
 
@@ -15,27 +15,27 @@ if TYPE_CHECKING:
     from autograder.grading.similarity.student_texts import Answer
 
 SEQUENCE = 7
-"""As many words in a row are looked for: about one short line."""
+"""The number of words in a row that are compared: about one short line."""
 LONGEST = 10_000
-"""Words of an answer that are compared, more than a thousand lines."""
+"""The most words of an answer that are compared: more than a thousand lines."""
 _LONGEST_TEXT = 20 * LONGEST
 _MANY, _MANY_SHARE = 5, 0.25
-"""Code that so many students have, and so large a share of all, counts as common."""
+"""Code counts as common if at least so many students, and so large a share of all students, have it."""
 
 Sequence_ = tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class Compared:
-    """An answer, ready to be compared.
+    """An answer, prepared for the comparison.
 
     Attributes:
         answer: The answer.
-        code: Its words.
-        signs: The same words, chosen names and texts made equal.
-        own: For each word, whether it is the student's own.
-        is_cut: Whether there is more, which is not compared.
-        sequences: The sequences of words that are not the task's.
+        code: The words of the answer.
+        signs: The same words, with chosen names and texts made equal.
+        own: For each word, True if it is the student's own.
+        is_cut: True if the answer is longer than the compared part.
+        sequences: The sequences of words that do not come from the task.
     """
 
     answer: Answer
@@ -52,10 +52,10 @@ class Compared:
 
 
 class Given:
-    """The texts that students have been given, and those of solutions.
+    """The texts that students received, and the solutions.
 
     Args:
-        texts: The cells of all sources and of all that was handed out.
+        texts: The cells of all sources and of everything that was handed out.
     """
 
     def __init__(self, texts: Iterable[str]) -> None:
@@ -68,12 +68,12 @@ class Given:
 
 
 def compared(answers: Sequence[Answer], given: Given, students: int) -> list[Compared]:
-    """Find what is the students' own in their answers to one notebook.
+    """Find the students' own parts of their answers to one notebook.
 
     Args:
         answers: All answers to that notebook.
         given: The texts that belong to the task.
-        students: The number of students who have handed it in.
+        students: The number of students who handed in the notebook.
     """
     longer = [list(islice(words(answer.text[:_LONGEST_TEXT]), LONGEST + 1)) for answer in answers]
     codes = [code[:LONGEST] for code in longer]

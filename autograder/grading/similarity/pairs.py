@@ -1,4 +1,4 @@
-"""The pairs of answers that are closer than the task explains, also where something was put between or moved."""
+"""The pairs of answers that are more similar than the task explains, even if lines were inserted or moved."""
 
 from __future__ import annotations
 
@@ -17,29 +17,31 @@ if TYPE_CHECKING:
     from autograder.grading.similarity.own_code import Compared
 
 SHORTEST = 40
-"""Own words that two answers must share, four to eight lines. Of the right answers in the bank, which solve one task in
-many ways, two that were not made one from the other share 27 at most."""
+"""The number of own words that two answers must share, four to eight lines.
+
+Of the right answers in the bank, which solve one task in many ways, two independent ones share 27 at most.
+"""
 LEAST_SHARE = 0.5
-"""Of the own words of the shorter answer, what must be shared."""
+"""The shared part of the own words of the shorter answer, at least."""
 _ROUNDS = 6
-"""The number of times that the rest is compared again: each time, one more order of moved blocks is found."""
+"""The number of times that the rest is compared again: each time finds one more order of moved blocks."""
 _FOUND_IN_ONE, _FOUND_IN_OTHER = -3, -4
 
 HINT = (
     "A pair is a hint, not a proof: two students may have learnt from each other, or from one page on the web. "
     "Read both answers, and talk with both, before you decide anything."
 )
-"""Said wherever pairs are shown."""
+"""Shown with every list of pairs."""
 
 
 @dataclass(frozen=True)
 class Passage:
-    """Words that are in both answers in the same order.
+    """A sequence of words that both answers have in the same order.
 
     Attributes:
-        first: The place of the first word in one answer.
-        second: Its place in the other.
-        own: For each word, whether it counts: it is the writer's own in both answers.
+        first: The index of the first word in one answer.
+        second: The index of the first word in the other answer.
+        own: For each word, True if it is the writer's own in both answers.
     """
 
     first: int
@@ -49,12 +51,12 @@ class Passage:
 
 @dataclass(frozen=True)
 class Pair:
-    """Two answers that are close.
+    """Two similar answers.
 
     Attributes:
-        one: One of them.
-        other: The other.
-        passages: The passages that they share, in the order of the first.
+        one: One answer.
+        other: The other answer.
+        passages: The passages that they share, in the order of the first answer.
     """
 
     one: Compared
@@ -68,12 +70,12 @@ class Pair:
 
     @property
     def share(self) -> float:
-        """The shared part of the own words of that answer which has fewer of them."""
+        """The shared part of the own words, relative to the answer that has fewer of them."""
         return self.shared / min(self.one.length, self.other.length)
 
     @property
     def percent(self) -> str:
-        """The share in words; rounded down, so that 100 % is all of it."""
+        """The share as text; rounded down, so that only complete agreement is 100 %."""
         return f"{int(100 * self.share)} %"
 
     @property
@@ -83,15 +85,15 @@ class Pair:
 
     @property
     def place(self) -> str:
-        """The notebook and cell that it is in."""
+        """The notebook and cell of the answers."""
         cells = dict.fromkeys((self.one.answer.cell, self.other.answer.cell))
         return f"{self.one.answer.notebook}, {' and '.join(cells)}"
 
 
 def close_pairs(answers: Sequence[Compared]) -> list[Pair]:
-    """The pairs of answers to one notebook that are close, the closest first.
+    """Return the similar pairs of answers to one notebook, the closest first.
 
-    Any cell is compared with any of another student: an answer may have been moved into a cell of one's own.
+    Each cell is compared with every cell of another student: an answer may have been moved into an added cell.
     """
     candidates = _candidates([answer for answer in answers if answer.length >= SHORTEST])
     pairs = [Pair(left, right, _common_passages(left, right)) for left, right in candidates]
@@ -99,12 +101,12 @@ def close_pairs(answers: Sequence[Compared]) -> list[Pair]:
 
 
 def closest_first(pairs: Sequence[Pair]) -> list[Pair]:
-    """Pairs in the order in which they are shown."""
+    """Return pairs in the order in which they are shown."""
     return sorted(pairs, key=lambda pair: (-round(pair.share, 2), -pair.shared, _names(pair)))
 
 
 def by_students(pairs: Iterable[Pair]) -> list[list[Pair]]:
-    """Return the pairs of answers of each two students together, in the order in which they come first."""
+    """Return the pairs of answers grouped by their two students, in the order of each group's first pair."""
     found: dict[tuple[str, str], list[Pair]] = {}
     for pair in pairs:
         found.setdefault(pair.students, []).append(pair)
@@ -112,9 +114,9 @@ def by_students(pairs: Iterable[Pair]) -> list[list[Pair]]:
 
 
 def _candidates(answers: Sequence[Compared]) -> list[tuple[Compared, Compared]]:
-    """The pairs with sequences enough in common for a finding; to lay all answers side by side would take long.
+    """Yield the pairs with enough common sequences for a result; comparing all answers directly would take too long.
 
-    In a passage, at least every seventh of the shared own words begins a sequence, or is in one, that is shared.
+    In a passage, at least every seventh of the shared own words is in a shared sequence, or begins one.
     """
     holders: defaultdict[tuple[str, ...], list[int]] = defaultdict(list)
     for place, answer in enumerate(answers):
@@ -129,7 +131,7 @@ def _candidates(answers: Sequence[Compared]) -> list[tuple[Compared, Compared]]:
 
 
 def _common_passages(one: Compared, other: Compared) -> list[Passage]:
-    """The passages of two answers in the order of the first; each has at least a word that is its writer's own."""
+    """Return the common passages of two answers in the order of the first; each has at least one own word."""
     numbers = {sign: number for number, sign in enumerate({*one.signs, *other.signs})}
     first, second = ([numbers[sign] for sign in answer.signs] for answer in (one, other))
     found: list[Passage] = []
@@ -142,7 +144,7 @@ def _common_passages(one: Compared, other: Compared) -> list[Passage]:
         if not blocks:
             break
         for here, there, length in blocks:
-            # What was found is not found again: no word of the other has this number.
+            # A passage is found only once: the other answer has no word with this number.
             first[here : here + length] = [_FOUND_IN_ONE] * length
             second[there : there + length] = [_FOUND_IN_OTHER] * length
             sides = zip(one.own[here : here + length], other.own[there : there + length], strict=True)
@@ -160,5 +162,5 @@ def _names(pair: Pair) -> tuple[str, ...]:
 
 
 def nothing_found(compared: int) -> str:
-    """The sentence for a class without a close pair."""
+    """Return the sentence for a class without similar pairs."""
     return f"No pair is closer than the task explains ({compared} notebooks compared)."

@@ -1,4 +1,4 @@
-"""The page: each pair side by side, in one file without script, readable in black and white."""
+"""The page with each pair side by side, in one file without scripts, readable in black and white."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _NAME = "similar.html"
 _LONGEST_NAME = 200
 _AROUND = 3
-"""Lines that are shown before and behind a marked one."""
+"""The number of lines shown before and after a marked line."""
 _LONGEST_PIECE = 400
 
 
@@ -33,9 +33,9 @@ class _Piece:
     """A piece of a line.
 
     Attributes:
-        text: Its text, safe to read; a template escapes it for HTML.
+        text: The text, with control characters made visible; the template escapes it for HTML.
         passage: The number of the common passage that it belongs to; 0 for none.
-        begins: Whether the passage's number stands in front of it.
+        begins: True if the passage's number is shown before it.
     """
 
     text: str
@@ -45,11 +45,11 @@ class _Piece:
 
 @dataclass(frozen=True)
 class _Line:
-    """A line of an answer, or a mark in place of lines that are left out.
+    """A line of an answer, or a mark for lines that are left out.
 
     Attributes:
-        number: Counted from 1; 0 where lines are left out.
-        pieces: Its pieces.
+        number: The line's number, from 1; 0 if lines are left out.
+        pieces: The pieces of the line.
         left_out: The number of lines that are left out here.
     """
 
@@ -59,7 +59,7 @@ class _Line:
 
 
 def write_page(found: Similar, to: Path | None = None) -> Path:
-    """Write the page about the close pairs of a class.
+    """Write the page about the similar pairs of a class.
 
     Args:
         found: The result of the search.
@@ -69,7 +69,7 @@ def write_page(found: Similar, to: Path | None = None) -> Path:
         The absolute path of the file.
 
     Raises:
-        GradingError: Something stands in its way.
+        GradingError: Another file or folder is in its way.
         OSError: It could not be written for another reason.
     """
     to = (to or found.path / _NAME).absolute()
@@ -79,7 +79,7 @@ def write_page(found: Similar, to: Path | None = None) -> Path:
 
 
 def page(found: Similar) -> str:
-    """The page about the close pairs of a class."""
+    """Return the page about the similar pairs of a class."""
     environment = page_templates("autograder.grading.similarity")
     return environment.get_template("similar.html.j2").render(
         policy=POLICY,
@@ -124,11 +124,11 @@ def _called(student: str, names: Mapping[str, str]) -> str:
 
 
 def _lines(answer: Compared, passages: Iterable[tuple[int, Sequence[bool]]]) -> list[_Line]:
-    """The lines with marked passages and those around them.
+    """Return the lines with marked passages and the lines around them.
 
     Args:
         answer: An answer of a pair.
-        passages: For each passage, the place of its first word in this answer, and whether each word counts.
+        passages: For each passage, the index of its first word in this answer, and whether each word counts.
     """
     text = answer.answer.text
     passage_of = [0] * len(text)  # by character
@@ -149,7 +149,7 @@ def _lines(answer: Compared, passages: Iterable[tuple[int, Sequence[bool]]]) -> 
 
 
 def _pieces(line: str, passage_of: list[int], last: int) -> tuple[_Piece, ...]:
-    """The pieces of a line, each of one passage or of none; ``last`` is the passage that was marked before the line."""
+    """Return the pieces of a line, each of one passage or none; ``last`` is the passage marked before this line."""
     indent = len(line) - len(line.lstrip())
     passage_of[:indent] = [0] * indent
     found = []

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def show(found: Similar, page: Path, console: Console | None = None) -> None:
-    """Print the pairs, what could not be compared, and where the page is.
+    """Print the pairs, what could not be compared, and the path of the page.
 
     Args:
         found: The result of the search.

@@ -1,4 +1,4 @@
-"""Students' own texts in a notebook, and the texts that they had been given, read from a class."""
+"""Reads students' own texts from the notebooks of a class, and the texts that students received."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
 
 OWN_CELLS = "own cells"
-"""The name in place of a cell's where students have added cells of their own."""
+"""The cell name for all cells that a student added."""
 
 
 @dataclass(frozen=True)
 class Answer:
-    """One student's text in one solution cell, or in all cells of their own.
+    """One student's text in one solution cell, or in all cells that the student added.
 
     Attributes:
         student: The student's id.
@@ -46,9 +46,9 @@ class HandedIn:
     """The answers to one notebook.
 
     Attributes:
-        answers: In the order of students and cells.
+        answers: The answers in the order of students and cells.
         students: The students of the notebooks that could be read.
-        troubles: A line for each submission of which something could not be read.
+        troubles: A line for each submission that could not be read, or only partly.
     """
 
     answers: list[Answer] = field(default_factory=list)
@@ -57,10 +57,10 @@ class HandedIn:
 
 
 def given_texts(directory: ClassDirectory) -> list[str]:
-    """All code of the class's sources and of what was handed out: what students are given, and every solution.
+    """Return all code of the class's sources and hand-outs: what students received, and every solution.
 
     Raises:
-        MasterUnusable: A source is no notebook.
+        MasterUnusable: A source is not a notebook.
     """
     return [
         cell.source
@@ -74,10 +74,10 @@ def given_texts(directory: ClassDirectory) -> list[str]:
 def read_answers(
     directory: ClassDirectory, assignment: str, notebook: str, submissions: list[Submission]
 ) -> HandedIn:
-    """The answers that were handed in for one notebook.
+    """Return the answers that were handed in for one notebook.
 
     Raises:
-        MasterUnusable: The source is no notebook.
+        MasterUnusable: The source is not a notebook.
     """
     named = {
         name: cell
@@ -91,7 +91,7 @@ def read_answers(
         try:
             cells, left_out = read_notebook(read_bytes(submission.folder / f"{notebook}{SUFFIX}"))
         except NotAFile:
-            continue  # it is among what the class refuses
+            continue  # the class lists it as refused
         except UnreadableSubmission as error:
             found.troubles.append(f"unreadable   {who}: {error}")
             continue
@@ -103,7 +103,7 @@ def read_answers(
         found.students.append(submission.student)
         written: dict[str, list[str]] = {}
         for cell in cells:
-            # An answer counts whatever kind its cell has become, as it is graded.
+            # An answer counts whatever type its cell has now, as in grading.
             if cell.grade_id in answers or (cell.kind == CellType.CODE and cell.grade_id not in named):
                 name = cell.grade_id if cell.grade_id in answers else OWN_CELLS
                 written.setdefault(name, []).append(cell.source)
@@ -120,5 +120,5 @@ def _cells(directory: ClassDirectory, place: str) -> list[NotebookNode]:
         return list(nodes.read(path.read_text(encoding="utf-8")).cells)
     except Exception as error:  # nbformat raises what its JSON and schema libraries raise
         raise MasterUnusable(
-            f"{path} is not a notebook: {error}. Make it anew or put back a copy."
+            f"{path} is not a notebook: {error}. Make it again or put back a copy."
         ) from error

@@ -1,7 +1,7 @@
-"""An answer as words that survive what is changed to hide a copy: comments, layout, the names that one may choose.
+"""Splits an answer into words that survive attempts to hide a copy: other comments, layout or names.
 
-Nothing is parsed, since a student's text need not be Python, and need not be meant well: one pass of an expression that
-takes no more time than the text is long.
+Nothing is parsed, because a student's text may be invalid or hostile Python. One regular expression reads it, in a
+time proportional to its length.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ _OPENING, _CLOSING = frozenset("([{"), frozenset(")]}")
 
 @dataclass(frozen=True)
 class Word:
-    """A piece of code that counts.
+    """A piece of code that counts in the comparison.
 
     Attributes:
         kind: ``name``, ``string``, ``number`` or ``sign``.
-        text: As it was written.
-        start: The place of its first character in the text.
-        end: The place behind its last one.
-        opens: Whether it is the first of a line.
+        text: The original text.
+        start: The index of its first character in the answer.
+        end: The index after its last character.
+        opens: True if it is the first word of a line.
     """
 
     kind: str
@@ -50,7 +50,7 @@ class Word:
 
 
 def words(text: str) -> Iterator[Word]:
-    """The words of a text, without comments, docstrings and the first line of a cell that writes a file."""
+    """Yield the words of a text, without comments, docstrings and the first line of a cell that writes a file."""
     before = 0
     for match in _WORD.finditer(text):
         kind = match.lastgroup or "sign"
@@ -61,7 +61,7 @@ def words(text: str) -> Iterator[Word]:
 
 
 def chosen_names(code: Sequence[Word]) -> set[str]:
-    """The names that the writer has chosen: of variables, functions, classes, parameters and attributes."""
+    """Return the names that the writer has chosen: of variables, functions, classes, parameters and attributes."""
     chosen: set[str] = set()
     depth, in_head, in_loop = 0, False, False
     for place, word in enumerate(code):
@@ -78,7 +78,7 @@ def chosen_names(code: Sequence[Word]) -> set[str]:
             in_loop = word.text == "for"
         elif word.kind == "name" and word.text not in _FIXED:
             is_parameter = in_head and depth == 1 and before in ("(", ",", "*", "**")
-            # One that has a type, or is the first of several: x: int = 3, self.x: int = 3, x, y = 3, 4
+            # A name with a type, or the first of several names: x: int = 3, self.x: int = 3, x, y = 3, 4
             first = code[place - 2] if before == "." else word
             is_declared = behind in (":", ",") and first.opens
             is_assigned = (depth == 0 and (behind == "=" or is_declared)) or behind == ":="
@@ -88,12 +88,12 @@ def chosen_names(code: Sequence[Word]) -> set[str]:
 
 
 def neutral(code: Sequence[Word], names: Collection[str], texts: Collection[str]) -> list[str]:
-    """The words with one sign for every name that somebody has chosen, and one for every text that is not the task's.
+    """Return the words with one sign for every chosen name, and one for every text that is not the task's.
 
     Args:
         code: The words of an answer.
-        names: Names that somebody has chosen.
-        texts: The texts that the task has.
+        names: The names that the writer has chosen.
+        texts: The texts that the task contains.
     """
     return [
         _CHOSEN_NAME

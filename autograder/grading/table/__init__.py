@@ -1,1 +1,1 @@
-"""The table of a class: the points of the gradebook, the words of the judge, and what waits for a person."""
+"""The table of a class: points from the gradebook, texts from the judge, and what waits for a person."""

@@ -1,4 +1,4 @@
-"""The table of a class as it is now, read without grading anything."""
+"""The present table of a class, read without grading anything."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ class ClassTable:
     """The table of a class.
 
     Attributes:
-        rows: By student, in the order of the course.
+        rows: The rows by student, in the order of the course.
         roster: The students of the class.
         entries: The entries of the gradebook, by student and assignment.
-        stale: Submissions that were handed in or changed after they were graded last, as student/assignment.
-        unplaced: Files that were collected and wait for a person.
-        unusable: Assignments that no row has because their source cannot be used, with the reason.
-        notices: Sentences on what is not as the instructor will have meant it, with students' ids.
+        stale: Submissions that were handed in or changed after their last grading, as student/assignment.
+        unplaced: Collected files that wait for a person's decision.
+        unusable: Assignments without rows because their source cannot be used, with the reason.
+        notices: Sentences about likely mistakes of the instructor, with students' ids.
         absent: The points of students who handed in nothing: None, or zero if the instructor chose that.
     """
 
@@ -65,10 +65,10 @@ class ClassTable:
         return list(dict.fromkeys(row.assignment for row in self.rows))
 
     def check_usable(self, wanted: Collection[str] = ()) -> None:
-        """See that nothing is missing that was asked for by name, or all that there was, for want of a source.
+        """Raise an error if a wanted assignment has no usable source, or, without a choice, if no assignment has one.
 
         Raises:
-            MasterUnusable: It is; the message says what is wrong with the source.
+            MasterUnusable: A source cannot be used; the message says why.
         """
         for name, reason in self.unusable.items():
             if name in wanted or not self.assignments:
@@ -82,7 +82,7 @@ class ClassTable:
         ]
 
     def only(self, students: Collection[str]) -> ClassTable:
-        """The same with these students alone."""
+        """Return the same table with these students alone."""
         return replace(
             self,
             rows=tuple(row for row in self.rows if row.student in students),
@@ -92,16 +92,16 @@ class ClassTable:
         )
 
     def score(self, student: str, assignment: str = "") -> float | None:
-        """A student's points as the gradebook has them, less what being late costs.
+        """Return a student's points from the gradebook, minus the late penalty.
 
-        None if there are none, or if a check of the assignment could not be made: without that check,
-        the sum could be mistaken for the final points.
+        None if there are none, or if a check of the assignment could not be made: without that check, the sum could
+            be mistaken for the final points.
         """
         rows = self.of(student, assignment)
         return None if assignment and any(row.is_unchecked for row in rows) else self.points(rows)
 
     def points(self, rows: Sequence[Row]) -> float | None:
-        """The points of some of a student's rows together, by the same rule."""
+        """Return the sum of the points in some of a student's rows, by the same rule."""
         is_absent = any(row.state == NOT_SUBMITTED for row in rows) and all(row.is_blank for row in rows)
         return self.absent if is_absent else total(rows)
 
@@ -110,12 +110,12 @@ class ClassTable:
         return any(row.state == EXCUSED for row in self.of(student, assignment))
 
     def max_score(self, assignment: str = "") -> float:
-        """Points that can be had."""
+        """Return the most points for an assignment, or for all."""
         return self._max_scores.get(assignment, 0.0)
 
     @functools.cached_property
     def _max_scores(self) -> dict[str, float]:
-        """The points that can be had of each assignment, and under no name of all together."""
+        """The most points for each assignment; the empty name has those of all together."""
         return {
             name: max(
                 (sum(row.max_score for row in self.of(one, name)) for one in self.students), default=0.0
@@ -125,7 +125,7 @@ class ClassTable:
 
     @property
     def waiting(self) -> list[Row]:
-        """Rows that wait for a person."""
+        """The rows that wait for a person."""
         return [row for row in self.rows if row.waits]
 
 
@@ -134,7 +134,7 @@ def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> Class
 
     Args:
         directory: The class.
-        sections: Only the students of these; all where empty.
+        sections: Only the students of these sections; all students if empty.
 
     Raises:
         GradingError: The class or its list of students cannot be used, or the section has no students.
@@ -176,5 +176,5 @@ def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> Class
 
 
 def by_exercise(rows: list[Row]) -> dict[tuple[str, str], Row]:
-    """A student's rows by assignment and exercise, without what being late costs and what is dropped."""
+    """Return a student's rows by assignment and exercise, without the rows for late penalties and dropped work."""
     return {(row.assignment, row.exercise): row for row in rows if row.exercise not in NO_EXERCISE}

@@ -1,6 +1,6 @@
-"""The price of being late, as data: a share of the points for each day that has begun, a grace, a cut-off.
+"""The late penalty as data: a share of the points for each day that has begun, a grace period and a cut-off.
 
-A class names it in its ``nbgrader_config.py``; nbgrader asks it, whichever command or button grades.
+A class sets it in its ``nbgrader_config.py``; nbgrader calls it, whichever command or button grades.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _DAY = 86_400.0
 
 
 class LatePolicy(LateSubmissionPlugin):
-    """A share of the points for each day."""
+    """Takes off a share of the points for each day."""
 
     percent_per_day = Float(
         10.0, min=0, max=100, help="Taken off for each day that has begun, in percent."
@@ -34,14 +34,14 @@ class LatePolicy(LateSubmissionPlugin):
     ).tag(config=True)
 
     def late_submission_penalty(self, student_id: str, score: float, total_seconds_late: float) -> float:
-        """The points to be taken off.
+        """Return the points to be taken off.
 
         Args:
             student_id: The student's id.
-            score: Points that were earned.
+            score: The points that were earned.
             total_seconds_late: Seconds after the due date, extensions included.
         """
-        del student_id  # an extension is in the due date
+        del student_id  # the due date already contains an extension
         if total_seconds_late <= 60 * self.grace_minutes:
             return 0.0
         if total_seconds_late > _DAY * self.cut_off_days:
@@ -51,12 +51,12 @@ class LatePolicy(LateSubmissionPlugin):
 
 
 def penalties(config: Config, student: str, entry: SubmissionEntry) -> dict[str, float | None]:
-    """The penalty of a late submission by notebook, asked of the class's own rule as nbgrader asks it; None for none.
+    """Return the penalty of a late submission by notebook, from the class's own rule, as nbgrader does; None for none.
 
     Args:
-        config: The class's.
+        config: The class's configuration.
         student: The student's id.
-        entry: Its points and times, as the gradebook has them or would have them.
+        entry: The points and times, as the gradebook has them or would have them.
     """
     if not (entry.handed_in and entry.due and entry.is_late):
         return dict.fromkeys(entry.cells)

@@ -1,4 +1,4 @@
-"""Differences of points: between two runs, or between the gradebook and what a run would enter."""
+"""Differences in points: between two runs, or between the gradebook and what a run would enter."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Difference:
-    """Other points, or another diagnosis for the same points.
+    """A change in points, or in the diagnosis if the points are the same.
 
     Attributes:
         student: The student's id.
@@ -39,7 +39,7 @@ class Difference:
     note: str = ""
 
     def line(self) -> str:
-        """One line for a person."""
+        """The difference as one line of text."""
         points = " → ".join("–" if points is None else f"{points:g}" for points in (self.before, self.after))
         words = ""
         if self.before is None and self.diagnosis_after:
@@ -50,7 +50,7 @@ class Difference:
 
 
 def differences(before: Iterable[Row], after: Iterable[Row]) -> list[Difference]:
-    """The rows in which two tables differ, in the order of the students."""
+    """Return the rows in which two tables differ, in the order of the students."""
     earlier = {(row.student, row.assignment, row.exercise): row for row in before}
     later = {(row.student, row.assignment, row.exercise): row for row in after}
     found = []
@@ -69,27 +69,29 @@ def differences(before: Iterable[Row], after: Iterable[Row]) -> list[Difference]
 
 
 def compare(store: ClassStore, before: str = "", after: str = "") -> tuple[str, str, list[Difference]]:
-    """The changes between two runs.
+    """Compare two runs.
 
     Args:
-        store: The class's.
+        store: The store of the class.
         before: A run; the last but one by default.
         after: A later run; the last one by default.
 
     Returns:
-        Return the names of the two runs, and how they differ.
+        The names of the two runs, and their differences.
 
     Raises:
-        GradingError: There are not two runs, or none of that name.
+        GradingError: There are fewer than two runs, or no run has the given name.
     """
     names = store.runs()
     if len(names) < 2 and not (before and after):
-        raise GradingError("There are no two runs with different tables to compare yet.")
+        raise GradingError("This class does not have two runs with different tables to compare yet.")
     before, after = before or names[-2], after or names[-1]
     tables = []
     for name in (before, after):
         rows = store.run(name)
         if rows is None:
-            raise GradingError(f"There is no run {name}. There is: {', '.join(names[-10:]) or 'none'}.")
+            raise GradingError(
+                f"Run {name} does not exist. The runs are: {', '.join(names[-10:]) or 'none'}."
+            )
         tables.append(rows)
     return before, after, differences(*tables)

@@ -1,4 +1,4 @@
-"""The students of a class: ``students.csv`` and the students that the gradebook knows, and how the LMS calls them."""
+"""The students of a class: from ``students.csv`` and the gradebook, with their names in the LMS."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 NAME = "students.csv"
 LMS = ("canvas", "moodle", "blackboard", "brightspace", "google", "github", "gradescope", "sakai", "ilias")
-"""Columns of the roster in which a student's id or user name in that system may stand."""
+"""Columns of ``students.csv`` for a student's id or user name in these systems."""
 _OWN = ("id", "first_name", "last_name", "email", "section", "excused")
 
 
 _EXPORTED = (
-    # The columns by which a list of an LMS's is known, then in which of its columns each of ours may be.
+    # The columns that identify a list from an LMS, then the columns in which each of ours may be.
     (
         ("student", "id", "section"),  # Canvas: Grades, Export
         {"id": ("sis login id", "sis user id", "id"), "full_name": ("student",), "canvas": ("id",)},
@@ -62,11 +62,11 @@ class Student:
 
     Attributes:
         id: The student's id, which is also the folder's name.
-        first_name: Empty if unknown.
-        last_name: The same.
-        email: The same.
-        lms: Ids and user names in learning management systems, by the names of :data:`LMS`; and what other columns
-            have, which ``collect --names`` may name.
+        first_name: The first name; empty if unknown.
+        last_name: The last name; empty if unknown.
+        email: The address; empty if unknown.
+        lms: Ids and user names in learning management systems, by the names of :data:`LMS`; and the content of other
+            columns, which ``collect --names`` may use.
         excused: Assignments that the student need not do.
         section: The group of students that one teaching assistant grades; empty for none.
     """
@@ -109,7 +109,7 @@ class Roster:
     """The students of a class.
 
     Args:
-        students: In any order.
+        students: The students, in any order.
     """
 
     def __init__(self, students: Iterable[Student]) -> None:
@@ -126,11 +126,11 @@ class Roster:
         return {(one.id, assignment) for one in self.students.values() for assignment in one.excused}
 
     def excused_from_nothing(self, assignments: Sequence[str], students: Iterable[str]) -> list[str]:
-        """A sentence on each name in the column excused that is no assignment's.
+        """Return a sentence about each name in the column "excused" that is not an assignment.
 
         Args:
             assignments: The names of all assignments of the class.
-            students: The ids of the students whose lines are looked at.
+            students: The ids of the students whose lines are checked.
         """
         found: dict[str, list[str]] = {}
         for one in map(self.students.__getitem__, students):
@@ -139,7 +139,8 @@ class Roster:
                     found.setdefault(name, []).append(one.id)
         return [
             f"{NAME} excuses {', '.join(ids[:_MOST_NAMED])}{' …' if ids[_MOST_NAMED:] else ''} from {name}, "
-            f"and there is no such assignment, so the entry excuses no student. There is: {', '.join(assignments)}"
+            f"but this assignment does not exist, so the entry excuses no student. "
+            f"The class has: {', '.join(assignments)}"
             for name, ids in found.items()
         ]
 
@@ -147,7 +148,7 @@ class Roster:
         """The ids of the students in these sections.
 
         Raises:
-            RosterError: Nobody is in one of them.
+            RosterError: A section has no students.
         """
         known = {one.section for one in self.students.values()} - {""}
         for section in sections:
@@ -159,9 +160,9 @@ class Roster:
         return [one.id for one in self.students.values() if one.section and one.section in set(sections)]
 
     def find(self, identity: Identity) -> tuple[Student, ...]:
-        """The students who may be meant: one student if it is certain, several if not.
+        """Return the students who may be meant: one if it is certain, several if not.
 
-        The strongest identification comes first: the number in that system, then user names and addresses, then names.
+        The strongest match comes first: the number in that system, then user names and addresses, then names.
         """
         for known in (self._by_number, self._by_login, self._by_name):
             found = known(identity)
@@ -197,7 +198,7 @@ class Roster:
 
 
 def read_roster(directory: ClassDirectory) -> Roster:
-    """The students of ``students.csv`` and of the gradebook; what the file says goes first.
+    """Return the students of ``students.csv`` and of the gradebook; the file takes precedence.
 
     Raises:
         RosterError: The file cannot be used.
@@ -218,7 +219,7 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
     """Return the students of ``students.csv``; none if the file does not exist.
 
     Raises:
-        RosterError: A column or an id is missing, or is there twice.
+        RosterError: A column or an id is missing, or occurs twice.
     """
     path = directory.path / NAME
     try:
@@ -278,7 +279,7 @@ def _as_ours(line: Mapping[str, str], form: Mapping[str, tuple[str, ...]]) -> di
 
 
 def enter_roster(directory: ClassDirectory) -> None:
-    """Have the gradebook know the students of ``students.csv``; of others nothing is changed.
+    """Enter the students of ``students.csv`` into the gradebook, leaving other students unchanged.
 
     Raises:
         RosterError: The file cannot be used.
@@ -324,12 +325,12 @@ _APOSTROPHES = str.maketrans(dict.fromkeys("'’‘ʼ`´"))
 
 
 def _forms(name: str) -> set[tuple[str, ...]]:
-    """A name's words in the order of the alphabet, as systems write them that drop an apostrophe or make it a blank."""
+    """Return a name's words in alphabetical order, for systems that drop an apostrophe or replace it with a blank."""
     return {tuple(sorted(_words(form))) for form in (name, name.translate(_APOSTROPHES))}
 
 
 def _words(name: str) -> list[str]:
-    """A name's words, without accents and capitals."""
+    """Return a name's words, without accents and in lower case."""
     plain = "".join(
         character for character in unicodedata.normalize("NFKD", name) if not unicodedata.combining(character)
     )
@@ -337,6 +338,6 @@ def _words(name: str) -> list[str]:
 
 
 def _joined_names(student: Student) -> tuple[str, str]:
-    """A student's names in one word, the last name first or last."""
+    """Return a student's names as one word, with the last name first and with the last name last."""
     first, last = "".join(_words(student.first_name)), "".join(_words(student.last_name))
     return last + first, first + last

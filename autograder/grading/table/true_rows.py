@@ -1,4 +1,4 @@
-"""The rows of the table: the points are the gradebook's, the words are the judge's."""
+"""The rows of the table: points from the gradebook, texts from the judge."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from autograder.grading.rebuilding.source_points import GradedCell
 
     Judged = Mapping[tuple[str, str], Sequence[Row]]
-    """The judge's words on each submission, by student and assignment."""
+    """The judge's results for each submission, by student and assignment."""
 
 
 def true_rows(
@@ -30,18 +30,18 @@ def true_rows(
     what_counts: WhatCounts = WhatCounts(),  # noqa: B008 (it is frozen)
     zone: tzinfo = UTC,
 ) -> list[Row]:
-    """The rows of a class, by student, in the order of the course.
+    """Return the rows of a class, by student, in the order of the course.
 
     Assignments that no student has handed in are left out; in the others every student has rows.
 
     Args:
-        students: Their names, by id.
+        students: The names of the students, by id.
         cells: The cells with points, by assignment.
         judged: The judge's results.
         entries: The entries of the gradebook.
-        handed_in: The content of ``submitted``: students and assignments.
-        excused: Students and assignments that they need not do.
-        what_counts: The exercises that the instructor leaves out, and the weights.
+        handed_in: The students and assignments in ``submitted``.
+        excused: The students and the assignments that they need not do.
+        what_counts: The weights, and the exercises that the instructor leaves out.
         zone: The time zone of the class.
     """
     there = set(handed_in)
@@ -105,15 +105,15 @@ def _with_points(row: Row, kept: CellEntry) -> Row:
 
 
 _IS_GRADED = ("passed", "failed", WAITS, BY_HAND)
-"""States in which a verdict exists: any other state waits for a run and not for a person."""
+"""States with a verdict: any other state waits for a run, not for a person."""
 
 
 def _state(cell: GradedCell, kept: CellEntry) -> str:
-    """The state of a cell without a known result of the judge."""
+    """Return the state of a cell for which the judge's result is unknown."""
     if not cell.by_judge:
         if kept.by_hand is None and not kept.waits:
-            return "failed"  # nothing was written there, so nbgrader gives no points
+            return "failed"  # the cell is empty, so nbgrader gives no points
         return WAITS if kept.waits else BY_HAND
     if kept.waits and kept.by_hand is None:
-        return NOT_GRADED  # taken back
+        return NOT_GRADED  # the grade was taken back
     return "passed" if (kept.judged or 0.0) >= kept.max_score else "failed"

@@ -1,4 +1,4 @@
-"""An instructor's weights of a class, and the exercises and assignments that are left out: ``class.toml``."""
+"""An instructor's weights for a class, and left-out exercises and assignments: ``class.toml``."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class _File(msgspec.Struct, forbid_unknown_fields=True):
 
 @dataclass(frozen=True)
 class WhatCounts:
-    """The weights in the table of a class; the gradebook keeps what was earned, so that it can be changed at any time.
+    """The weights for a class's table; the gradebook keeps the earned points, so weights can change at any time.
 
     Attributes:
         factors: The factors of points, by assignment and exercise; 0 leaves an exercise out.
@@ -40,9 +40,9 @@ class WhatCounts:
     drop_lowest: int = 0
 
     def applied(self, rows: Sequence[Row]) -> list[Row]:
-        """The rows of one submission as they count.
+        """Return the rows of one submission with the weights applied.
 
-        The late penalty stays the same share of the points earned.
+        The late penalty stays the same share of the points.
         """
         plain = [row for row in rows if row.exercise != LATE]
         factors = [self.factors.get((row.assignment, row.exercise), 1.0) for row in plain]
@@ -53,10 +53,10 @@ class WhatCounts:
         return found + [_scaled(row, late) for row in rows if row.exercise == LATE and found]
 
     def without_lowest(self, rows: Sequence[Row]) -> list[Row]:
-        """The rows of one student, with one more for each assignment that is left out of the total.
+        """Return the rows of one student, with one more for each assignment that is left out of the total.
 
-        Left out are those that were not handed in, then those with the smallest share of their points. One always
-        counts, and all do while the points of one are still to come.
+        First, assignments are left out that were not handed in, then those with the smallest share of their points.
+        One always counts, and all count while points of any are still to come.
         """
         by_assignment: dict[str, list[Row]] = {}
         for row in rows:
@@ -101,10 +101,10 @@ def read_what_counts(directory: ClassDirectory, cells: Mapping[str, Sequence[Gra
 
     Args:
         directory: The class.
-        cells: Its cells with points, by assignment.
+        cells: The cells with points, by assignment.
 
     Raises:
-        GradingError: It cannot be used; the message says what to write.
+        GradingError: The file cannot be used; the message says what to write.
     """
     path = directory.path / NAME
     if not path.exists():

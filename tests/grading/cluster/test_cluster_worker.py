@@ -51,7 +51,7 @@ def test_without_an_address_it_says_how_to_give_one(monkeypatch: pytest.MonkeyPa
 def test_what_is_no_address_is_refused(address: str) -> None:
     done = CliRunner().invoke(cli, ["worker", "--", address])
     assert done.exit_code == 2
-    assert "is no address of a Dask scheduler. One looks like tcp://host:8786" in done.output
+    assert "is not an address of a Dask scheduler. An address looks like tcp://host:8786" in done.output
 
 
 def test_without_a_scheduler_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -60,7 +60,7 @@ def test_without_a_scheduler_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr(start_worker, "why_impossible", lambda: "")
     done = CliRunner().invoke(cli, ["worker", "tcp://127.0.0.1:1"])
     assert done.exit_code == 2, done.output
-    assert "There is no Dask scheduler at tcp://127.0.0.1:1" in done.output
+    assert "No Dask scheduler answers at tcp://127.0.0.1:1" in done.output
 
 
 def test_without_dask_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch, tiny: TinyClass) -> None:
@@ -77,7 +77,7 @@ def test_without_dask_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch, tin
 def test_what_is_no_address_or_belongs_to_this_machine_is_refused_by_grade(tiny: TinyClass) -> None:
     done = CliRunner().invoke(cli, ["grade", str(tiny.path), "--scheduler", "host"])
     assert done.exit_code == 2
-    assert "is no address of a Dask scheduler" in done.output
+    assert "is not an address of a Dask scheduler" in done.output
     done = CliRunner().invoke(cli, ["grade", str(tiny.path), "--scheduler", "tcp://x:1", "--jobs", "2"])
     assert done.exit_code == 2
     assert "./course worker --jobs" in done.output

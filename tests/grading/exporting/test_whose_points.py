@@ -53,8 +53,8 @@ def test_who_is_excused_from_what_there_is_not_is_named(klass: TinyClass) -> Non
         "id,section,excused\nada,A,lab_1_2 lab_12\nben,B,\neve,B,lab_12\njose,A,\nzoe,A,\n"
     )
     said = (
-        "students.csv excuses {} from lab_12, and there is no such assignment, so the entry excuses no student. "
-        "There is: lab_1_2"
+        "students.csv excuses {} from lab_12, but this assignment does not exist, so the entry excuses no student. "
+        "The class has: lab_1_2"
     )
     assert said.format("ada, eve") in export(klass.path, "csv").notices
     assert said.format("ada") in export(klass.path, "csv", sections=["A"]).notices
@@ -74,11 +74,11 @@ def test_an_assignment_whose_source_is_damaged_is_named_and_not_left_out_in_sile
     klass.grade()
     source = klass.path / "source" / "own" / "own.ipynb"
     source.write_text("{")
-    said = f"own is left out of everybody's points: {source} is not a notebook"
+    said = f"own is left out of all students' points: {source} is not a notebook"
     assert any(notice.startswith(said) for notice in export(klass.path, "csv").notices)
     assert said in BeautifulSoup(write_report(klass.path).read_text(), "html.parser").get_text()
     without_names = BeautifulSoup(write_report(klass.path, names=False).read_text(), "html.parser").get_text()
-    assert "own is left out of everybody's points" in without_names
+    assert "own is left out of all students' points" in without_names
     assert str(klass.path) not in without_names
     with pytest.raises(GradingError, match=r"own\.ipynb is not a notebook"):
         export(klass.path, "csv", assignments=["own"])

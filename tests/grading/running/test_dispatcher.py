@@ -192,7 +192,9 @@ def test_a_worker_that_forges_is_turned_out_by_name(tasks: list[Task]) -> None:
     dispatcher.await_workers()
     assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
     assert len(told) == 1
-    assert "name-bad (bad) gets no work: what it says cannot be: its answer is not an execution" in told[0]
+    assert (
+        "name-bad (bad) gets no work: it sent an impossible answer: its answer is not an execution" in told[0]
+    )
     assert sum(give.worker == "bad" for give in link.given) <= HERE.slots
 
 
