@@ -1,4 +1,5 @@
-"""Students' colcon workspaces: built once for the same sources, and run without sourcing anything by hand.
+"""Students' colcon workspaces: built once for the same sources, and run without sourcing a setup script by hand.
 
-The one path: sources, their key, a build (here or in a box), its artefacts, the exercise's plan, a program.
+The path of every workspace: its sources, their key, a build (here or in a box), its artefacts, the exercise's plan, a
+program.
 """

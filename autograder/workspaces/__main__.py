@@ -1,11 +1,10 @@
-"""``python -m autograder.workspaces``: what a check runs in place of a path.
+"""``python -m autograder.workspaces``: the command that a check runs when it is given a path.
 
-It builds what is in the workspace, reports, then becomes the student's program.
+It builds the packages in the workspace, reports, then becomes the student's program.
 
-A terminal's check starts this as a process, a notebook does at the judge's word, and the judge reads what it prints.
-What it reports about the build goes before everything that a program of the student's says. All of it runs with the
-rights of the student, on the student's own computer; a class is graded by `autograder.workspaces.service`
-instead.
+In a terminal the check starts it as a process, in a notebook the judge asks for it, and the judge reads its output.
+The report on the build comes before any output of the student's program. Everything runs with the student's rights,
+on the student's own computer; a class is graded by `autograder.workspaces.service` instead.
 """
 
 from __future__ import annotations
@@ -35,8 +34,8 @@ if TYPE_CHECKING:
 def main(arguments: Sequence[str]) -> int:
     """``python -m autograder.workspaces EXERCISE PATH``, or ``EXERCISE -- COMMAND`` for a launch command.
 
-    Where an exercise is about several programs, the path is followed by the name of one; a launch, by ``--alone`` and
-    a program that is run in its place.
+    If an exercise has several programs, the name of one follows the path. A launch may be followed by ``--alone`` and
+    a program that runs instead of the launch.
     """
     exercise = exercises.get(arguments[0])
     die_with_parent(number=signal.SIGTERM)
@@ -70,16 +69,16 @@ def _launch(rest: Sequence[str]) -> int:
 
 
 def _run(launch: Prepared) -> int:
-    """Run a launch to its end, and report how it starts its processes; its exit code.
+    """Run a launch to its end, and report how it starts its processes. Return its exit code.
 
-    A topic that is renamed in the code and one that is remapped by the launch file look the same on the wire. The
-    command line of the process is how every launch hands a remapping to a node.
+    On the wire, a topic that is renamed in the code looks like one that the launch file remaps. The process's command
+    line tells them apart, because every launch passes a remapping to a node there.
     """
     # Ctrl-C reaches the whole process group: the launch ends its nodes and then itself, and this waits for it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     process = subprocess.Popen(launch.command, env=launch.environment, preexec_fn=_listen_to_interrupts)
     signal.signal(signal.SIGTERM, lambda *_: process.terminate())
-    # The launch may have begun a line, whose end it writes by itself: a report behind that would be none.
+    # The launch may have written half a line: begin a new one, or the report would not be recognized.
     with watched(process.pid, lambda line: tell(f"\n{line}")):
         return process.wait()
 

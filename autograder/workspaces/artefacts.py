@@ -1,7 +1,7 @@
-"""The result of a build, taken over as data: regular files and folders, and nothing else.
+"""The result of a build, accepted as data: regular files and folders, nothing else.
 
-Outside a box nothing that a box has made may be more than bytes. A link of the archive (a library has some, from its
-name to the name with its version) becomes a copy of the file that it names: who reads the folder later follows none.
+Outside a box, files made in a box must be nothing but bytes. A link in the archive (a library has some, from its name
+to the name with its version) becomes a copy of its target: a later reader of the folder never follows a link.
 """
 
 from __future__ import annotations
@@ -20,16 +20,18 @@ if TYPE_CHECKING:
 MAX_FILES = 5_000
 MAX_BYTES = 64_000_000
 BLOCK = 4_096
-"""Bytes that each file and folder takes of a disk besides those of the file: also thousands of empty ones take room."""
+"""Bytes that each file and folder takes in addition to its content, so that thousands of empty ones count, too."""
 MAX_NAME = 240
-"""Bytes of each part of a path."""
+"""The longest part of a path, in bytes."""
 MAX_DEPTH = 24
-"""Parts of a path."""
+"""The most parts of a path."""
 MAX_LINKS = 8
-"""Links that lead from one to the next."""
+"""The most links in a chain."""
 MAX_PAX = 2_000
-"""Bytes of a pax header; one with a long path has some hundreds. Python searches it in a time that grows with the
-square: hours for a few megabytes of digits."""
+"""The largest pax header in bytes; one with a long path has some hundreds.
+
+Python searches it in quadratic time: hours for a few megabytes of digits.
+"""
 
 
 _OF_THIS_MACHINE = (
@@ -41,15 +43,15 @@ _OF_THIS_MACHINE = (
     errno.EIO,
     errno.EROFS,
 )
-"""What no archive can bring about: a full disk, a used-up quota, too many open files."""
+"""Errors of this machine, which no archive can cause: a full disk, an exhausted quota, too many open files."""
 
 
 class BadArtefacts(ValueError):
-    """An archive that is none, or that holds what no build of a workspace makes."""
+    """Not an archive, or one with content that no build of a workspace makes."""
 
 
 class _ShortHeaders(tarfile.TarInfo):
-    """An entry of a tar file that says no more of itself in front than entries of a build do."""
+    """An entry of a tar file whose headers are no larger than those of a build's entries."""
 
     @classmethod
     def frombuf(cls, buf: bytes | bytearray, encoding: str, errors: str) -> Self:
@@ -63,7 +65,7 @@ class _ShortHeaders(tarfile.TarInfo):
 
 
 def pack(install: Path) -> bytes:
-    """An install folder as an archive; empty where there is none, or too much in it. Only regular files are opened."""
+    """Return an install folder as an archive; empty if it is missing or too large. Only regular files are opened."""
     file, size = io.BytesIO(), 0
 
     def bounded(member: tarfile.TarInfo) -> tarfile.TarInfo:
@@ -85,14 +87,14 @@ def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> None:
     """Write an archive of a build's install folder.
 
     Args:
-        archive: A tar file that may be anything: whoever was built could have written it.
-        folder: A folder that is not there yet.
-        most: Bytes that all files and folders may take together.
+        archive: A tar file with any content: the code that was built could have written it.
+        folder: A folder that does not exist yet.
+        most: The limit on bytes of all files and folders together.
 
     Raises:
-        BadArtefacts: It has entries that lead out of the folder, links to anything but one of its files, devices, or
-            too much of anything. What was written until then is left behind.
-        OSError, MemoryError: This machine has no room, or no file to give: no fault of the build's.
+        BadArtefacts: The archive has entries that lead out of the folder, links to anything but its own files,
+            devices, or too much of anything. Files written until then stay.
+        OSError, MemoryError: This machine's disk, memory or open files are used up: not the build's fault.
     """
     if not archive:
         raise BadArtefacts("what the build made could not be packed")
@@ -125,15 +127,15 @@ def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> None:
 
 
 def check_room(size: int, most: int, number: int = 0) -> None:
-    """Look at the size of what a build made.
+    """Check the size of a build's result.
 
     Args:
-        size: Bytes that its files and folders take.
-        most: Bytes that they may take.
-        number: Files and folders.
+        size: The bytes of its files and folders.
+        most: The limit in bytes.
+        number: The number of files and folders.
 
     Raises:
-        BadArtefacts: It is too much.
+        BadArtefacts: The result is too large.
     """
     if number > MAX_FILES or size > most:
         raise BadArtefacts(
@@ -172,7 +174,7 @@ def _parts(name: str) -> tuple[str, ...]:
 
 
 def _target(member: tarfile.TarInfo) -> PurePosixPath:
-    """The target of a link. Read as text, which is exact: nothing in the folder is a link."""
+    """Return the target of a link. Its text is enough, because nothing in the folder is a link."""
     inside = os.path.normpath(PurePosixPath(*_parts(member.name)).parent / member.linkname)
     if inside.startswith(("..", "/")) or "\0" in inside:
         raise BadArtefacts(f"{member.name!r} leads out of the install folder")
@@ -180,7 +182,7 @@ def _target(member: tarfile.TarInfo) -> PurePosixPath:
 
 
 def _copy(link: PurePosixPath, links: Mapping[PurePosixPath, PurePosixPath], folder: Path) -> int:
-    """Put the file that a link names, perhaps by way of other links, in the link's place; its size in bytes."""
+    """Replace a link by a copy of its target, following other links on the way. Return the size in bytes."""
     target = link
     for _ in range(MAX_LINKS):
         target = links.get(target, target)

@@ -1,4 +1,4 @@
-"""Jobs in boxes: builds without a network, programs on a network where nobody is but them and a judge."""
+"""Jobs in boxes: builds without a network, programs on a network of only themselves and a judge."""
 
 from __future__ import annotations
 
@@ -38,24 +38,25 @@ BUILD_LIMITS = Limits(
     scratch_bytes=300_000_000,
     scratch_files=20_000,
 )
-"""An interface package takes 10 s of processor time, 400 MB, and writes 5 million bytes in 600 files."""
+"""The limits of a build; an interface package takes 10 s of processor time, 400 MB, and writes 5 million bytes in
+600 files.
+"""
 PROGRAM_LIMITS = Limits(cpu_seconds=200.0, memory_bytes=1_500_000_000, processes=400)
-"""The resources that a program may take, where the limits of the whole submission are not held by the system
-itself."""
+"""The limits of a program, if the system itself does not enforce the limits of the whole submission."""
 PACK_SECONDS = 60.0
-"""Wall time in which what a build made must be packed."""
+"""Wall time for packing the result of a build."""
 LOOK_EVERY = 0.5
-"""Seconds between two questions whether a build is still wanted."""
+"""Seconds between checks whether a build is still wanted."""
 
 
 class BoxedJobs:
     """Implements :class:`autograder.workspaces.jobs.Jobs`.
 
     Args:
-        supervisors: Where the fork server of supervisors listens.
-        network: Where programs run; what is asked of it here comes from another thread.
-        folder: Ours alone, for what is made on the way.
-        programs: Where the fork server of programs listens; without one, each program starts by itself.
+        supervisors: The socket address of the fork server that starts supervisors.
+        network: The boxes' network for programs; this class uses it from another thread.
+        folder: A folder for this object alone, for intermediate files.
+        programs: The socket address of the fork server for programs; empty to start each program without one.
     """
 
     def __init__(self, supervisors: str, network: Enclosure, folder: Path, programs: str = "") -> None:
@@ -70,7 +71,7 @@ class BoxedJobs:
         return box_environment()
 
     def place(self, name: str, entry: Path) -> Path:
-        """In the home folder of the box, wherever the entry is."""
+        """The entry's path inside a box: in the home folder."""
         del entry
         return HOME / name
 
@@ -80,9 +81,9 @@ class BoxedJobs:
         return WORK
 
     def build(self, order: BuildOrder, command: Sequence[str], entry: Entry) -> Built:
-        """Build in an enclosure of its own; pack what is there with nothing of the student's alive any more.
+        """Build in a box of its own, and pack the result when no process of the build is alive any more.
 
-        One that needs more memory than most do is built again, when no other of these is.
+        A build that needs more memory than most is repeated while no other such build runs.
         """
         built, needs_room = self._build(order, command, entry.folder, BUILD_LIMITS)
         if needs_room:
@@ -92,10 +93,10 @@ class BoxedJobs:
 
     @contextlib.contextmanager
     def _turn(self, cancelled: Callable[[], bool]) -> Iterator[None]:
-        """A lock that all workers of a batch have in common: the folder of the fork servers.
+        """Hold a lock that all workers of a batch share: one on the folder of the fork servers.
 
         Raises:
-            GivenUp: Nobody waits for the build any more.
+            GivenUp: The build is no longer wanted.
         """
         folder = os.open(Path(self._supervisors).parent, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
         try:
@@ -107,7 +108,7 @@ class BoxedJobs:
     def _build(
         self, order: BuildOrder, command: Sequence[str], entry: Path, limits: Limits
     ) -> tuple[Built, bool]:
-        """The build, and whether it came to the end of its share of memory."""
+        """Return the build, and whether it reached the limit of its share of memory."""
         place = self.place(order.name, entry)
         folder = fresh_folder("build-", self._folder)
         binds = [Bind(entry / "src", place / "src"), *_covers(order.hidden, folder)]
@@ -136,7 +137,7 @@ class BoxedJobs:
                     output_bytes=MAX_ARCHIVE_BYTES,
                 )
                 if packed.returncode is None:
-                    # A few MB take milliseconds: the machine was busy, and no build has failed.
+                    # Packing a few MB takes milliseconds, so the machine was busy and the build did not fail.
                     return Built(None, output, late=PACK_SECONDS), False
                 whole = packed.returncode == 0 and not packed.cut
                 return Built(returncode, output, packed.output if whole else b""), False
@@ -145,7 +146,7 @@ class BoxedJobs:
             shutil.rmtree(folder, ignore_errors=True)
 
     def start(self, job: ProgramJob) -> BoxedProgram:
-        """Start it in a box of that network; a `ros2 run` from the fork server of programs."""
+        """Start the program in a box on the network; a `ros2 run` starts from the fork server of programs."""
         binds = [Bind(job.sources, WORK)]
         binds += [Bind(entry / "install", HOME / name / "install") for name, entry in job.entries.items()]
         command, *words = job.command
@@ -175,7 +176,7 @@ class BoxedProgram:
         self.pid = running.pid
 
     def read(self, within: float) -> bytes | None:
-        """Its output, stdout and stderr in one."""
+        """Return the output, stdout and stderr in one; None for nothing yet, b"" at its end."""
         if self._guard.exceeded():
             self._ended = True
         if self._ended:
@@ -187,11 +188,11 @@ class BoxedProgram:
         return data
 
     def exit_code(self) -> int | None:
-        """Of the first program of the box."""
+        """The exit code of the first program in the box."""
         return self._code
 
     def interrupt(self) -> None:
-        """Ctrl-C, while it runs: its number may be another program's afterwards."""
+        """Send Ctrl-C while the program runs: afterwards another process may have its id."""
         if not self._ended:
             self._running.interrupt()
 
@@ -202,7 +203,7 @@ class BoxedProgram:
 
 
 def _wait(running: Running, over: Callable[[], bool]) -> tuple[int | None, bool]:
-    """The exit code, None where it was ended; and whether that was because of the time."""
+    """Return the exit code, None if it was stopped, and whether it was stopped because of the time limit."""
     deadline = time.monotonic() + BUILD_SECONDS
     while running.read(LOOK_EVERY):
         if over():
@@ -213,7 +214,7 @@ def _wait(running: Running, over: Callable[[], bool]) -> tuple[int | None, bool]
 
 
 def _covers(hidden: Sequence[Path], folder: Path) -> list[Bind]:
-    """An empty folder or file over each of these."""
+    """Return mounts that put an empty folder or file over each of these."""
     if not hidden:
         return []
     empty_folder, empty_file = folder / "empty", folder / "empty-file"

@@ -1,7 +1,7 @@
 """Builds of workspaces, each made once for the same sources: in a student's kernel, in a terminal and for a class.
 
-The sources are read once. What comes of a build depends on these bytes and on the tools: their hash is the key under
-which it is kept. Where it runs (:class:`autograder.workspaces.jobs.Jobs`) is all that differs between the places.
+The sources are read once. A build depends only on these bytes and on the tools; their hash is the key under which the
+build is stored. The three places differ only in the process that builds (:class:`autograder.workspaces.jobs.Jobs`).
 """
 
 from __future__ import annotations
@@ -34,25 +34,25 @@ if TYPE_CHECKING:
     from autograder.workspaces.sources import Tree
 
 FORMAT = "3"
-"""Part of every key: change it when what is kept of a build changes."""
+"""A part of every key: change it when the stored form of a build changes."""
 MAX_LINE = 1_000
-"""Characters of a line of a build's output that are looked at."""
+"""The most characters of an output line that are parsed."""
 NO_DEFAULTS = {"COLCON_DEFAULTS_FILE": os.devnull}
-"""Turns off a user's own settings for colcon, which are not in the key."""
+"""Turns off the user's own settings for colcon, which are not in the key."""
 _TOOLS = ("colcon_core-", "colcon_cmake-", "colcon_ros-", "setuptools-", "cmake-")
 _ENVIRONMENT = ("CC", "CXX", "CFLAGS", "CXXFLAGS", "LDFLAGS", "CMAKE_GENERATOR", "RMW_IMPLEMENTATION")
 
 
 class BuildTookTooLong(RuntimeError):
-    """Nothing can be said about sources whose build did not end in time.
+    """The build did not end in time, so its sources cannot be judged.
 
     Args:
-        seconds: The time that it had.
+        seconds: The time limit.
         found: The workspace.
-        log: What the build said until then.
+        log: The output of the build until then.
 
     Attributes:
-        build: The same as a build that failed.
+        build: The build in the form of a failed one.
     """
 
     def __init__(self, seconds: float, found: Build, log: str) -> None:
@@ -61,15 +61,15 @@ class BuildTookTooLong(RuntimeError):
 
 
 class Builds:
-    """Builds of workspaces, from a cache or made.
+    """Finds builds of workspaces in a cache, or makes them.
 
     Args:
-        folder: The cache.
-        jobs: Run colcon, and what was built.
-        room: Bytes that a build may add to the cache, where it comes to it as an archive.
+        folder: The folder of the cache.
+        jobs: Runs colcon and the built programs.
+        room: Bytes that a build may add to the cache, if the build comes as an archive.
 
     Attributes:
-        jobs: The same.
+        jobs: As given.
     """
 
     def __init__(self, folder: Path, jobs: Jobs, room: int = artefacts.MAX_BYTES) -> None:
@@ -85,25 +85,24 @@ class Builds:
         name: str = WORKSPACE,
         cancelled: Callable[[], bool] = lambda: False,
     ) -> Build:
-        """Build what is needed of a workspace.
+        """Build the needed packages of a workspace.
 
-        A package that a needed one names in package.xml and that fails takes nothing away from it: it is built without
-        that one. ``my_robot_pkg`` depends on ``my_robot_interfaces`` from Lab 1.3 on, and its programs of the labs
-        before import nothing of it. What a program does import it finds where it runs, among the packages that come
-        with the course, or it says that it is missing.
+        If a package named in package.xml fails, the packages that depend on it are built without it. From Lab 1.3 on
+        ``my_robot_pkg`` depends on ``my_robot_interfaces``, but its programs of earlier labs import nothing from it.
+        A program finds its imports at run time among the course's own packages, or reports what is missing.
 
         Args:
-            found: The workspace, looked at.
-            targets: Which packages are needed; they are built with what they depend on, or without it where only that
-                fails. None for all.
+            found: The workspace, after :func:`autograder.workspaces.colcon.look`.
+            targets: The needed packages; they are built with their dependencies, or without one if only that one
+                fails. None for all packages.
             name: See :meth:`autograder.workspaces.jobs.Jobs.place`.
-            cancelled: Says when nobody waits for it any more.
+            cancelled: Returns True when the build is no longer wanted.
 
         Returns:
-            The build; its ``install`` is where this process sees it.
+            The build; its ``install`` is the path in this process.
 
         Raises:
-            BuildTookTooLong: It was ended for that.
+            BuildTookTooLong: The build was stopped at its time limit.
         """
         made = self._build(found, targets, name, cancelled)
         wanted = (
@@ -114,7 +113,7 @@ class Builds:
         if not wanted or not made.package or made.package in wanted:
             return made
         own = tuple(package for package in found.packages if package.name in wanted)
-        # CMake looks for what a package depends on while it is built; setuptools does not.
+        # CMake looks for a package's dependencies during the build; setuptools does not.
         if any(package.build_type != "ament_python" for package in own):
             return made
         alone = self._build(replace(found, packages=own), targets, name, cancelled)
@@ -136,16 +135,16 @@ class Builds:
         except BadSources as error:
             return replace(found, trouble="bad_package", line=str(error))
         except cache.GivenUp as error:
-            return replace(found, trouble="build", line=str(error))  # which nobody will read
+            return replace(found, trouble="build", line=str(error))  # no one will read it
         return replace(made, seconds=time.monotonic() - began)
 
     def _find_or_make(self, found: Build, chosen: Sequence[Package], order: BuildOrder) -> Build:
-        """The build of the chosen packages; the order says the same with their folders inside the place."""
+        """Return the build of the chosen packages; the order has their folders as paths inside the place."""
         del chosen
         return self._entry(found, self._keyed(order))
 
     def _keyed(self, order: BuildOrder, *words: str) -> BuildOrder:
-        """The order with its key, which more words than all that it is made of may be in."""
+        """Return the order with its key, which may contain more words than the order itself."""
         return replace(
             order,
             key=key(
@@ -160,7 +159,7 @@ class Builds:
         )
 
     def _entry(self, found: Build, order: BuildOrder, folder: Path | None = None) -> Build:
-        """The build from a cache, or made in it; the cache of these builds if none is named."""
+        """Return the build from a cache, or make it there; the cache of these builds if none is given."""
         with cache.entry(order.key, folder or self._folder, order.cancelled) as entry:
             install = entry.folder / "install"
             if entry.complete:
@@ -185,7 +184,7 @@ class Builds:
             return failed(found, log)
         try:
             if built.archive is not None:
-                # What is in the cache stays there for a while, and others need the room, too.
+                # Builds stay in the cache for a while, and other builds need space, too.
                 artefacts.unpack(built.archive, install, self._room)
         except artefacts.BadArtefacts as error:
             return failed(found, f"{log}\nerror: {error}")
@@ -193,17 +192,17 @@ class Builds:
 
 
 def key(tree: Tree, *words: str) -> str:
-    """The key of a build: everything that is built, and everything that builds it.
+    """Return the key of a build: a hash of everything that is built, and of everything that builds it.
 
     Args:
-        tree: What is built.
-        words: How it is built, such as the command.
+        tree: The sources.
+        words: Other facts that matter, such as the command.
     """
     return hashlib.sha256("\0".join((FORMAT, tree.digest, *toolchain(), *words)).encode()).hexdigest()
 
 
 def toolchain() -> tuple[str, ...]:
-    """All else that decides on a build: the interpreter, the build tools, the compiler and the underlay."""
+    """Return everything else that decides a build: the interpreter, the build tools, the compiler and the underlay."""
     programs = [
         shutil.which(os.environ.get(name) or usual) or "" for name, usual in (("CC", "cc"), ("CXX", "c++"))
     ]
@@ -221,7 +220,7 @@ def toolchain() -> tuple[str, ...]:
 
 
 def _underlay() -> str:
-    """The ROS that a build finds first, sourced or of the environment, and a mark of it; empty where there is none."""
+    """Return the ROS that a build finds first, sourced or of the environment, with a mark; empty if there is none."""
     for prefix in filter(None, (*os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep), sys.prefix)):
         generators = str(Path(prefix, "share", "rosidl_default_generators", "package.xml"))
         if mark := state(generators):
@@ -231,20 +230,20 @@ def _underlay() -> str:
 
 @functools.cache
 def _tools() -> tuple[str, ...]:
-    """The build tools and their versions, as the names of their folders have them (PEP 376).
+    """Return the build tools with their versions, from the names of their folders (PEP 376).
 
-    Asked at each start of a program in a workspace: to import importlib.metadata costs five times as much.
+    This runs at each start of a program in a workspace, and importing importlib.metadata takes five times as long.
     """
     entries: set[str] = set()
     for folder in filter(None, sys.path):
-        # One that is not there, is no folder or may not be read: Python passes over it, too.
+        # A path that is missing, not a folder or unreadable is skipped, as Python does.
         with contextlib.suppress(OSError):
             entries.update(entry.name for entry in Path(folder).iterdir())
     return tuple(sorted(e for e in entries if e.startswith(_TOOLS) and e.endswith(("dist-info", "egg-info"))))
 
 
 def state(file: str) -> str:
-    """A mark of a file of the tools, not shared by a later one of its name; empty where there is none."""
+    """Return a mark of a tool's file that a later file of this name does not have; empty if the file is missing."""
     try:
         found = Path(file).stat()
     except OSError:
@@ -259,7 +258,7 @@ def _are_light(packages: Sequence[Package]) -> bool:
 
 
 def _log(built: Built, place: Path) -> str:
-    """The output as text, cut to what can be looked at in no time whatever it is."""
+    """Return the output as text, cut so that any content can be parsed quickly."""
     text = built.output.decode("utf-8", "replace").replace(f"{place}/", "")
     if built.returncode is None:
         text += "\nerror: the build took more memory, processes or processor time than a build may take"

@@ -34,13 +34,13 @@ if TYPE_CHECKING:
 
 FILE = "built_ahead.json"
 Files = dict[str, str | None]
-"""Packages that are built together: texts of files, and None for a folder, by paths relative to ``src``."""
+"""Packages that are built together: the texts of files, and None for a folder, by paths relative to ``src``."""
 _ROOM = 1_000_000_000
 _done: set[Path] = set()
 
 
 def recorded(root: Path) -> list[Files]:
-    """Read what the chapters of a course have recorded."""
+    """Read the packages that the chapters of a course have recorded."""
     found: list[Files] = []
     for file in sorted((root / "solutions").glob(f"*/{FILE}")):
         found += msgspec.json.decode(file.read_bytes(), type=list[Files])
@@ -48,11 +48,11 @@ def recorded(root: Path) -> list[Files]:
 
 
 def build_ahead(folder: Path, jobs: Jobs) -> None:
-    """Build everything that is shared, as far as it is not there yet; once in the life of this process.
+    """Build every shared package that is missing; once in the life of this process.
 
     Args:
         folder: See :func:`autograder.workspaces.cache.graders_root`.
-        jobs: Run colcon.
+        jobs: Runs colcon.
     """
     if folder in _done:
         return

@@ -1,8 +1,8 @@
-"""A cache of builds: one folder a build, named by the key of its sources, that only its owner may use.
+"""A cache of builds: one folder for each build, named by the key of its sources, that only its owner may use.
 
-An entry is built in place (an install folder names its own path) under a lock, and counts only once its marker is
-written: whatever was interrupted is removed and done again. Where the one who builds is killed, as a kernel is when
-JupyterLab restarts it, the build is ended too, and has the lock until nothing of it is left that could write.
+An entry is built at its final path (an install folder contains its own path) under a lock, and counts only once its
+marker is written: an interrupted build is removed and repeated. If the builder is killed, as a kernel is when
+JupyterLab restarts it, the build is ended, too, and holds the lock until none of its processes can write any more.
 """
 
 from __future__ import annotations
@@ -28,29 +28,29 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 VARIABLE = "AUTOGRADER_WORKSPACE_CACHE"
-"""Names another folder for the cache; a grader gives each box its own."""
+"""The variable that names another folder for the cache; a grader gives each box its own."""
 LIMIT = 1_000_000_000
-"""Bytes that all entries may take together; one interface package takes two million."""
+"""The limit on bytes of all entries together; one interface package takes two million."""
 IN_USE = 900.0
-"""Seconds after its last use in which an entry is not removed: its programs may still run, as long as a check lasts."""
+"""Seconds after its last use in which an entry is not removed: its programs may run as long as a check lasts."""
 ASK_EVERY = 0.1
-"""Seconds between two looks whether an entry is free, for those who may give up."""
+"""Seconds between checks whether an entry is free, for callers who may give up."""
 _MARKER = "complete"
 _NAME = "ros2-course-autograder"
 
 
 class GivenUp(RuntimeError):
-    """The entry is not needed any more: whoever asked for it has given up."""
+    """The caller no longer needs the entry."""
 
 
 @dataclass(frozen=True)
 class Entry:
-    """A folder of the cache, locked by whoever holds it.
+    """A folder of the cache, locked while it is held.
 
     Attributes:
-        folder: Where it is.
-        complete: Whether a build is there already.
-        lock: The descriptor of its lock, which whatever else writes into the folder holds, too.
+        folder: The path.
+        complete: True if the entry contains a finished build.
+        lock: The descriptor of its lock, which every process that writes into the folder holds, too.
     """
 
     folder: Path
@@ -58,22 +58,22 @@ class Entry:
     lock: int
 
     def finish(self) -> None:
-        """Let the build count from now on."""
+        """Mark the build as finished; it counts from now on."""
         (self.folder / _MARKER).write_text(self.folder.name, encoding="utf-8")
 
 
 def root() -> Path:
-    """The folder of the cache, owned by this user and closed to all others.
+    """Return the folder of the cache, which only this user owns and can open.
 
-    A folder that somebody else owns or may write to is not used: its builds would be run. A fresh one in the
-    temporary folder takes its place, so that the work goes on without a cache.
+    A folder that another user owns or may write to is not used, because its builds would be run. Then a new temporary
+    folder is used instead, and work goes on without earlier builds.
     """
     named = os.environ.get(VARIABLE)
     return _own(Path(named) if named else platformdirs.user_cache_path(_NAME) / "workspaces")
 
 
 def graders_root() -> Path:
-    """The folder of the builds of the course's own packages: made in boxes, and seen by a box only as far as needed."""
+    """Return the folder for builds of the course's own packages: made in boxes, and shown to boxes only as needed."""
     return _own(platformdirs.user_cache_path(_NAME) / "graded-builds")
 
 
@@ -89,13 +89,13 @@ def _own(folder: Path) -> Path:
 
 @functools.cache
 def _in_place_of(folder: Path) -> Path:
-    """A folder for this process alone, and for as long as it lives."""
+    """Make a folder for this process alone, which is removed when the process ends."""
     del folder
     made, owner = fresh_folder("workspace-builds-"), os.getpid()
 
     @atexit.register
     def remove() -> None:
-        if os.getpid() == owner:  # and no fork of it, which ends, too
+        if os.getpid() == owner:  # not in a fork, which also runs this at its end
             shutil.rmtree(made, ignore_errors=True)
 
     return made
@@ -109,12 +109,12 @@ def is_ones_own(folder: Path) -> bool:
 
 
 def is_complete(key: str, base: Path) -> bool:
-    """True if there is a finished entry, without waiting for anybody who makes it."""
+    """True if there is a finished entry, without waiting for a process that makes it."""
     return _is_of(key, base / key / _MARKER)
 
 
 def _is_of(key: str, marker: Path) -> bool:
-    """True if the marker was written for a build of this key, and not for one whose folder has another name since."""
+    """True if the marker was written for a build of this key, not for one whose folder was renamed since."""
     try:
         return marker.read_text(encoding="utf-8") == key
     except (OSError, UnicodeDecodeError):
@@ -123,18 +123,17 @@ def _is_of(key: str, marker: Path) -> bool:
 
 @contextlib.contextmanager
 def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -> Iterator[Entry]:
-    """Hold the entry of a key: nobody else builds it at the same time.
+    """Hold the entry of a key, so that no other process builds it at the same time.
 
-    An entry that was not finished is empty when it is handed over, and is removed when it is not finished
-    then.
+    An unfinished entry is empty when it is given to the caller, and is removed if the caller does not finish it.
 
     Args:
-        key: Says what is in it.
+        key: The key of the build.
         base: The cache.
-        cancelled: Asked now and then, while somebody else has the entry, whether it is still wanted.
+        cancelled: Called from time to time while another process holds the entry; True gives up.
 
     Raises:
-        GivenUp: It is not.
+        GivenUp: The entry is no longer wanted.
     """
     with _turn(base / f"{key}.lock", cancelled) as lock:
         folder = base / key
@@ -156,7 +155,7 @@ def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -
 
 @contextlib.contextmanager
 def _turn(file: Path, cancelled: Callable[[], bool]) -> Iterator[IO[str]]:
-    """Hold a lock. Whoever had it may have removed it with its entry: then another one counts, which is new."""
+    """Hold a lock. Its last holder may have removed the file with its entry; then a new file is locked instead."""
     while True:
         with file.open("a") as lock:
             await_turn(lock.fileno(), cancelled)
@@ -173,20 +172,20 @@ def _is_at(lock: IO[str], file: Path) -> bool:
 
 
 def await_turn(lock: int, cancelled: Callable[[], bool]) -> None:
-    """Take a lock once nobody else has it.
+    """Take a lock once no other process has it.
 
     Args:
-        lock: A descriptor of what is locked; whoever closes it gives the lock back.
-        cancelled: Asked now and then whether it is still wanted.
+        lock: A descriptor of the locked file; closing it releases the lock.
+        cancelled: Called from time to time; True gives up.
 
     Raises:
-        GivenUp: It is not.
+        GivenUp: The lock is no longer wanted.
     """
     while True:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            # A lock has no event that one could wait for together with anything else.
+            # No event tells that a lock is free, so this polls.
             if cancelled():
                 raise GivenUp("nobody waits for the entry any more") from None
             time.sleep(ASK_EVERY)
@@ -195,13 +194,13 @@ def await_turn(lock: int, cancelled: Callable[[], bool]) -> None:
 
 
 def make_room(base: Path, limit: int = LIMIT, in_use: float = IN_USE) -> list[str]:
-    """Remove the entries that were not used for longest, until all together take at most ``limit`` bytes.
+    """Remove the least recently used entries, until all together take at most ``limit`` bytes.
 
-    What builds that failed or were killed have left goes, too.
+    Remains of failed or killed builds are removed, too.
 
     Args:
         base: The cache.
-        limit: Bytes.
+        limit: The limit in bytes.
         in_use: Seconds after its last use in which an entry stays.
 
     Returns:
@@ -224,16 +223,16 @@ def make_room(base: Path, limit: int = LIMIT, in_use: float = IN_USE) -> list[st
 
 
 def _remove(base: Path, folder: Path, used: float | None) -> bool:
-    """Remove an entry that was used last then, or never finished; False where somebody uses it, or has since."""
+    """Remove an entry last used at this time, or never finished; False if another process uses it or has since."""
     file = base / f"{folder.name}.lock"
     with file.open("a") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
-            return False  # somebody uses it
+            return False  # another process uses it
         if not _is_at(lock, file) or _last_use(folder) != used:
-            return False  # somebody else has removed it just now, or made it or used it
-        # Without its marker it does not count, should the rest stay behind.
+            return False  # another process has just removed, made or used it
+        # Without its marker the entry does not count, even if removing the rest fails.
         (folder / _MARKER).unlink(missing_ok=True)
         shutil.rmtree(folder, ignore_errors=True)
         file.unlink(missing_ok=True)
@@ -248,7 +247,7 @@ def _last_use(folder: Path) -> float | None:
 
 
 def size_of(folder: Path) -> int:
-    """The bytes that a folder and all in it take of a disk, about."""
+    """Return the approximate disk space of a folder and everything in it, in bytes."""
     size = 0
     for root_, _, names in os.walk(folder):
         size += BLOCK

@@ -1,4 +1,4 @@
-"""A workspace as it is found and built, how colcon is told to build it, and what its output says of a failure."""
+"""A workspace before and after its build, colcon's command line, and what colcon's output tells about a failure."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from autograder.workspaces.room import Room
 
 MAX_LOG = 40_000
-"""Characters of a failed build's log that are kept: its end."""
+"""The characters that are kept of a failed build's log, from its end."""
 _REFUSED = "setup()' was never called"
-"""In the last line of a build if setuptools has refused what setup.py gives it: its reason is in no log."""
+"""In the last line of a build if setuptools refuses the arguments in setup.py: then no log has the reason."""
 _WHAT_REFUSED = (
     "setuptools refuses setup.py; `python3 setup.py --version`, in the folder of the package, says why"
 )
@@ -32,7 +32,7 @@ _FAILED = re2.compile(r"(?m)^Failed\s+<<< (?P<name>\S+)")
 
 @dataclass(frozen=True)
 class Build:
-    """A workspace: what is there to be built, and what building it has brought.
+    """A workspace: the packages in it, and the result of building them.
 
     Attributes:
         workspace: Its folder.
@@ -40,13 +40,13 @@ class Build:
         install: Where the packages are installed; empty where it failed.
         chosen: The packages of ``install`` that belong to the build; empty where all do.
         packages: The packages of the workspace, as their files describe them.
-        unusable: What is wrong with those that cannot be used.
-        seconds: Wall time that it took.
-        reused: Whether the same sources had been built before.
-        trouble: ``"no_workspace"``, ``"no_package"``, ``"bad_package"``, ``"entry_point"`` or ``"build"``; empty
-            where it is well.
-        package: The package that failed, else empty.
-        line: The one line that matters of a failure.
+        unusable: The reasons why other packages cannot be used.
+        seconds: The wall time of the build.
+        reused: True if the same sources had been built before.
+        trouble: ``"no_workspace"``, ``"no_package"``, ``"bad_package"``, ``"entry_point"`` or ``"build"``; empty if
+            all is well.
+        package: The package that failed; empty if none did.
+        line: The most telling line of a failure.
         log: The log of a failure.
         changed: The sources, in words, that the student has changed since the last `colcon build`.
     """
@@ -72,7 +72,7 @@ class Build:
         return [prefix for prefix in found if not self.chosen or prefix.name in self.chosen]
 
     def programs(self, package: str) -> tuple[str, ...]:
-        """The names of the programs that ``ros2 run`` finds of an installed package; empty where it is none."""
+        """Return the names of the programs that ``ros2 run`` finds in an installed package; empty if there are none."""
         return tuple(p for prefix in self.prefixes if prefix.name == package for p in programs(prefix))
 
     def launch_files(self, package: str) -> tuple[Path, ...]:
@@ -80,22 +80,22 @@ class Build:
         return tuple(f for prefix in self.prefixes if prefix.name == package for f in launch_files(prefix))
 
     def entry_points(self, package: str, room: Room) -> tuple[str, ...]:
-        """The entry points of an installed Python package, as ``name = module:function``, however it names them."""
+        """Return the entry points of an installed Python package, as ``name = module:function``."""
         return tuple(
             e for prefix in self.prefixes if prefix.name == package for e in entry_points(prefix, room)
         )
 
 
 Targets = Callable[[Build], Iterable[str]]
-"""Says of a workspace that was looked at which of its packages are needed; none of them means all."""
+"""Returns the packages of a workspace that are needed; no packages means all."""
 
 
 def failed(found: Build, log: str) -> Build:
-    """A workspace that could not be built, with what colcon's output tells of it."""
+    """Return a workspace that could not be built, with the reason from colcon's output."""
     search = _FAILED.search(log)
     name = search["name"] if search else ""
     own = _log_of(log, name)
-    # What setup.py itself says when colcon first asks it goes past the package's part of the log.
+    # When colcon first asks setup.py, its output is outside the package's part of the log.
     own = log if "CalledProcessError" in telling_line(own) else own
     made = replace(found, trouble="build", package=name, line=telling_line(own), log=own[-MAX_LOG:])
     if _REFUSED not in made.line:
@@ -105,10 +105,10 @@ def failed(found: Build, log: str) -> Build:
 
 
 def look(workspace: Path) -> Build:
-    """The packages that are there to be built, without building them.
+    """Return the packages that can be built, without building them.
 
     Args:
-        workspace: The folder that holds ``src``.
+        workspace: The folder that contains ``src``.
     """
     workspace = workspace.resolve()
     src = workspace / "src"
@@ -124,9 +124,9 @@ def look(workspace: Path) -> Build:
 
 
 def choose(found: Build, targets: Targets | None) -> tuple[list[Package], Build]:
-    """The packages that are to be built, and the workspace with its trouble where these cannot be.
+    """Return the packages to build, and the workspace, with the trouble if these packages cannot be built.
 
-    A package that is not needed, half done or not usable at all, hurts nobody.
+    A package that is not needed does no harm, even if it is unfinished or broken.
     """
     chosen = needed(found.packages, targets(found)) if targets is not None else []
     if chosen or not found.unusable:
@@ -135,26 +135,26 @@ def choose(found: Build, targets: Targets | None) -> tuple[list[Package], Build]
 
 
 def moved(packages: Iterable[Package], src: Path, there: Path) -> list[Package]:
-    """The packages as they are found where their sources are written again.
+    """Return the packages with the paths that they have where their sources are written again.
 
     Args:
         packages: The packages.
-        src: The folder that they are in.
+        src: The present folder of the packages.
         there: The other folder.
     """
     return [replace(package, folder=there / package.folder.relative_to(src)) for package in packages]
 
 
 def command(packages: Iterable[Package], folder: Path, cmake: Sequence[str] = ()) -> list[str]:
-    """Colcon's command line for these packages alone; ``build``, ``install`` and ``log`` come into the folder.
+    """Return colcon's command line for these packages alone, with ``build``, ``install`` and ``log`` in the folder.
 
     Args:
         packages: The packages.
-        folder: Where all that is made comes to.
+        folder: The folder for everything that is made.
         cmake: More arguments for CMake.
 
-    Release defines NDEBUG: without it a value of the wrong type in a field of a generated message ends the whole
-    process with SIGABRT instead of raising an exception.
+    Release defines NDEBUG: without it, a value of the wrong type in a field of a generated message ends the process
+    with SIGABRT instead of raising an exception.
     """
     words = [
         "-m", "colcon", "--log-base", str(folder / "log"),
@@ -168,7 +168,7 @@ def command(packages: Iterable[Package], folder: Path, cmake: Sequence[str] = ()
 
 
 def _log_of(log: str, package: str) -> str:
-    """The part of colcon's output that belongs to one package, else all of it."""
+    """Return the part of colcon's output about one package, else all of it."""
     if package:
         found = re2.search(rf"(?ms)^--- output: {re2.escape(package)}\n(.*?)^---$", log)
         if found:

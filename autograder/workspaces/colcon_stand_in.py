@@ -1,8 +1,8 @@
-"""`colcon` in a graded notebook: a plain build is asked of the grader, everything else is colcon's own.
+"""`colcon` in a graded notebook: the grader makes plain builds, and colcon itself does everything else.
 
-``colcon build`` in a workspace, with ``--packages-select`` or ``--packages-up-to`` at most, ends as it always does:
-with the packages in ``install``, and lines that say which are finished. Only what colcon needs for its next build
-(``build``) is not there, and ``log`` is empty.
+``colcon build`` in a workspace, with at most ``--packages-select`` or ``--packages-up-to``, ends as usual: with the
+packages in ``install``, and lines that tell which are finished. Only the files for colcon's next build (``build``)
+are missing, and ``log`` is empty.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ UP_TO = "--packages-up-to"
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Build by asking, or become colcon.
+    """Request a build from the grader, or become colcon.
 
     Args:
-        arguments: Of the command line.
+        arguments: The arguments of the command line.
     """
     chosen = _chosen(arguments)
     found = look(Path.cwd())
@@ -41,14 +41,14 @@ def main(arguments: Sequence[str]) -> int:
             try:
                 return _told(made)
             except CannotPlace:
-                pass  # colcon says why
+                pass  # colcon reports the reason
     command = python_child("-m", "colcon", *arguments).command
     os.execv(command[0], command)
     return 1
 
 
 def _chosen(arguments: Sequence[str]) -> tuple[str, list[str]] | None:
-    """The option and the packages of a plain build; None for any other command."""
+    """Return the option and the packages of a plain build; None for any other command."""
     match list(arguments):
         case ["build"]:
             return "", []
@@ -64,13 +64,13 @@ def _targets(option: str, names: Sequence[str]) -> Targets | None:
 
 
 def _told(made: Build) -> int:
-    """Say what colcon says; the exit code.
+    """Print what colcon would print. Return the exit code.
 
     Raises:
-        CannotPlace: The install folder cannot take it.
+        CannotPlace: The install folder cannot take the build.
     """
     if not made.ok and not made.log:
-        print(f"colcon build: {made.line}")  # it did not come to a build
+        print(f"colcon build: {made.line}")  # the build did not begin
         return 1
     if not made.ok:
         print(f"{made.log.rstrip()}\nFailed   <<< {made.package} [{made.seconds:.2f}s, exited with code 1]")

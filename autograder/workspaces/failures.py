@@ -1,4 +1,4 @@
-"""The one line of a build's log that tells why it failed."""
+"""Finds the one line of a build's log that tells why it failed."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _NINJA_MAKE = re2.compile(r"^(?:make|gmake|ninja|---|<<<|>>>)")
 
 
 def telling_line(log: str) -> str:
-    """The line that matters of a failed build, with its place where one is named.
+    """Return the most telling line of a failed build, with the file and line if the log has them.
 
     Args:
         log: What colcon's commands printed, in order.
@@ -32,10 +32,10 @@ def telling_line(log: str) -> str:
     if found := _COMPILER.search(log):
         return f"{_short(found['file'])}:{found['line']}: {found['what']}"
     python = _python(log)
-    # What CMake prints on the way goes to another stream: on a busy machine it comes between the lines of an error.
+    # CMake prints status lines to another stream; on a busy machine they come between the lines of an error.
     log = _CMAKE_STATUS.sub("", log) or log
     if found := _CMAKE.search(log):
-        # What a generator raised is the cause; that CMake's call of it failed is only the consequence.
+        # A generator's error is the cause; the failure of CMake's call to it is only a consequence.
         if python and "execute_process" in found["what"]:
             return python
         what = " ".join(found["what"].split())
@@ -51,7 +51,7 @@ def telling_line(log: str) -> str:
 
 
 def _python(log: str) -> str:
-    # That colcon's or CMake's call of a program failed is only the consequence of what that program says.
+    # A failed call by colcon or CMake is only the consequence; the called program printed the cause.
     found = list(_PYTHON.finditer(log))
     errors = [error for error in found if "CalledProcessError" not in error["what"]] or found
     if not errors:
@@ -61,7 +61,7 @@ def _python(log: str) -> str:
     if not places:
         return error["what"].strip()
     file, line = places[-1]["file"], places[-1]["line"]
-    # setuptools executes the text of setup.py, without its name.
+    # setuptools executes the text of setup.py without its file name.
     file = "setup.py" if file == "<string>" and "run_setup" in log else file
     return f"{_short(file)}:{line}: {error['what'].strip()}"
 
@@ -71,7 +71,7 @@ def _is_a_library(file: str) -> bool:
 
 
 def _place(error: re2.Match[str], log: str) -> str:
-    """The line of the package to which a CMake error leads: it may be raised in a library's file."""
+    """Return the package's own line behind a CMake error, which may be raised in a library's file."""
     stack = _CALL_STACK.match(log, error.end())
     own = _CALL.search(stack["calls"].strip().splitlines()[-1].strip()) if stack else None
     place = own or error
@@ -79,7 +79,7 @@ def _place(error: re2.Match[str], log: str) -> str:
 
 
 def _short(file: str) -> str:
-    """The last two parts of a path: the package and the file."""
+    """Return the last two parts of a path: the package and the file."""
     return "/".join(file.split("/")[-2:])
 
 

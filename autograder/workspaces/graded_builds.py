@@ -1,9 +1,9 @@
-"""Builds that a grade may rest on: made in a box of their own from the sources alone, taken over as data.
+"""Builds on which a grade may depend: made in a box from the sources alone, and accepted as data.
 
-A submission shares no build with any other, nor with itself when it is executed again: otherwise the time that a build
-takes would tell a notebook what classmates have handed in, or that it runs for the second time. Only what the course
-itself publishes or makes is built ahead, once for all (:mod:`autograder.workspaces.built_ahead`). No box can write to
-either folder.
+No submission shares a build with another one, or with its own second execution: otherwise the time of a build would
+tell a notebook what classmates have handed in, or that it runs for the second time. Only packages that the course
+itself publishes or makes are built ahead, once for all (:mod:`autograder.workspaces.built_ahead`). No box can write
+to either folder.
 """
 
 from __future__ import annotations
@@ -26,20 +26,20 @@ if TYPE_CHECKING:
     from autograder.workspaces.packages import Package
 
 ROOM = 32_000_000
-"""Bytes for all builds of one notebook together; an interface package takes two million, a Python package 300,000."""
+"""The limit in bytes for all builds of a notebook; an interface package takes two million, a Python package 300,000."""
 
 
 class GradedBuilds(Builds):
-    """Builds that one execution of a submission needs.
+    """The builds for one execution of a submission.
 
-    Packages that hold interfaces and nothing else are often the same but for comments and spaces: of these, a build
-    ahead is found if it means the same.
+    Packages with nothing but interfaces often differ only in comments and spaces, so a build made ahead is used if it
+    means the same.
 
     Args:
-        folder: The builds of this execution. It belongs to the grader alone.
-        jobs: Run colcon, and what was built.
-        ahead: The folder of what was built ahead; None where nothing is shared.
-        room: Bytes that all builds used here may take, whoever made them.
+        folder: The folder for the builds of this execution, which only the grader can write to.
+        jobs: Runs colcon and the built programs.
+        ahead: The folder of builds made ahead; None if nothing is shared.
+        room: The limit in bytes on all builds used here, also those made ahead.
     """
 
     def __init__(self, folder: Path, jobs: Jobs, ahead: Path | None = None, room: int = ROOM) -> None:
@@ -60,7 +60,7 @@ class GradedBuilds(Builds):
         return self._entry(found, order)
 
     def _entry(self, found: Build, order: BuildOrder, folder: Path | None = None) -> Build:
-        """The build, where there is room for it: who finds it made needs as much as who had it made."""
+        """Return the build if the limit allows it: a build made ahead counts as much as a new one."""
         made = super()._entry(found, order, folder)
         if made.install is None or order.key in self._paid:
             return made
@@ -74,5 +74,5 @@ class GradedBuilds(Builds):
 
 
 def _hidden_from(packages: Sequence[Package]) -> Sequence[Path]:
-    """The course's own interfaces, from a build that makes some."""
+    """Return the course's own interfaces, which a build that makes interfaces must not see."""
     return course_interfaces() if any(package.interface_files for package in packages) else ()

@@ -1,7 +1,7 @@
-"""What colcon makes: an install folder, what is where in it, and the environment in which its packages are found.
+"""A colcon install folder: its layout, and the environment in which its packages are found.
 
-The environment is what ``source install/setup.bash`` makes. It is worked out here because sourcing needs a shell, half
-a second, and a path without spaces.
+The environment is the one that ``source install/setup.bash`` makes. It is computed here because sourcing needs a
+shell, half a second, and a path without spaces.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class CannotPlace(RuntimeError):
 
 
 def package_prefixes(install: Path) -> list[Path]:
-    """The prefix of each package in an isolated install folder, in the order of their names."""
+    """Return the prefix of each package in an isolated install folder, in the order of their names."""
     if not install.is_dir():
         return []
     return sorted(folder for folder in install.iterdir() if (folder / "share").is_dir())
@@ -68,12 +68,12 @@ def _libraries(prefix: Path) -> list[Path]:
 
 
 def programs(prefix: Path) -> list[str]:
-    """The names of the programs that ``ros2 run`` finds of the package in a prefix."""
+    """Return the names of the programs that ``ros2 run`` finds in the package of a prefix."""
     return sorted(file.name for file in (prefix / "lib" / prefix.name).glob("*") if file.is_file())
 
 
 def entry_points(prefix: Path, room: Room) -> Iterator[str]:
-    """The entry points of the Python package in a prefix, as ``name = module:function``, as far as there is room."""
+    """Yield the entry points of the Python package in a prefix, as ``name = module:function``, within the limit."""
     files = (file for folder in python_folders(prefix) for file in folder.glob("*/entry_points.txt"))
     for file in filter(room.has, files):
         for line in file.read_text(encoding="utf-8", errors="replace").splitlines():
@@ -93,12 +93,12 @@ def has_service(prefix: Path, interface: str) -> bool:
 
 
 def is_indexed(prefix: Path) -> bool:
-    """True if ament knows of the package in a prefix."""
+    """True if ament finds the package in a prefix."""
     return (prefix / _INDEX / "packages" / prefix.name).is_file()
 
 
 def files_of_interfaces(prefix: Path, package: str) -> Iterator[Path]:
-    """All files and folders of an interface package in a prefix that it may share with others."""
+    """Yield all files and folders of an interface package in a prefix, which it may share with other packages."""
     for pattern in (
         f"share/{package}",
         f"include/{package}",
@@ -112,12 +112,12 @@ def files_of_interfaces(prefix: Path, package: str) -> Iterator[Path]:
 def with_prefixes(
     environment: Mapping[str, str], prefixes: Iterable[Path], *, last: bool = False
 ) -> dict[str, str]:
-    """An environment in which packages of these prefixes are found.
+    """Return an environment in which the packages of these prefixes are found.
 
     Args:
-        environment: The one to begin with.
-        prefixes: One for each package.
-        last: Whether packages that the environment has already come first.
+        environment: The environment to begin with.
+        prefixes: The prefixes, one for each package.
+        last: True if packages that are already in the environment come first.
     """
     chosen = list(prefixes)
     additions = {
@@ -138,7 +138,7 @@ def with_prefixes(
 
 
 def relocated(environment: Mapping[str, str], here: Path, there: Path) -> dict[str, str]:
-    """The environment for somebody who sees one folder at another place."""
+    """Return the environment for a process that sees one folder at another path."""
     old, new = f"{here}{os.sep}", f"{there}{os.sep}"
     return {
         name: os.pathsep.join(
@@ -151,7 +151,7 @@ def relocated(environment: Mapping[str, str], here: Path, there: Path) -> dict[s
 
 
 def without_workspaces(environment: Mapping[str, str], workspace: Path) -> dict[str, str]:
-    """The environment without what is in a workspace: a build must not see the results of the one before."""
+    """Return the environment without paths in a workspace: a build must not see the results of an earlier one."""
     result = dict(environment)
     inside = f"{workspace.resolve()}{os.sep}"
     for name in (
@@ -168,10 +168,10 @@ def without_workspaces(environment: Mapping[str, str], workspace: Path) -> dict[
 
 
 def place(made: Build) -> Path:
-    """Copy a build from the cache into ``install`` of its workspace, for terminals to source.
+    """Copy a build from the cache into ``install`` of its workspace, so that terminals can source it.
 
-    What is there of the same packages is replaced, what is there of others stays. Libraries that a running program
-    has loaded stay loaded: a replaced file is another file, not an overwritten one.
+    The same packages are replaced, other packages stay. A running program keeps the libraries that it has loaded,
+    because files are replaced, not overwritten.
 
     Returns:
         The install folder.

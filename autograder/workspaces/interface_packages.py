@@ -1,7 +1,7 @@
-"""Packages that hold interface definitions and nothing else: what of their texts makes no difference to a build.
+"""Packages with nothing but interface definitions, and which differences in their texts do not affect a build.
 
-Students write the same three lines with other comments and other spaces. A text is only simplified where it is certain
-that it means the same; where it is not, it stays as it is, and the package is built for itself.
+Students write the same three lines with different comments and spaces. A text is simplified only if it certainly
+means the same; otherwise it stays unchanged, and the package is built on its own.
 """
 
 from __future__ import annotations
@@ -22,16 +22,18 @@ if TYPE_CHECKING:
     from autograder.workspaces.packages import Package
 
 MAX_SIMPLIFIED = 50_000
-"""Bytes of sources that are simplified; a student's have a thousand. More are built as they are: the time that it takes
-grows with the square."""
+"""The limit in bytes for sources to be simplified; a student's have a thousand.
+
+Larger ones are built as they are, because simplifying takes quadratic time.
+"""
 _PROSE = ("LICENSE", "README.md", "README.rst", "CHANGELOG.rst")
-"""Files that only people read, and no build."""
+"""Files for people, which no build reads."""
 _FOR_PEOPLE = {"description", "maintainer", "author", "license", "url"}
-"""Elements of package.xml that only people read. Those that package.xml must have are put back with a fixed text."""
+"""Elements of package.xml that only people read. Required ones are put back with a fixed text."""
 
 
 def holds_only_interfaces(package: Package) -> bool:
-    """True if nothing but interfaces can come of a package: its files are those of an interface package."""
+    """True if a package can contain nothing but interfaces: it has only the files of an interface package."""
     files = [path for path in package.folder.rglob("*") if path.is_file()]
     known = {"package.xml", "CMakeLists.txt", *_PROSE}
     return (
@@ -47,7 +49,7 @@ def holds_only_interfaces(package: Package) -> bool:
 
 
 def simplified(tree: Tree) -> Tree:
-    """The sources of such packages with other texts, so that those that mean the same are the same."""
+    """Return the sources of such packages with simplified texts, so that those with the same meaning are equal."""
     if sum(len(source.data or b"") for source in tree.sources) > MAX_SIMPLIFIED:
         return tree
     return Tree(tuple(replace(source, data=_simple(source)) for source in tree.sources))
@@ -65,9 +67,9 @@ def _simple(source: Source) -> bytes | None:
 
 
 def simple_definition(text: str) -> str:
-    """A definition without comments and needless spaces; a line that is more than words and these stays as it is.
+    """Return a definition without comments and needless spaces; a line with anything unusual stays unchanged.
 
-    To rosidl a blank behind ``---``, in front of a type, or one that is none of ASCII's, is an error.
+    To rosidl, a blank after ``---`` or before a type, or a blank outside ASCII, is an error.
     """
     lines = []
     for line in text.splitlines():
@@ -80,9 +82,9 @@ def simple_definition(text: str) -> str:
 
 
 def simple_cmake(text: str) -> str:
-    """A CMakeLists.txt without comments and needless spaces; the text itself where it does more than plain commands.
+    """Return a CMakeLists.txt without comments and needless spaces, or unchanged if it has more than plain commands.
 
-    See cmake-language(7): bracket arguments and comments, escapes, and quoted texts of several lines are left alone.
+    See cmake-language(7): bracket arguments and comments, escapes, and quoted texts of several lines are not changed.
     """
     if re2.search(r"\\|\[=*\[", text) or any(line.count('"') % 2 for line in text.splitlines()):
         return text
@@ -109,7 +111,7 @@ def simple_cmake(text: str) -> str:
 
 
 def simple_package_xml(text: str) -> str:
-    """A package.xml with the elements that a build looks at, in an order of their own."""
+    """Return a package.xml with only the elements that a build reads, in a fixed order."""
     try:
         root = ElementTree.fromstring(text)
         return _simple_elements(root) or text
@@ -118,7 +120,7 @@ def simple_package_xml(text: str) -> str:
 
 
 def _simple_elements(root: ElementTree.Element) -> str:
-    """The same of what was read; empty where the elements are not as simple as that."""
+    """Return the simplified text of a parsed package.xml; empty if its elements are not simple enough."""
     kept = [element for element in root if element.tag not in _FOR_PEOPLE]
     if any(len(element) for element in kept if element.tag != "export"):
         return ""

@@ -1,7 +1,7 @@
-"""Builds and programs as jobs: what they are told, what comes of them, and who runs them, here or in a box.
+"""Builds and programs as jobs: their orders, their results, and the interface of what runs them, here or in a box.
 
-Whatever a build does, it only ever yields bytes: output, and the files that it left in its install folder. Nothing of
-it is executed or unpickled by who has asked for it.
+A build yields nothing but bytes: output, and the files in its install folder. The caller never executes or unpickles
+any of it.
 """
 
 from __future__ import annotations
@@ -20,30 +20,32 @@ if TYPE_CHECKING:
     from autograder.workspaces.sources import Tree
 
 BUILD_SECONDS = 170.0
-"""Wall time in which a build must have ended; an interface package takes five on two idle cores. Less than an exercise
-waits for it, so that a machine that is too busy is never taken for a build that failed."""
+"""The time limit of a build in seconds of wall time; an interface package takes five on two idle cores.
+
+An exercise waits longer than this, so that a busy machine is never taken for a failed build.
+"""
 MAX_LOG_BYTES = 1_000_000
-"""Output that is kept of a build."""
+"""The limit on the kept output of a build, in bytes."""
 MAX_LINE = 4_000
-"""Bytes of one line of a program's output that are passed on."""
+"""The limit on one line of a program's output, in bytes."""
 MAX_ARCHIVE_BYTES = 64_000_000
-"""All that a build may have made, as an archive; an interface package has 1.3 million."""
+"""The limit on everything that a build makes, as an archive; an interface package has 1.3 million bytes."""
 
 
 @dataclass(frozen=True)
 class BuildOrder:
-    """A build that is wanted.
+    """An order for a build.
 
     Attributes:
         name: See :meth:`Jobs.place`.
-        workspace: What is in this folder is not found by the build.
-        tree: What the build gets to see, in ``src`` of its place.
-        packages: The packages in it; their folders are relative to the place.
-        cancelled: Asked now and then; the build is ended when it says so.
+        workspace: A folder whose content the build must not find.
+        tree: The sources of the build, in ``src`` of its place.
+        packages: The packages in the sources; their folders are relative to the place.
+        cancelled: Called from time to time; the build is ended when it returns True.
         cmake: More arguments for CMake.
-        variables: More variables of its environment.
-        hidden: Files and folders of the environment that it must not find.
-        key: Stands for all this and for the tools.
+        variables: More environment variables.
+        hidden: Files and folders of the environment that the build must not find.
+        key: A hash of all this and of the tools.
     """
 
     name: str
@@ -59,14 +61,14 @@ class BuildOrder:
 
 @dataclass(frozen=True)
 class Built:
-    """The end of a build.
+    """The result of a build.
 
     Attributes:
-        returncode: Of colcon; None where it was ended, at a limit or because nobody waits for it any more.
-        output: What it said.
-        archive: Its install folder as a tar file, made once nothing of the build was alive any more, and empty where
-            it could not be packed; None where the build failed, or was made in the entry itself.
-        late: The seconds after which it was ended because it took too long, which may be the machine's fault; else 0.
+        returncode: colcon's exit code; None if the build was stopped, at a limit or because it was no longer wanted.
+        output: The output of the build.
+        archive: The install folder as a tar file, made when no process of the build was alive any more; empty if it
+            could not be packed; None if the build failed, or was made in the entry itself.
+        late: The seconds after which a too long build was stopped, perhaps because the machine was busy; else 0.
     """
 
     returncode: int | None
@@ -77,13 +79,13 @@ class Built:
 
 @dataclass(frozen=True)
 class ProgramJob:
-    """A program that is to run.
+    """A program to run.
 
     Attributes:
-        command: Names everything as it is seen from the job.
-        environment: Its whole environment.
-        sources: What was submitted; seen at :meth:`Jobs.tree`, which is where the program starts.
-        entries: Builds that it may read, by the names of their places.
+        command: The command, with paths as the job sees them.
+        environment: All environment variables.
+        sources: The submitted files; the job sees them at :meth:`Jobs.tree`, which is also the working folder.
+        entries: Builds that the program may read, by the names of their places.
         hidden: Files and folders of the environment that the program must not find.
     """
 
@@ -95,41 +97,41 @@ class ProgramJob:
 
 
 class Program(Protocol):
-    """A program that runs."""
+    """A running program."""
 
     pid: int
-    """The process that all its processes are below of, as the host counts."""
+    """The process, as the host counts, that is an ancestor of all its processes."""
 
     def read(self, within: float) -> bytes | None:
-        """Its output since the last call; None for nothing yet, no bytes at its end.
+        """Return the output since the last call; None for nothing yet, b"" at its end.
 
         Args:
-            within: Seconds to wait for something.
+            within: Seconds to wait for output.
         """
         ...
 
     def exit_code(self) -> int | None:
-        """Its exit code once it has ended; negative for a signal."""
+        """The exit code once the program has ended; negative for a signal."""
         ...
 
     def interrupt(self) -> None:
-        """Ctrl-C, as a terminal sends it: to the program and to what it has started."""
+        """Send Ctrl-C as a terminal does: to the program and to what it has started."""
         ...
 
     def end(self) -> None:
-        """Kill it and all that it has started; may be called twice."""
+        """Kill the program and everything that it has started; may be called twice."""
         ...
 
 
 def output_lines(
     program: Program, wanted: Callable[[], bool] = lambda: True, within: float = 0.1
 ) -> Iterator[str]:
-    """The lines of a program's output as they come, to its end or as long as they are wanted; long ones are cut.
+    """Yield the lines of a program's output, until it ends or they are no longer wanted; long lines are cut.
 
     Args:
         program: The program.
-        wanted: Asked now and then.
-        within: Seconds between two questions where nothing comes.
+        wanted: Called from time to time; False ends the lines.
+        within: Seconds between these calls while there is no output.
     """
     line = b""
     while wanted() and (data := program.read(within)) != b"":
@@ -149,14 +151,14 @@ class Jobs(Protocol):
 
     @property
     def environment(self) -> Mapping[str, str]:
-        """The whole environment of a job, before anything is added to it."""
+        """The whole environment of a job, before variables are added."""
         ...
 
     def place(self, name: str, entry: Path) -> Path:
-        """The path at which jobs see a folder of the cache of builds.
+        """Return the path at which jobs see a folder of the cache of builds.
 
         Args:
-            name: What stands for the kind of workspace, such as ``"ros2_ws"``: each has a place of its own.
+            name: The kind of workspace, such as ``"ros2_ws"``: each kind has its own place.
             entry: The folder.
         """
         ...
@@ -165,17 +167,17 @@ class Jobs(Protocol):
         """Run colcon.
 
         Args:
-            order: What is wanted.
-            command: Names everything as it is seen from the job.
-            entry: Its folder holds ``src``, which the build may read. All that it writes is gone afterwards, but for
-                ``install`` of the place.
+            order: The order.
+            command: The command, with paths as the job sees them.
+            entry: Its folder contains ``src``, which the build may read. Of the files that the build writes, only
+                ``install`` in the place is kept.
         """
         ...
 
     def tree(self, sources: Path) -> Path:
-        """The path at which programs see the folder with what was submitted."""
+        """Return the path at which programs see the folder of submitted files."""
         ...
 
     def start(self, job: ProgramJob) -> Program:
-        """Run a program where the judge can see it on the wire, and the notebook cannot."""
+        """Run a program on a network that the judge can see and the notebook cannot."""
         ...

@@ -1,8 +1,7 @@
-"""Builds of a workspace of one's own: in a notebook or a terminal, as the student, on the student's own computer.
+"""Builds of a student's own workspace: in a notebook or a terminal, on the student's own computer.
 
-In a graded notebook the grader is asked for them instead. What ``colcon build`` makes depends on the sources alone, so
-it need not be made a second time for the check. The box gets it as an archive and sees nothing of the folder that it
-comes from.
+In a graded notebook they are requested from the grader instead. The result of ``colcon build`` depends on the sources
+alone, so the check can use the same build. The box receives it as an archive and sees nothing of its folder.
 """
 
 from __future__ import annotations
@@ -31,16 +30,16 @@ if TYPE_CHECKING:
     from autograder.workspaces.packages import Package
 
 GRADERS = "AUTOGRADER_BUILDS"
-"""Names the socket of the grader's side in a graded notebook's environment."""
+"""The environment variable, in a graded notebook, for the path of the grader's socket."""
 LIMIT = 300.0
 """Seconds of wall time that the grader may take for a build."""
 
 
 class OwnBuilds(Builds):
-    """Builds made in the cache itself; in a graded notebook those that its grader has made.
+    """Builds made in the cache itself, or, in a graded notebook, by the grader.
 
-    Each is made as if for the first time: the workspace is not written to, and what an earlier build left in its
-    ``install`` has no part in it.
+    Each is made as if for the first time: the workspace is not written to, and earlier results in its ``install`` are
+    not used.
     """
 
     def __init__(self) -> None:
@@ -54,7 +53,7 @@ class OwnBuilds(Builds):
         name: str = WORKSPACE,
         cancelled: Callable[[], bool] = lambda: False,
     ) -> Build:
-        """Build what is needed; who waits here is told of a build that took too long as of one that failed."""
+        """Build the needed packages; a build that took too long is reported like a failed one."""
         try:
             return super().build(found, targets, name=name, cancelled=cancelled)
         except BuildTookTooLong as error:
@@ -84,17 +83,16 @@ class StudentsBuilds(OwnBuilds):
 
 
 def _ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) -> Build | None:
-    """Let the grader build packages of a workspace.
+    """Request a build of packages from the grader.
 
     Args:
-        socket: The grader's.
-        found: The workspace, looked at.
+        socket: The path of the grader's socket.
+        found: The workspace, after :func:`autograder.workspaces.colcon.look`.
         chosen: The packages.
-        install: Where the build is put; not there yet.
+        install: The folder for the build, which does not exist yet.
 
     Returns:
-        The build, with its install folder's own path in it wherever it names itself; None where nobody answers, or
-        does not want to.
+        The build, with paths that fit its new install folder; None if the grader does not answer, or refuses.
     """
     try:
         collected = collect_workspace(found.workspace)

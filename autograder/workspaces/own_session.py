@@ -1,4 +1,4 @@
-"""A program in a session of its own: read as long as it is wanted, and ended with all that it has started."""
+"""A program in a session of its own: read while it is wanted, and ended with everything that it has started."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 LOOK_EVERY = 0.5
-"""Seconds between two questions whether a program is still wanted."""
+"""Seconds between checks whether a program is still wanted."""
 
 
 class OwnSession:
-    """A program that no interrupt of a terminal or a kernel reaches, with stdout and stderr in one.
+    """A program that a terminal's or kernel's interrupt does not reach, with stdout and stderr in one stream.
 
-    It runs below a keeper (:func:`autograder.process_trees.keep`), so that nothing of it outlives this process, however
-    that ends.
+    It runs below a keeper process (:func:`autograder.process_trees.keep`), so that none of its processes outlives
+    this one, however this one ends.
 
     Args:
         command: The program and its arguments.
-        environment: Its whole environment.
-        cwd: Where it runs; where this process does, if None.
-        holds: Descriptors that stay open until nothing of the program lives any more, such as a lock's.
+        environment: All environment variables.
+        cwd: The working folder; None for this process's.
+        holds: Descriptors that stay open until no process of the program is alive, such as a lock's.
 
     Raises:
-        FileNotFoundError: There is no such program.
+        FileNotFoundError: The program does not exist.
     """
 
     def __init__(
@@ -69,10 +69,10 @@ class OwnSession:
         self._output.close()
 
     def read(self, within: float) -> bytes | None:
-        """Its output since the last call; None for nothing yet, no bytes at its end.
+        """Return the output since the last call; None for nothing yet, b"" at its end.
 
         Args:
-            within: Seconds to wait for something.
+            within: Seconds to wait for output.
         """
         if self._output.closed:
             return b""
@@ -85,15 +85,15 @@ class OwnSession:
     def collect(
         self, limit: float, size: int, unwanted: Callable[[], bool] = lambda: False
     ) -> tuple[bytes, bool]:
-        """Its output to its end, or until nobody wants it any more.
+        """Read the output until its end, or until it is no longer wanted.
 
         Args:
-            limit: Seconds of wall time in which it must have ended.
-            size: Bytes that are kept.
-            unwanted: Asked now and then.
+            limit: Seconds of wall time within which the program must end.
+            size: The bytes to keep.
+            unwanted: Called from time to time; True stops.
 
         Returns:
-            The output, and whether the time was over. Where it has not ended, :meth:`exit_code` is None.
+            The output, and whether the time was up. If the program has not ended, :meth:`exit_code` is None.
         """
         output = bytearray()
         deadline = time.monotonic() + limit
@@ -104,23 +104,23 @@ class OwnSession:
         return bytes(output), False
 
     def exit_code(self) -> int | None:
-        """Its exit code once it has ended; negative for a signal."""
+        """The exit code once the program has ended; negative for a signal."""
         return self._process.poll()
 
     def wait(self) -> int:
-        """Its exit code, once it has ended."""
+        """Wait for the program to end. Return its exit code."""
         return self._process.wait()
 
     def interrupt(self) -> None:
-        """Ctrl-C, as a terminal sends it: to the program and to all of its group."""
+        """Send Ctrl-C as a terminal does: to the program and to its whole group."""
         if self.exit_code() is None:
             process_trees.signal_group(self.pid, signal.SIGINT)
 
     def end(self, polite: float = 0.0) -> None:
-        """Kill it and all that it has started, wherever that has gone to since; may be called twice.
+        """Kill the program and everything that it has started, even outside its group; may be called twice.
 
         Args:
-            polite: Seconds of wall time that it has after an interrupt, to end by itself.
+            polite: Seconds of wall time, after an interrupt, in which it may end by itself.
         """
         if polite > 0.0:
             self.interrupt()
@@ -128,6 +128,6 @@ class OwnSession:
                 self._process.wait(timeout=polite)
         if self.exit_code() is None:
             process_trees.end_below(self.pid)
-        # The keeper, who may be stopped; and what it has left where the program has killed it.
+        # The keeper, which may be stopped; and, if the program has killed the keeper, what is left.
         process_trees.signal_group(self.pid, signal.SIGKILL)
         self._process.wait()

@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from autograder.messages.workspaces import Source
 
 WORKSPACE = "ros2_ws"
-"""The name that workspaces have in the course."""
+"""The name of workspaces in the course."""
 DEFINITIONS = (".msg", ".srv", ".action")
-"""The endings of the names of interface files."""
+"""The name endings of interface files."""
 UNREADABLE = (SyntaxError, ValueError, LookupError, RecursionError, MemoryError)
 """The errors with which Python's parsers of Python and XML refuse a text: malformed, in an encoding that they do not
 know, too deep."""
@@ -34,19 +34,22 @@ LAUNCH_LANGUAGES = (".py", ".xml", ".yaml", ".yml")
 """The endings of the names of launch files, one for each language and each spelling of it."""
 MAX_FILES = 5_000
 MAX_BYTES = 100_000_000
-"""Files and bytes of sources beyond which something else than a workspace was named."""
+"""The limits on files and bytes of sources; above them the path is not a workspace."""
 MAX_PACKAGES = 50
-"""Packages that are looked at; a workspace of the course has a few."""
+"""The most packages that are read; a workspace of the course has a few."""
 MAX_PACKAGE_XML = 20_000
-"""Bytes of a package.xml; real ones have a few thousand. To validate one takes time that grows with the square, so none
-declares entities, with which two thousand bytes stand for eight million."""
+"""The limit on a package.xml in bytes; real ones have a few thousand.
+
+Validating takes quadratic time, so entities are refused, with which two thousand bytes stand for eight million.
+"""
 MAX_SETUP = 50_000
-"""Bytes of a setup.py that is read. Python's own parser takes minutes for half a megabyte of one f-string."""
+"""The limit on a setup.py in bytes. Python's own parser takes minutes for half a megabyte of one f-string."""
 MAX_CMAKE_LISTS = 50_000
-"""Bytes of a CMakeLists.txt that is looked into."""
+"""The limit on a CMakeLists.txt in bytes."""
 MAX_LOOK = 100_000
-"""Bytes of all packages' files together that are looked into where that takes long: Python's parser and catkin_pkg need
-half a second for what one file may have. What is left out at such a look is not taken for missing or wrong."""
+"""The limit in bytes for slow parsing, over all packages' files: Python's parser and catkin_pkg need half a second
+for a file of the largest size. A file beyond it is skipped, not reported as missing or wrong.
+"""
 
 _HIDING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 
@@ -61,9 +64,9 @@ class Package:
 
     Attributes:
         name: The name in its package.xml.
-        folder: Where it is.
-        build_type: Such as ``"ament_python"``; empty where package.xml names none.
-        dependencies: Everything it depends on, and the groups it is a member of.
+        folder: The folder of the package.
+        build_type: Such as ``"ament_python"``; empty if package.xml names none.
+        dependencies: Every package it depends on, and the groups it is a member of.
     """
 
     name: str
@@ -73,26 +76,26 @@ class Package:
 
     @property
     def commented(self) -> tuple[str, ...]:
-        """The dependencies that it would also have if the lines in the comments of its package.xml counted."""
+        """The dependencies that it would also have if commented-out lines of its package.xml counted."""
         comments = re2.findall(r"(?s)<!--(.*?)-->", _text(self.folder / "package.xml"))
         line = r"<(?:\w*depend|member_of_group)\b[^>]*>\s*([^<\s]+)\s*</"
         return tuple(name for comment in comments for name in re2.findall(line, comment))
 
     @property
     def interface_files(self) -> tuple[Path, ...]:
-        """Its .msg, .srv and .action files, as paths inside the package."""
+        """The package's .msg, .srv and .action files, as paths inside the package."""
         found = (file for ending in DEFINITIONS for file in self.folder.rglob(f"*{ending}"))
         return tuple(sorted(file.relative_to(self.folder) for file in found if file.is_file()))
 
     @property
     def modules(self) -> tuple[Path, ...]:
-        """Its Python files, as paths inside the package, those nearest to its folder first."""
+        """The package's Python files, as paths inside the package, the least nested first."""
         found = [file.relative_to(self.folder) for file in self.folder.rglob("*.py") if file.is_file()]
         return tuple(sorted(found, key=lambda file: (len(file.parts), file)))
 
     @cached_property
     def cmake_lists(self) -> str | None:
-        """The text of its CMakeLists.txt without comments; empty where there is none, None where it is too long."""
+        """The text of its CMakeLists.txt without comments; empty if it does not exist, None if it is too long."""
         text = _text(self.folder / "CMakeLists.txt")
         if len(text) > MAX_CMAKE_LISTS:
             return None
@@ -100,21 +103,21 @@ class Package:
 
     @property
     def programs(self) -> tuple[str, ...]:
-        """The console scripts that its setup.py names, as they are there.
+        """The console scripts that its setup.py names.
 
-        Read, not run: texts of the form ``name = module:function`` anywhere in it. What is computed, or is in
-        setup.cfg, is known when the package is built.
+        The file is read, not run: texts of the form ``name = module:function`` anywhere in it count. Computed names,
+            and those in setup.cfg, are known only after the build.
         """
         return tuple(_entry_points(_text(self.folder / "setup.py")))
 
     @property
     def bad_entry_point(self) -> str:
-        """What is wrong with an entry point in its setup.py that setuptools refuses; empty if there is none such."""
+        """What is wrong with an entry point in its setup.py that setuptools refuses; empty if all are valid."""
         return first_objection(_parsed(_text(self.folder / "setup.py")))
 
 
 def find_packages(src: Path) -> tuple[list[Package], list[str]]:
-    """The packages below ``src`` that colcon would build, by name, and what is wrong with those that cannot be used."""
+    """Return the packages below ``src`` that colcon would build, by name, and what is wrong with unusable ones."""
     packages, unusable, room = [], [], Room(MAX_LOOK)
     files = sorted(islice(_package_files(src), MAX_PACKAGES + 1))
     if len(files) > MAX_PACKAGES:
@@ -135,11 +138,11 @@ def launch_files(folder: Path) -> list[Path]:
 
 
 def workspace_of(file: Path, beside: Iterable[Path]) -> Path | None:
-    """The workspace that a launch file is in, or the one in a folder beside it.
+    """Return the workspace that contains a launch file, or the one in a folder next to it.
 
     Args:
         file: The launch file.
-        beside: Folders that may hold a workspace of the course's name.
+        beside: Folders that may contain a workspace of the course's name.
     """
     around = [folder for folder in file.resolve().parents if (folder / "src").is_dir()]
     candidates = [*around[:1], *(folder / WORKSPACE for folder in beside)]
@@ -148,7 +151,7 @@ def workspace_of(file: Path, beside: Iterable[Path]) -> Path | None:
 
 
 def needed(packages: Iterable[Package], targets: Iterable[str]) -> list[Package]:
-    """The targets and all that they depend on, as far as it is among the packages; in the packages' order."""
+    """Return the targets and everything they depend on, as far as it is among the packages; in the packages' order."""
     there = list(packages)
     dependencies: dict[str, set[str]] = {}
     for package in there:
@@ -163,14 +166,14 @@ def needed(packages: Iterable[Package], targets: Iterable[str]) -> list[Package]
 
 
 def sources_of(src: Path, packages: Iterable[Package]) -> Tree:
-    """All that a build of packages gets to see, read once.
+    """Return all sources of a build of packages, read once.
 
     Args:
-        src: Where they are.
-        packages: Those that are built.
+        src: The folder of the packages.
+        packages: The packages to build.
 
     Raises:
-        BadSources: There is far too much.
+        BadSources: The sources are too large.
     """
     sources: list[Source] = []
     size = 0
@@ -223,7 +226,7 @@ def _package(file: Path, room: Room) -> Package:
 
 
 def _validate(file: Path, shown: str) -> None:
-    # colcon takes a package whose package.xml is not valid for a plain Python package, without a word.
+    # colcon silently takes a package with an invalid package.xml for a plain Python package.
     try:
         from catkin_pkg.package import InvalidPackage, parse_package
     except ImportError:
@@ -234,7 +237,7 @@ def _validate(file: Path, shown: str) -> None:
         what = re2.sub(r"^Error\(s\) in package '[^']*':\s*", "", str(error)).strip()
         raise BadPackage(f"{shown} is not valid: {what}") from error
     except AssertionError as error:
-        # It asserts nothing but the format, and tells to update catkin_pkg.
+        # Its only assertion is about the format, and its message asks to update catkin_pkg.
         raise BadPackage(f'{shown} is not valid: <package format="…"> has to be 1, 2 or 3') from error
     except (*UNREADABLE, ExpatError) as error:
         raise BadPackage(f"{shown} is not valid: {_told(error)}") from error
@@ -245,7 +248,7 @@ def _told(error: Exception) -> str:
 
 
 def _parsed(setup: str) -> ast.Module:
-    """The syntax tree of a setup.py; an empty one if it is too long or not valid Python."""
+    """Return the syntax tree of a setup.py; an empty one if it is too long or not valid Python."""
     try:
         return ast.parse(setup if len(setup) <= MAX_SETUP else "")
     except UNREADABLE:

@@ -1,6 +1,6 @@
-"""Jobs as processes of this user: in a notebook, in a terminal, and for a grader that was told to go on without boxes.
+"""Jobs as processes of this user: in a notebook, in a terminal, and for a grader that may work without boxes.
 
-Reports are made as with boxes, but nothing keeps a build or a program away from who makes them.
+Reports are the same as with boxes, but nothing isolates a build or a program from the process that runs it.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ if TYPE_CHECKING:
     from autograder.workspaces.jobs import BuildOrder, ProgramJob
 
 OWN_BUILD_SECONDS = 300.0
-"""Wall time in which a build of one's own workspace must have ended."""
+"""The time limit of a build of the student's own workspace, in seconds of wall time."""
 
 
 class PlainJobs:
     """Implements :class:`autograder.workspaces.jobs.Jobs`.
 
     Args:
-        environment: The whole environment of what is run.
-        handed_in: Whether somebody else has written what is run. It then has a home folder of its own, and of a build
-            only what an archive holds is taken.
+        environment: The environment of the jobs.
+        handed_in: True if another person wrote the code. It then gets its own home folder, and only what an archive
+            can contain is taken from a build.
     """
 
     def __init__(self, environment: Mapping[str, str], *, handed_in: bool) -> None:
@@ -49,7 +49,7 @@ class PlainJobs:
         return sources
 
     def build(self, order: BuildOrder, command: Sequence[str], entry: Entry) -> Built:
-        """Build in the entry; what is handed in is packed, and removed from there again."""
+        """Build in the entry; a submitted build is packed, and then removed from the entry."""
         seconds, size = (
             (BUILD_SECONDS, MAX_LOG_BYTES) if self._handed_in else (OWN_BUILD_SECONDS, sys.maxsize)
         )
@@ -61,17 +61,17 @@ class PlainJobs:
             code = colcon.exit_code()
         archive = pack(entry.folder / "install") if self._handed_in and code == 0 else None
         made = (*BESIDE, "install") if self._handed_in else BESIDE
-        # A tree may be deeper than Python goes.
+        # A tree may be deeper than Python's recursion allows.
         subprocess.run(["rm", "-rf", *(str(entry.folder / name) for name in made)], check=False)
         return Built(code, output, archive, late=seconds if late else 0.0)
 
     def start(self, job: ProgramJob) -> PlainProgram:
-        """Start it as a process."""
+        """Start the program as a process."""
         return PlainProgram(job.command, job.environment, job.sources)
 
 
 class PlainProgram(OwnSession):
-    """Implements :class:`autograder.workspaces.jobs.Program`: its home and temporary files are its own."""
+    """Implements :class:`autograder.workspaces.jobs.Program`, with its own home and temporary folders."""
 
     def __init__(
         self, command: Sequence[str], environment: Mapping[str, str], cwd: Path, holds: Sequence[int] = ()
@@ -81,7 +81,7 @@ class PlainProgram(OwnSession):
         super().__init__(command, {**environment, **folders}, cwd, holds)
 
     def end(self, polite: float = 0.0) -> None:
-        """Kill it, and take its files away."""
+        """Kill the program, and remove its files."""
         super().end(polite)
         self._output.close()
         self._home.remove()

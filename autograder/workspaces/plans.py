@@ -1,4 +1,4 @@
-"""An exercise's plan for a workspace: the packages that it needs, what must be there then, and what is run."""
+"""An exercise's plan for a workspace: the packages that it needs, what they must contain, and the command to run."""
 
 from __future__ import annotations
 
@@ -27,15 +27,16 @@ if TYPE_CHECKING:
     from autograder.workspaces.packages import Package
 
 _LAUNCH_FILES = ("launch.py", ".xml", ".yaml", ".yml")
-"""The endings of launch files' names."""
+"""The name endings of launch files."""
 _LARGEST = 500_000
-"""Bytes that a launch file, and all that it includes, may have to be looked into; what a student's folder holds may be
-of any size."""
+"""The limit in bytes for a launch file and all files that it includes; a student's folder may contain files of any
+size.
+"""
 
 
 @dataclass(frozen=True)
 class Plan:
-    """An exercise about a workspace.
+    """The plan of an exercise about a workspace.
 
     Attributes:
         targets: The packages that it needs, by name; none of them means all that there are.
@@ -149,10 +150,10 @@ def _interface_plan(runner: ServesInterface) -> Plan:
 
 
 def launch_targets(file: Path) -> Callable[[Build], Iterable[str]]:
-    """The packages of a workspace whose names are in a launch file, or in one that it includes.
+    """Return a function that finds the packages whose names are in a launch file, or in one that it includes.
 
     Args:
-        file: The launch file, in whatever language.
+        file: The launch file, in any language.
     """
 
     def targets(found: Build) -> list[str]:
@@ -163,16 +164,16 @@ def launch_targets(file: Path) -> Callable[[Build], Iterable[str]]:
 
 
 def alone(arguments: Sequence[str]) -> Sequence[str]:
-    """The command for the program that arguments name in place of a launch; empty where they name none."""
+    """Return the command for the single program that the arguments name; empty if they ask for a launch."""
     words = list(arguments)
     return [ros2(), "run", *words[words.index(ALONE) + 1 :]] if ALONE in words else []
 
 
 def lacks_programs(file: Path, made: Build, course_build: Build) -> bool:
-    """True if a launch file is for programs of the course's package that the student's has not got.
+    """True if a launch file starts programs of the course's package that the student's package does not have.
 
-    Who has written talker and listener in the notebooks alone has no programs to launch. Who launches programs of
-    other names has them: ``talker`` is then a variable, a node's name or a word in a comment.
+    A student who wrote talker and listener only in the notebooks has no programs to launch. A student who launches
+    programs with other names has them: ``talker`` is then a variable, a node's name or a word in a comment.
     """
     words, own, given = _launch_words(file, made), _programs(made), _programs(course_build)
     if words is None:
@@ -181,15 +182,15 @@ def lacks_programs(file: Path, made: Build, course_build: Build) -> bool:
 
 
 def reference_workspace() -> Path:
-    """The workspace with the course's own talker and listener; not there in what students are handed."""
+    """Return the workspace with the course's own talker and listener; students do not receive it."""
     return course.root() / "solutions" / WORKSPACE
 
 
 @functools.cache
 def course_interfaces() -> tuple[Path, ...]:
-    """All files and folders of the interfaces that come with the course.
+    """Return all files and folders of the course's own interfaces.
 
-    Whoever is to make interfaces must not find these: copied, they would look like generated ones.
+    A build that makes interfaces must not find these: copies of them would look like generated ones.
     """
     prefixes = {sys.prefix, *os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)} - {""}
     packages = course.interfaces()
@@ -199,16 +200,15 @@ def course_interfaces() -> tuple[Path, ...]:
 
 
 def ros2() -> str:
-    """The ``ros2`` command of this environment."""
+    """Return the path of the ``ros2`` command of this environment."""
     beside = installed_program("ros2")
     return str(beside) if beside.exists() else shutil.which("ros2") or "ros2"
 
 
 def _launch_words(file: Path, build: Build) -> set[str] | None:
-    """The words of a launch file and of those that it includes: whatever has its name in the text of another one.
+    """Return the words of a launch file and of the files that it includes: those whose names are in its text.
 
-    Tags and keys, such as ``<node`` and ``node:``, are not among the words. None where they are too long to be looked
-    into.
+    Tags and keys, such as ``<node`` and ``node:``, are not among the words. None if the files are too long to parse.
     """
     near = [
         *file.parent.iterdir(),

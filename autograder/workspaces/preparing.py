@@ -1,4 +1,4 @@
-"""From a path to a program, here or in a box: look, build what is needed, report, and say what is to be run."""
+"""From a path to a program, here or in a box: checks the workspace, builds what is needed, and reports."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ if TYPE_CHECKING:
     from autograder.workspaces.plans import Plan
 
 COURSE = "course_ws"
-"""The place of the course's own packages, behind the student's."""
+"""The place of the course's own packages, which come after the student's."""
 
 
 _ALL_OUTPUT = {"OVERRIDE_LAUNCH_PROCESS_OUTPUT": "both"}
-"""Shows what a node prints, wherever its launch file sends that (launch/actions/execute_local.py, ``output``)."""
+"""Shows a node's output, whatever its launch file says (launch/actions/execute_local.py, ``output``)."""
 
 
 @dataclass(frozen=True)
 class Prepared:
-    """A program that can be started.
+    """A program that is ready to start.
 
     Attributes:
         command: The command.
-        environment: Its whole environment, in which the builds are found.
-        builds: What it may read, by the names of the places.
+        environment: All environment variables; the builds are found in them.
+        builds: The builds that the program may read, by the names of their places.
     """
 
     command: Sequence[str]
@@ -44,13 +44,13 @@ class Prepared:
 
 @dataclass(frozen=True)
 class Preparation:
-    """Prepares what an exercise runs of a workspace or a launch file, and reports on the way.
+    """Prepares what an exercise runs from a workspace or a launch file, and reports on the way.
 
     Attributes:
-        builds: Bring what is needed, built; their jobs will run the program.
-        report: Says a line of the report that a check reads.
-        build_ended: Told when a build has ended, before the line about it.
-        cancelled: Says when nobody waits for the program any more.
+        builds: Provide the builds; their jobs will run the program.
+        report: Called with each line of the report for the check.
+        build_ended: Called when a build has ended, before the line about it.
+        cancelled: Returns True when the program is no longer wanted.
     """
 
     builds: Builds
@@ -59,10 +59,10 @@ class Preparation:
     cancelled: Callable[[], bool] = lambda: False
 
     def workspace(self, plan: Plan, folder: Path) -> Prepared | None:
-        """Prepare what an exercise runs of a workspace.
+        """Prepare what an exercise runs from a workspace.
 
         Returns:
-            None where there is nothing to run; the report says why.
+            The program; None if there is nothing to run, with the reason in the report.
         """
         found = look(folder)
         self.report(report_line("found", found, plan))
@@ -82,14 +82,14 @@ class Preparation:
 
         Args:
             command: The launch command.
-            file: The launch file, where it is known.
-            workspace: The workspace that the file belongs to: of that is built what the file needs.
+            file: The launch file, if it is known.
+            workspace: The workspace of the launch file; the packages that the file needs are built.
 
         Returns:
-            None where the student's packages could not be built.
+            The program; None if the student's packages could not be built.
 
         Raises:
-            RuntimeError: The course's own could not.
+            RuntimeError: The course's own package could not be built.
         """
         course = self._course()
         if file is None or workspace is None:
@@ -130,7 +130,7 @@ class Preparation:
     def _with(
         self, environment: Mapping[str, str], name: str, made: Build, *, last: bool = False
     ) -> Mapping[str, str]:
-        """An environment in which a build is found, by somebody who sees it at its place."""
+        """Return environment variables that expose a build at its path in the job."""
         found = with_prefixes(environment, made.prefixes, last=last)
         if made.install is None:
             return found

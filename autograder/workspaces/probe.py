@@ -1,4 +1,4 @@
-"""A program that serves an interface of a workspace, so that its type is on the wire for the judge to see.
+"""A program that serves an interface of a workspace, so that the judge can see its type on the wire.
 
 ``python -m autograder.workspaces.probe PACKAGE/srv/NAME SERVICE``
 """
@@ -11,7 +11,7 @@ import sys
 
 
 def main(type_name: str, service: str) -> None:
-    """Serve until interrupted. An import that fails shows its traceback."""
+    """Serve until interrupted. A failed import shows its traceback."""
     package, kind, name = type_name.split("/")
     interface = getattr(importlib.import_module(f"{package}.{kind}"), name)
     import rclpy

@@ -1,4 +1,4 @@
-"""The processes of a launch, as a check of the launch is told of them."""
+"""The processes of a launch, as they are reported to its check."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 LOOK_EVERY = 0.05
-"""Seconds between two looks at the launch's processes."""
+"""Seconds between two scans of the launch's processes."""
 MAX_COMMAND_LINE = 32_000
-"""Bytes of a command line that are read: a process can give itself one of megabytes, and another one at each look."""
+"""The limit on a command line in bytes: a process can give itself one of megabytes, and change it before each scan."""
 MAX_COMMAND_LINES = 500
-"""Command lines that are reported of one launch, which has some ten."""
+"""The most command lines to report for one launch; a launch has some ten."""
 
 
 def _arguments_of(pid: int) -> list[str]:
-    """The words that a process was started with; none where it is gone."""
+    """Return the words that a process was started with; empty if it has ended."""
     try:
         with Path(f"/proc/{pid}/cmdline").open("rb", buffering=0) as file:
             words = file.read(MAX_COMMAND_LINE).rstrip(b"\0")
@@ -33,17 +33,17 @@ def _arguments_of(pid: int) -> list[str]:
 
 
 def _own_id(pid: int) -> int:
-    """The id by which a process knows itself, which is another one in a PID namespace; 0 where it is gone."""
+    """Return the id that a process itself sees, which differs in a PID namespace; 0 if it has ended."""
     return int((_status(pid, "NSpid") or ["0"])[-1])
 
 
 def _parent_of(pid: int) -> int:
-    """The process that started this one, or has adopted it; 0 where it is gone."""
+    """Return the parent of a process, original or adoptive; 0 if it has ended."""
     return int((_status(pid, "PPid") or ["0"])[0])
 
 
 def _status(pid: int, name: str) -> list[str]:
-    """The words of a line of proc(5)'s status; none where there is no such line."""
+    """Return the words of a line of proc(5)'s status; empty if the line does not exist."""
     try:
         lines = Path(f"/proc/{pid}/status").read_text().splitlines()
     except OSError:
@@ -52,17 +52,17 @@ def _status(pid: int, name: str) -> list[str]:
 
 
 def tell(line: str) -> None:
-    """Print a line in one piece: what else writes to the same pipe cannot come between it and its end."""
+    """Print a line in one write, so that other output to the same pipe cannot interrupt it."""
     os.write(1, f"{line}\n".encode("utf-8", "replace"))
 
 
 @contextlib.contextmanager
 def watched(pid: int, report: Callable[[str], None]) -> Iterator[None]:
-    """Look at the processes below one, in a thread.
+    """Watch the processes below one process, in a thread.
 
     Args:
-        pid: That one.
-        report: Told each process and command line once, in the line of the report that a check reads.
+        pid: The process at the top.
+        report: Called once for each process and command line, with a line of the report for the check.
     """
     ended = threading.Event()
     watcher = threading.Thread(target=_watch, args=(pid, ended, report), daemon=True)

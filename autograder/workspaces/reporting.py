@@ -1,4 +1,4 @@
-"""A workspace and its build, in the words of the report that a check reads."""
+"""Describes a workspace and its build in the report that a check reads."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ if TYPE_CHECKING:
     from autograder.workspaces.plans import Plan
 
 MAX_LOG = 3_000
-"""Characters of a build's log that are reported: its end."""
+"""The characters of a build's log that are reported, from its end."""
 
 
 def report_line(phase: str, made: Build, plan: Plan | None = None, missing: str = "") -> str:
-    """The line on a workspace.
+    """Return the line about a workspace.
 
     Args:
-        phase: ``"found"`` for its sources, before they are built; ``"built"`` for the result of the build.
+        phase: ``"found"`` for the sources, before they are built; ``"built"`` for the result of the build.
         made: The workspace or its build.
-        plan: What the exercise does with it; None where it needs no package more than another.
-        missing: Of what the exercise asks for, what is not there.
+        plan: The exercise's plan for it; None if every package is equally important.
+        missing: What the exercise needs and the workspace lacks.
     """
     needed = set(plan.targets(made)) if plan else set[str]()
     definition = plan.definition if plan else ""
@@ -54,10 +54,10 @@ def report_line(phase: str, made: Build, plan: Plan | None = None, missing: str 
 
 
 def no_sources_line(trouble: str) -> str:
-    """The report where there is nothing that could be built.
+    """Return the report if there is nothing that could be built.
 
     Args:
-        trouble: Why, for the student.
+        trouble: The reason, for the student.
     """
     return as_line(WorkspaceReport("built", built=False, trouble="no_workspace", line=trouble))
 
@@ -90,7 +90,7 @@ def _interface(package: Package, file: Path, definition: str, room: Room) -> Int
 
 
 def _without_comments(text: str) -> str:
-    """A definition without its comments and empty lines. In a text between quotes, # is a letter like any other."""
+    """Return a definition without its comments and empty lines. Inside quotes, # is an ordinary character."""
     lines = (
         line if re2.search(r"^[^#]*['\"]", line) else line.partition("#")[0] for line in text.splitlines()
     )

@@ -1,4 +1,4 @@
-"""A limit that files of a student's have in common: each may be small, and all of them together far too much."""
+"""A byte limit shared by a student's files: each may be small, but all of them together far too large."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ if TYPE_CHECKING:
 
 
 class Room:
-    """Bytes of files that may still be looked into.
+    """A budget of bytes for files to be read.
 
     Args:
-        size: Bytes of all together.
+        size: The bytes for all files together.
 
     Attributes:
-        sufficed: Whether there was room for every file until now.
+        sufficed: True if the budget was enough for every file so far.
     """
 
     def __init__(self, size: int) -> None:
@@ -23,7 +23,7 @@ class Room:
         self.sufficed = True
 
     def has(self, file: Path) -> bool:
-        """True if there is room for a file, which takes it then. One that is not there takes none."""
+        """True if the budget is enough for a file, which is then subtracted. A missing file costs nothing."""
         try:
             size = file.stat().st_size
         except OSError:

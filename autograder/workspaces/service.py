@@ -1,13 +1,13 @@
-"""The grader's side of checks of workspaces and launch files: told what was submitted, it builds, runs and reports.
+"""The grader's side of checks of workspaces and launch files: it receives sources, builds, runs and reports.
 
-It lives in the grader's worker, outside of all boxes, and has two sockets, each a Unix socket:
+It lives in the grader's worker, outside all boxes, and has two Unix sockets:
 
-* The **judge's** socket, which the student's box cannot see. One connection is one check. The judge sends what the
-  notebook has sent as its sources; this side writes them down, reads them, has them built and run, and tells the judge
-  what there is, what came of the build, how processes were started, and what the programs say.
-* The **notebook's** socket, for builds alone: what `colcon build` would make in the box, made outside of it once.
+* The **judge's** socket, which the student's box cannot see. One connection is one check. The judge sends the sources
+that it got from the notebook; the service writes and reads them, has them built and run, and tells the judge what the
+workspace contains, how the build ended, how processes were started, and what the programs print.
+* The **notebook's** socket, for builds alone: what `colcon build` would make in the box is made once outside it.
 
-What is said on both is in :mod:`autograder.messages.workspaces`.
+The messages of both are in :mod:`autograder.messages.workspaces`.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from autograder.workspaces.jobs import Jobs
 
 MAX_BUILDS = 20
-"""Builds that one notebook may ask for; after that colcon does its work in the box."""
+"""The most builds that one notebook may request; after that colcon itself works in the box."""
 PIECE = 400_000
 """Bytes of an archive in one message."""
 
@@ -48,8 +48,8 @@ class ServiceSockets:
     """The sockets on which the service listens.
 
     Attributes:
-        judge: For the judge's box alone.
-        notebook: For the student's box; None for no such socket.
+        judge: The socket for the judge's box alone.
+        notebook: The socket for the student's box; None for no such socket.
     """
 
     judge: Path
@@ -57,15 +57,15 @@ class ServiceSockets:
 
 
 class WorkspaceService:
-    """Serves one submission; leaving the context ends all that runs for it.
+    """Serves one submission; leaving the context ends everything that runs for it.
 
     Args:
-        sockets: Sockets to be made; their folders are there.
-        jobs: Builds and runs.
-        builds: The folder for builds; nobody else may use it.
-        variables: What programs have in their environment besides, such as how ROS is to behave.
-        folder: Ours alone, for sources.
-        ahead: The folder of what was built ahead, if there is one.
+        sockets: The sockets to make, in existing folders.
+        jobs: Runs builds and programs.
+        builds: The folder for builds; no other process may use it.
+        variables: More environment variables for programs, such as ROS settings.
+        folder: A folder for this object alone, for sources.
+        ahead: The folder of builds made ahead, if it exists.
     """
 
     def __init__(
@@ -95,7 +95,7 @@ class WorkspaceService:
         self.close()
 
     def close(self) -> None:
-        """Hang up on everybody, and end what runs for them."""
+        """Close all connections, and end everything that runs for them."""
         self._closing.set()
         for listener in self._listeners:
             with contextlib.suppress(OSError):
@@ -115,7 +115,7 @@ class WorkspaceService:
         return listener
 
     def _accept(self, listener: socket.socket, serve: Callable[[Lines, Path], None]) -> None:
-        """One conversation after the other: a check is alone, and so is a build."""
+        """Serve one connection after the other: a check is alone, and so is a build."""
         while not self._closing.is_set():
             try:
                 connection, _ = listener.accept()
@@ -144,7 +144,7 @@ class WorkspaceService:
             session.serve()
 
     def _serve_notebook(self, lines: Lines, folder: Path) -> None:
-        """Answer one wish for a build (:mod:`autograder.workspaces.own_builds`)."""
+        """Answer one request for a build (:mod:`autograder.workspaces.own_builds`)."""
         if not self._left.acquire(blocking=False):
             lines.say(messages.NotBuilt("this notebook has had enough builds"))
             return

@@ -30,19 +30,19 @@ if TYPE_CHECKING:
     from autograder.workspaces.preparing import Prepared
 
 MAX_OUTPUT = 2_000_000
-"""Characters of output that are passed on of one run."""
+"""The characters of a run's output that are passed on."""
 
 
 @dataclass(frozen=True)
 class Submitted:
-    """What a check is about.
+    """The sources of a check.
 
     Attributes:
-        runner: What the exercise runs of it.
-        tree: The folder that it was written to.
-        path: The workspace or launch file in it.
-        trouble: Why nothing was written, for the student; empty where something was.
-        variables: More variables of the environment of its programs.
+        runner: What the exercise runs from the sources.
+        tree: The folder with the sources.
+        path: The workspace or launch file in that folder.
+        trouble: Why no sources were written, for the student; empty if they were.
+        variables: More environment variables for its programs.
     """
 
     runner: Runner | None
@@ -53,13 +53,13 @@ class Submitted:
 
 
 class Session:
-    """One check. The judge may start what was submitted several times; it is built once.
+    """One check. The judge may start the submitted programs several times; they are built once.
 
     Args:
-        lines: The judge's end.
-        builds: Bring what is needed; their jobs run it.
-        variables: Of the programs' environment.
-        folder: Empty, ours alone.
+        lines: The connection to the judge.
+        builds: Provide the builds; their jobs run the programs.
+        variables: Environment variables for the programs.
+        folder: An empty folder for this object alone.
     """
 
     def __init__(
@@ -78,10 +78,10 @@ class Session:
         self._stop()
 
     def serve(self) -> None:
-        """Do what the judge says until it hangs up.
+        """Carry out the judge's requests until it closes the connection.
 
         Raises:
-            Hangup: It did.
+            Hangup: The judge closed the connection.
         """
         first = self._lines.hear(messages.Check)
         wrong = self._take_sources(first)
@@ -105,7 +105,7 @@ class Session:
                 self._lines.say(messages.Stopped(order.run))
 
     def _take_sources(self, check: messages.Check) -> str:
-        """Write down what was submitted; what is wrong with it, if anything is."""
+        """Write the submitted sources. Return what is wrong with them; empty if nothing is."""
         self._tree.mkdir()
         try:
             receive(self._lines, check.count, check.path, self._tree)
@@ -126,7 +126,7 @@ class Session:
 
 
 class _Run:
-    """One start of what was submitted, until it ends or is ended."""
+    """One start of the submitted program, until it ends or is ended."""
 
     def __init__(
         self, lines: Lines, builds: GradedBuilds, submitted: Submitted, order: messages.Start
@@ -143,18 +143,18 @@ class _Run:
         self._thread.start()
 
     def end(self) -> None:
-        """Kill what runs, and wait until nothing of it is left."""
+        """Kill what runs, and wait until none of its processes is alive."""
         self._cancelled.set()
         self._thread.join()
 
     def interrupt(self) -> None:
-        """Press Ctrl-C at what runs, where it runs."""
+        """Send Ctrl-C to what runs."""
         with self._changing:
             if self._program is not None:
                 self._program.interrupt()
 
     def _run(self) -> None:
-        """Look, build, report, run, tell."""
+        """Check the workspace, build, report, run, and pass on the output."""
         try:
             self._work()
         except Hangup:
@@ -191,11 +191,11 @@ class _Run:
         self._follow(self._prepare.launch(command, file, workspace), watch=True)
 
     def _hidden(self) -> Sequence[Path]:
-        """The course's own interfaces that a task is to make, hidden so that they cannot be copied."""
+        """The course's own interfaces that a task has the student make, hidden so that they cannot be copied."""
         return course_interfaces() if isinstance(self._submitted.runner, ServesInterface) else ()
 
     def _follow(self, prepared: Prepared | None, *, watch: bool = False) -> None:
-        """Run a program to its end, or until nobody wants it any more."""
+        """Run a program until it ends or is no longer wanted."""
         if prepared is None:
             self._exited(1)
             return
@@ -217,7 +217,7 @@ class _Run:
             self._exited(program.exit_code())
 
     def _pass_on(self, program: Program) -> None:
-        """Pass on its output, line by line, as long as it is wanted."""
+        """Pass on the output, line by line, while it is wanted."""
         left = MAX_OUTPUT
         for text in output_lines(program, lambda: not self._cancelled.is_set()):
             left -= len(text) + 1  # an empty line has to be sent, too
@@ -225,13 +225,13 @@ class _Run:
                 self._lines.say(messages.Output(self.number, text))
 
     def _report(self, line: str) -> None:
-        """Tell the judge a line of the report, as if its paths began where the notebook is."""
+        """Send the judge a line of the report, with paths as they are in the notebook's folder."""
         tree = self._submitted.tree
         text = line.replace(f"{tree}/", "").replace(str(tree), ".")
         self._lines.say(messages.ReportLine(self.number, text))
 
     def _build_ended(self) -> None:
-        """Tell the judge that it waits for no build any more."""
+        """Tell the judge that the build has ended."""
         self._lines.say(messages.BuildEnded(self.number))
 
     def _exited(self, code: int | None) -> None:

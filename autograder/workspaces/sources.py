@@ -1,11 +1,12 @@
-"""Sources as one value, read once: a build is known by their hash, and what is built is written from them.
+"""Sources as one value, read once: both the hash in a build's key and the files of the build come from it.
 
-So nothing can be in a build that is not in its key. What is no source (links, pipes, devices, what tools leave behind,
-what a compiler has made, what may not be read) is in neither; nor are times, other rights than to execute, and the
-order of a folder. Names are bytes: two that differ in case or in their Unicode normal form are two.
+So a build contains nothing that is not in its key. Files that are not sources (links, pipes, devices, files that
+tools leave behind or compilers make, unreadable files) are in neither; nor are times, rights other than to execute,
+and the order of a folder. Names are bytes: two that differ in case or in their Unicode normal form are two.
 
-In a class they are collected where a student's code runs, and checked and written where it does not. The student's side
-may say anything, as it may write any files: only their number, their size and their names have to be harmless.
+In a class they are collected in the process that runs a student's code, and checked and written in another one. The
+student's process may send anything, as a student may write any files: only the number, sizes and names of files must
+be harmless.
 """
 
 from __future__ import annotations
@@ -26,21 +27,21 @@ if TYPE_CHECKING:
     from autograder.messages.lines import Lines
 
 MAX_FILES = 1_000
-"""Files and folders that one submission may send."""
+"""The limit on files and folders of one submission."""
 MAX_BYTES = 4_000_000
-"""Bytes of all files together."""
+"""The limit on bytes of all files together."""
 MAX_FILE = 500_000
-"""Bytes of one file; as text it still fits into one message."""
+"""The limit on one file in bytes; as text it still fits into one message."""
 MAX_PATH = 300
-"""Bytes of a path, its slashes included."""
+"""The limit on a path in bytes, including slashes."""
 MAX_NAME = 120
-"""Bytes of each part of a path."""
+"""The limit on each part of a path in bytes."""
 MAX_DEPTH = 16
-"""Parts of a path."""
+"""The limit on parts of a path."""
 MAX_HELD = MAX_BYTES + MAX_FILES * MAX_PATH
-"""Bytes of content and characters of paths that are held while somebody still sends."""
+"""The limit on content bytes and path characters that are held while they are being received."""
 LAUNCH_COMPANIONS = (".py", ".xml", ".yaml", ".yml", ".json", ".txt")
-"""The endings of the names of files that a launch file may need beside it."""
+"""The name endings of files next to a launch file that it may need."""
 _NOT_SOURCES = {"__pycache__", ".git", ".ipynb_checkpoints", ".pytest_cache", ".mypy_cache", ".ruff_cache"}
 """Folders that tools leave among sources."""
 _MACHINE_CODE = (b"\x7fELF", b"!<arch>\n", b"!<thin>\n")
@@ -48,22 +49,22 @@ _MACHINE_CODE = (b"\x7fELF", b"!<arch>\n", b"!<thin>\n")
 
 
 class BadSources(ValueError):
-    """Sources that cannot be taken. The message is for a student."""
+    """Sources that cannot be used. The message is for a student."""
 
 
 @dataclass(frozen=True)
 class Tree:
-    """Files and folders of one or more packages.
+    """The files and folders of one or more packages.
 
     Attributes:
-        sources: Each folder before what is in it; paths are relative to the workspace's ``src``.
+        sources: Each folder before its content; paths are relative to the workspace's ``src``.
     """
 
     sources: tuple[Source, ...]
 
     @property
     def digest(self) -> str:
-        """The SHA-256 of everything that :meth:`write` writes."""
+        """The SHA-256 hash of everything that :meth:`write` writes."""
         digest = hashlib.sha256()
         for source in self.sources:
             kind = b"folder" if source.data is None else b"program" if source.executable else b"file"
@@ -72,10 +73,10 @@ class Tree:
         return digest.hexdigest()
 
     def write(self, folder: Path) -> None:
-        """Write it into a folder that nobody else can write to, and in which nothing of it is yet.
+        """Write the sources into a folder that no other process can write to, and that has none of them yet.
 
         Raises:
-            FileExistsError: A file of it is there already.
+            FileExistsError: One of the files exists already.
         """
         for source in self.sources:
             path = folder / source.path
@@ -87,20 +88,20 @@ class Tree:
 
 
 def is_source(path: str) -> bool:
-    """True if a path is a source's, by its names alone: compiled Python and folders of tools are none."""
+    """True if a path may be a source, judged by its names: compiled Python and folders of tools are not."""
     return not any(part in _NOT_SOURCES or part.endswith(".pyc") for part in path.split("/"))
 
 
 def read(folder: Path, name: str, largest: int) -> Iterator[Source]:
-    """The sources in a folder and below, beginning with the folder itself; none where it is no folder.
+    """Yield the sources in a folder and below it, beginning with the folder; none if it is not a folder.
 
     Args:
-        folder: The folder; it may be named through links, and none below it is followed.
-        name: What it is called among the sources.
-        largest: Bytes that a file may have.
+        folder: The folder; its own path may contain links, but links below it are not followed.
+        name: The name of the folder among the sources.
+        largest: The limit on a file in bytes.
 
     Raises:
-        BadSources: A file has more.
+        BadSources: A file is larger.
     """
     folder = folder.resolve()
     if not folder.is_dir():
@@ -115,16 +116,16 @@ def read(folder: Path, name: str, largest: int) -> Iterator[Source]:
 
 
 def read_file(file: str | Path, name: str, largest: int, folder: int | None = None) -> Source | None:
-    """One regular file that may be read; None for anything else.
+    """Read one regular file; return None for anything else, or if it is unreadable.
 
     Args:
-        file: Where it is.
-        name: What it is called among the sources.
-        largest: Bytes that it may have.
-        folder: A descriptor of the folder that the place is relative to.
+        file: The path.
+        name: The name of the file among the sources.
+        largest: The limit in bytes.
+        folder: The descriptor of the folder to which the path is relative.
 
     Raises:
-        BadSources: It has more.
+        BadSources: The file is larger.
     """
     try:
         with opened(file, folder) as stream:
@@ -140,34 +141,34 @@ def read_file(file: str | Path, name: str, largest: int, folder: int | None = No
 
 
 def collect_workspace(workspace: Path) -> list[Source]:
-    """Everything in ``src`` of a workspace, under the workspace's name; links and special files are left out.
+    """Return everything in ``src`` of a workspace, under the workspace's name; links and special files are left out.
 
-    Nothing comes of a folder that is none: who looks at that says so.
+    A path that is not a folder yields nothing; a later step reports that.
 
     Raises:
-        BadSources: There is too much.
+        BadSources: The workspace is too large.
     """
     if not workspace.is_dir():
         return []
     name = workspace.resolve().name
-    # A package in place of a workspace is a mistake that has its own name: show that it is one.
+    # A package given instead of a workspace is a mistake with its own diagnosis: include its package.xml.
     package = read_file(workspace / "package.xml", f"{name}/package.xml", MAX_FILE)
     sources = read(workspace / "src", f"{name}/src", MAX_FILE)
     return _bounded([Source(name), *([package] if package else []), *sources])
 
 
 def collect_launch(file: Path, workspace: Path | None) -> tuple[str, list[Source]]:
-    """A launch file, the small text files beside it, and the workspace around or beside it.
+    """Return a launch file, the small text files next to it, and the workspace around or next to it.
 
     Args:
         file: The launch file.
-        workspace: What :func:`autograder.workspaces.packages.workspace_of` finds for it.
+        workspace: The result of :func:`autograder.workspaces.packages.workspace_of`.
 
     Returns:
-        The file's path among the sources, and these.
+        The file's path among the sources, and the sources.
 
     Raises:
-        BadSources: There is too much.
+        BadSources: The sources are too large.
     """
     file = file.resolve()
     if workspace is not None and file.is_relative_to(workspace.resolve()):
@@ -180,12 +181,12 @@ def collect_launch(file: Path, workspace: Path | None) -> tuple[str, list[Source
 
 
 def checked(sources: Iterable[Source]) -> list[Source]:
-    """The sources, once nothing about them can do harm: names, number, sizes; none of them twice.
+    """Return the sources after checking that they are harmless: names, number, sizes, no duplicates.
 
-    What is no source is left out here once more: no box is to see what no key has in it.
+    Files that are not sources are dropped here again, so that a box sees nothing that is not in the key.
 
     Raises:
-        BadSources: Something could.
+        BadSources: They could do harm.
     """
     taken: dict[str, Source] = {}
     for source in sources:
@@ -205,23 +206,23 @@ def _is_source(source: Source) -> bool:
 
 
 def room_of(source: Source) -> int:
-    """How much of :data:`MAX_HELD` a source takes."""
+    """Return how much of :data:`MAX_HELD` a source takes."""
     return len(source.data or b"") + len(source.path)
 
 
 def receive(lines: Lines, count: int, path: str, folder: Path) -> None:
-    """Write down sources that somebody else sends, once nothing about them can do harm.
+    """Write sources from another process into a folder, after checking that they are harmless.
 
     Args:
-        lines: Their end.
-        count: How many they say that there are.
-        path: What they call the workspace or the launch file among them.
-        folder: Empty, ours alone.
+        lines: The connection to that process.
+        count: The number of sources, as the sender claims.
+        path: The path of the workspace or launch file among them, as the sender claims.
+        folder: An empty folder for this call alone.
 
     Raises:
-        BadSources: Something could.
-        NotUnderstood: They send something else.
-        Hangup: They are gone.
+        BadSources: The sources could do harm.
+        NotUnderstood: Another message came.
+        Hangup: The connection was closed.
     """
     if not 0 <= count <= MAX_FILES:
         raise BadSources("there is too much in src")
@@ -230,7 +231,7 @@ def receive(lines: Lines, count: int, path: str, folder: Path) -> None:
     for _ in range(count):
         source = lines.hear(Source)
         room -= room_of(source)
-        if room >= 0:  # else it is heard, since more may be said behind it, and not kept
+        if room >= 0:  # otherwise the source is read, because more messages may follow, but dropped
             taken.append(source)
     if room < 0:
         raise _too_much()
@@ -239,10 +240,10 @@ def receive(lines: Lines, count: int, path: str, folder: Path) -> None:
 
 
 def check_path(path: str) -> None:
-    """Look at a path that somebody else has named.
+    """Check a path that another process has sent.
 
     Raises:
-        BadSources: It leads out of a workspace, or is too long or too strange to be shown.
+        BadSources: The path leads out of a workspace, or is too long or too strange to be shown.
     """
     parts = path.split("/")
     shown = repr(path[:80])

@@ -100,7 +100,9 @@ def test_a_million_cells_are_too_many() -> None:
 
 def test_names_what_was_found_in_place_of_the_notebook(tmp_path: Path) -> None:
     (tmp_path / "lab_1_2 (1).ipynb").write_bytes(notebook())
-    with pytest.raises(UnreadableSubmission, match=r"no notebook named lab_1_2.ipynb\\. .* lab_1_2 \(1\).ipynb"):
+    with pytest.raises(
+        UnreadableSubmission, match=r"no notebook named lab_1_2.ipynb\. .* lab_1_2 \(1\).ipynb"
+    ):
         read_bytes(tmp_path / "lab_1_2.ipynb")
 
 
