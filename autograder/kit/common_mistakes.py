@@ -1,4 +1,4 @@
-"""Mistakes that several exercises share, told from the graph and from how the subject ended."""
+"""Mistakes that several exercises share, recognized from the graph and from the way the subject ended."""
 
 from __future__ import annotations
 
@@ -55,17 +55,17 @@ _KEY = {"topic": "topic_name", "service": "service_name", "action": "action_name
 STEP_MISSING = (
     "Find the TODO in your code and write that step. In a notebook, hints below the cell open one at a time."
 )
-"""What to do where a step of the task is not written yet."""
+"""The advice if a step of the task is not written yet."""
 
 
 def _wanted(evidence: Evidence, role: str) -> Mapping[str, str]:
-    """The reference's endpoints of a role, of which there is one at least: name -> type."""
+    """Return the reference's endpoints of a role, of which there is at least one: name -> type."""
     evidence.reference.only(role)
     return evidence.reference.interface[role]
 
 
 def endpoint_name(role: str) -> Mistake:
-    """An expected name is not on the graph, and another one of the same role is."""
+    """An expected name is not on the graph, but another one of the same role is."""
     verb, noun = _WORD[role]
 
     def recognise(evidence: Evidence) -> Advice | None:
@@ -85,7 +85,7 @@ def endpoint_name(role: str) -> Mistake:
 
 
 def message_type(role: str) -> Mistake:
-    """A name is right and its type is another one."""
+    """The name is right, but the type is wrong."""
 
     def recognise(evidence: Evidence) -> Advice | None:
         wanted, made = _wanted(evidence, role), evidence.main.endpoints(role)
@@ -103,7 +103,7 @@ def message_type(role: str) -> Mistake:
 
 
 def qos_mismatch(role: str) -> Mistake:
-    """The two ends offer and ask for qualities that do not fit."""
+    """The QoS settings of the two ends are not compatible."""
 
     def recognise(evidence: Evidence) -> Advice | None:
         mismatches = [
@@ -123,7 +123,7 @@ def qos_mismatch(role: str) -> Mistake:
 
 
 def servers(part: Part) -> int:
-    """The largest number of servers that were there at once."""
+    """Return the largest number of servers that existed at the same time."""
     return max((int(event.data["count"]) for event in part.of("servers")), default=0)
 
 
@@ -132,7 +132,7 @@ def two_servers(role: str, comes_of_it: str, next_step: str) -> Mistake:
 
     Args:
         role: ``service`` or ``action_server``.
-        comes_of_it: What happens to a call or a goal, in a sentence.
+        comes_of_it: The consequence for a call or a goal, as a sentence.
         next_step: What to do.
     """
 
@@ -145,7 +145,7 @@ def two_servers(role: str, comes_of_it: str, next_step: str) -> Mistake:
 
 
 def everything_twice(role: str) -> Mistake:
-    """Each message comes twice: two nodes do the same work."""
+    """Each message arrives twice, because two nodes do the same work."""
 
     def recognise(evidence: Evidence) -> Advice | None:
         name, _ = evidence.reference.only(role)
@@ -155,7 +155,8 @@ def everything_twice(role: str) -> Mistake:
         pairs = [times[text] for text in heard[:-1]]
         if len(heard) < 4 or sum(count == 2 for count in pairs) < len(pairs) * 0.7:
             return None
-        # Each publisher counts its messages. A single one that says a text again much later counts in a circle.
+        # Each publisher numbers its own messages. If a single publisher repeats a text much later, it counts in a
+        # circle.
         numbers = [event.data.get("number") for event in messages]
         if len(set(numbers)) == len(numbers) and sum(a == b for a, b in pairwise(heard)) < len(heard) // 3:
             return None
@@ -168,7 +169,7 @@ def everything_twice(role: str) -> Mistake:
 
 
 def never_spun(role: str) -> Mistake:
-    """The endpoint is there, the node never did anything and does not answer."""
+    """The endpoint exists, but the node never did anything and does not answer."""
 
     def recognise(evidence: Evidence) -> Advice | None:
         part = evidence.main
@@ -184,11 +185,11 @@ def never_spun(role: str) -> Mistake:
 
 
 def went_deaf(role: str) -> Mistake:
-    """It worked for a moment and then fell silent for good, although it is still there."""
+    """The node worked for a moment, then fell silent for good, although it still exists."""
 
     def recognise(evidence: Evidence) -> Advice | None:
         part = evidence.main
-        # What it did at first may have come before anybody could see it; that something spins is seen in any case.
+        # Its first actions may have happened before the judge could see them; but a spinning node always shows.
         if not _silent_node(evidence, role) or not (_worked(part, role) or something_spins(part)):
             return None
         return Advice(
@@ -203,12 +204,12 @@ def went_deaf(role: str) -> Mistake:
 
 
 def _awaits_in_vain(evidence: Evidence) -> bool:
-    """Return whether the subject spins, and made nothing of the last answer in a run that did not end."""
+    """True if the subject spins and never used the last answer, in a run that did not end."""
     return any(part.ending is None and something_spins(part) and _left_an_answer(part) for part in evidence)
 
 
 def _left_an_answer(part: Part) -> bool:
-    # A client that sends a goal, and asks for nothing more, spins on without a fault as long as its node answers.
+    # A client that only sends a goal may spin on without a fault while its node answers.
     answers = part.of("response") + (part.of("goal_answered") if part.of("unanswered") else [])
     if not answers:
         return False
@@ -229,7 +230,7 @@ AWAITS_IN_VAIN = mistake(
     "(ReentrantCallbackGroup or another MutuallyExclusive one), or go on in a function that you give to the "
     "add_done_callback(...) of the future.",
 )
-"""To be asked after the hangs, and before anything is said of a node that is not spun."""
+"""Checked after the hangs, and before the mistakes of a node that is not spun."""
 
 
 def _silent_node(evidence: Evidence, role: str) -> bool:
@@ -251,7 +252,7 @@ _TWIN = re2.compile(
 
 
 def twin(part: Part) -> str:
-    """The name that two nodes of the subject have at once, as rcl or the notebook says; empty if there is none."""
+    """Return the name that two nodes of the subject share, as rcl or the notebook reports it; empty without one."""
     made = part.first("subject", "constructed")
     found = (_TWIN.search(str(event.data["text"])) for event in part.of("output"))
     told = next((str(match[1]) for match in found if match), "")
@@ -269,7 +270,7 @@ _BEGIN_AT_TODO = "If your code still has its TODO, begin there."
 
 
 def _what_main_does(evidence: Evidence) -> str:
-    """The calls that belong into main(), of a server or of a client, as the task asks for one of them or both."""
+    """Return the calls that main() needs, for a server, a client or both, as the task asks."""
     roles = evidence.reference.interface.keys()
     client = _IN_MAIN_OF_A_CLIENT if roles & {"client", "action_client"} else ""
     if not client:
@@ -283,7 +284,7 @@ def _main_guard(evidence: Evidence) -> Advice | None:
         return None
     if evidence.main.had_node:
         return None
-    if report_of(evidence.main) is not None:  # by its entry point, which calls main()
+    if report_of(evidence.main) is not None:  # the program starts by its entry point, which calls main()
         return Advice(f"{_AT_ONCE} its main() makes none.", f"{_what_main_does(evidence)} {_BEGIN_AT_TODO}")
     return Advice(
         f"{_AT_ONCE} main() makes none, or nothing calls main().",
@@ -298,7 +299,7 @@ _USAGE = re2.compile(r"(?i)\b(?:usage|uso|utilisation|aufruf|benutzung|verwendun
 
 
 def _usage_message(evidence: Evidence) -> str:
-    """The line in which a program says how it is to be called, where it asks nobody for anything."""
+    """Return the line in which a program explains its arguments, if it made no request; else empty."""
     if evidence.in_a_notebook:
         return ""
     told = [line for part in evidence for line in part.said() if _USAGE.search(line)]
@@ -317,11 +318,11 @@ USAGE_MESSAGE = mistake(
 
 
 _WORK = ("message", "request", "answered", "goal", "goal_answer", "matched")
-"""The kinds of events that show a program at work."""
+"""The kinds of events that show that a program works."""
 
 
 def ended_too_early(evidence: Evidence) -> Advice | None:
-    """It ended by itself while it had work to do, after it had said or done something."""
+    """The subject ended by itself with work left, after it had said or done something."""
     ending = evidence.main.ending
     if ending is None or traceback_of(evidence) or _main_guard(evidence):
         return None
@@ -348,7 +349,7 @@ def ended_too_early(evidence: Evidence) -> Advice | None:
 
 
 def only_if_ended(mistake: Mistake) -> Mistake:
-    """The same, and certain, where each run of the subject came to its own end: time had no part in it then."""
+    """Return the same mistake, certain if each run of the subject ended by itself: then timing had no influence."""
 
     def recognise(evidence: Evidence) -> Advice | None:
         return mistake.recognise(evidence) if all(part.ending for part in evidence) else None
@@ -357,10 +358,10 @@ def only_if_ended(mistake: Mistake) -> Mistake:
 
 
 def _not_written(evidence: Evidence) -> Advice | None:
-    """Its code runs, and an end that is asked for is not there: none at all, the other one, or one of several."""
+    """The code runs, but an expected endpoint is missing: no endpoint at all, the wrong role, or one of several."""
     part = evidence.main
     if part.ending is not None and part.ending.name == "exited" and part.had_node:
-        return None  # a program may be gone before the graph tells of its endpoints
+        return None  # a program may end before the graph shows its endpoints
     nodes = any(survey.data.get("nodes") for survey in part.of("interface"))
     returned_silently = part.returned is not None and not part.said()
     wanted = evidence.reference.interface
@@ -375,7 +376,7 @@ def _not_written(evidence: Evidence) -> Advice | None:
 
 
 def _returned_silently(evidence: Evidence) -> Advice | None:
-    """A function came back with nothing, said nothing and asked for nothing, in each run."""
+    """A function returned nothing, said nothing and requested nothing, in each run."""
     for part in evidence:
         if (
             part.returned is None
@@ -392,13 +393,13 @@ def _returned_silently(evidence: Evidence) -> Advice | None:
 
 
 def _returned_at_once(evidence: Evidence) -> Advice | None:
-    """The same, and it waited for nobody either, although it was told how long it may: the rest is not there at all."""
+    """The same, and the function did not wait either, although it was told how long: the rest is missing."""
     asked = any(part.of("called") or part.of("looked") for part in evidence)
     return None if asked or not all(map(ended_at_once, evidence)) else _returned_silently(evidence)
 
 
 def _without_node(evidence: Evidence) -> str:
-    """The beginning of the sentence about a subject without a node; empty where there was one."""
+    """Return the beginning of a sentence about a subject without a node; empty if it had one."""
     if any(part.had_node or any(map(part.of, ("log", "request", "goal", "message"))) for part in evidence):
         return ""
     ending = evidence.main.ending
@@ -407,12 +408,12 @@ def _without_node(evidence: Evidence) -> str:
 
 
 def _surely_without_node(evidence: Evidence) -> str:
-    """The same; empty also of a function that has returned: its node may have gone before the graph told of it."""
+    """The same, but empty for a function that returned: its node may have ended before the graph showed it."""
     return "" if evidence.main.returned is not None else _without_node(evidence)
 
 
 def _never_constructed(part: Part) -> bool:
-    """True if the constructor of a notebook's class never came to its end."""
+    """True if the constructor of a notebook's class never finished."""
     return part.first("subject", "never_constructed") is not None
 
 
@@ -430,7 +431,7 @@ NEVER_CONSTRUCTED = mistake(
 
 
 def constructor_remark(evidence: Evidence) -> str:
-    """A word on a class that does its work in its constructor, which is right as a program; else empty."""
+    """Return a remark on a class that works in its constructor, which is right only in a program; else empty."""
     if not any(_never_constructed(part) and _works(part) for part in evidence):
         return ""
     return (
@@ -440,7 +441,7 @@ def constructor_remark(evidence: Evidence) -> str:
 
 
 NOT_BEGUN = Mistake("not_written", _returned_at_once, certain=True)
-"""A function as it was handed out: to be asked before anything is said of how it asks, waits or gives up."""
+"""A function as it was handed out: checked before mistakes about how it calls, waits or gives up."""
 NOTHING_THERE = (
     Mistake("not_written", _returned_silently, certain=True),
     Mistake("main_guard", _main_guard, certain=True),
@@ -460,4 +461,4 @@ NOTHING_THERE = (
     Mistake("not_written", _not_written),
     Mistake("ended_too_early", ended_too_early),
 )
-"""The mistakes that are asked about last, when nothing more exact fits."""
+"""The mistakes that are checked last, if nothing more exact fits."""

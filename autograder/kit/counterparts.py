@@ -1,4 +1,4 @@
-"""The judge's publishers, servers and clients, as a scenario sees them: whom the subject meets."""
+"""The judge's publishers, servers and clients, as a scenario uses them."""
 
 from __future__ import annotations
 
@@ -9,72 +9,72 @@ if TYPE_CHECKING:
 
 
 class Speaker(Protocol):
-    """A publisher of the judge's."""
+    """A publisher of the judge."""
 
     def send(self, **fields: Any) -> None:
         """Publish one message with these fields."""
 
 
 class Server(Protocol):
-    """A service server of the judge's."""
+    """A service server of the judge."""
 
     def release(self) -> None:
-        """Give the answer that was held back."""
+        """Send the answer that was held back."""
 
     def close(self) -> None:
-        """Take the service away."""
+        """Remove the service."""
 
 
 class ActionCounterpart(Protocol):
-    """An action server of the judge's that does only what the scenario tells it to."""
+    """An action server of the judge that does only what the scenario tells it to."""
 
     def await_goal(self, within: float) -> bool:
-        """Wait until a goal arrived and was answered; False where none came in ``within`` seconds."""
+        """Wait until a goal has arrived and been answered; False if none came in ``within`` seconds."""
 
     def send_feedback(self, **fields: Any) -> None:
         """Send one feedback message for the current goal."""
 
     def say_status(self) -> None:
-        """Say the current goal's status on the action's topic, as a server does when it begins to execute a goal."""
+        """Publish the current goal's status, as a server does when it begins to execute a goal."""
 
     def await_cancel(self, within: float) -> bool:
-        """Wait until somebody asked to cancel the current goal; False where nobody did in ``within`` seconds."""
+        """Wait for a request to cancel the current goal; False if none came in ``within`` seconds."""
 
     def await_result_request(self, within: float) -> bool:
-        """Wait until somebody asked for the result."""
+        """Wait for a request for the result."""
 
     def finish(self, status: str, **fields: Any) -> None:
         """End the goal with ``"succeeded"``, ``"canceled"`` or ``"aborted"`` and this result."""
 
 
 class Caller(Protocol):
-    """A client of the judge's for one service. Its calls are numbered from 0.
+    """A client of the judge for one service. Its calls are numbered from 0.
 
-    It writes the events ``servers`` (how many serve the name), ``asked`` and ``answered``.
+    It records the events ``servers`` (how many serve the name), ``asked`` and ``answered``.
     """
 
     def await_server(self, within: float) -> bool:
-        """Wait until it may call; False where nobody serves name and type in ``within`` seconds."""
+        """Wait until it can call; False if no server of the name and type appears in ``within`` seconds."""
 
     def ask(self, *requests: Mapping[str, Any]) -> None:
-        """Send requests, one right after the other, without waiting for an answer."""
+        """Send requests, one right after the other, without waiting for answers."""
 
     def await_answers(self, quiet: float) -> bool:
-        """Wait until every call is answered; False where nothing at all happened for ``quiet`` seconds."""
+        """Wait until every call is answered; False if nothing at all happened for ``quiet`` seconds."""
 
 
 class ActionCaller(Protocol):
-    """A client of the judge's for one action. Its goals are numbered from 0.
+    """A client of the judge for one action. Its goals are numbered from 0.
 
-    It writes the events ``servers``, ``goal_sent``, ``goal_answer``, ``feedback_heard``, ``cancel_sent``,
-    ``cancel_answer`` and ``result_heard``, each but the first with the number of its goal.
+    It records the events ``servers``, ``goal_sent``, ``goal_answer``, ``feedback_heard``, ``cancel_sent``,
+    ``cancel_answer`` and ``result_heard``; all but the first have the number of the goal.
     """
 
     def await_server(self, within: float) -> bool:
-        """Wait until it may send goals; False where nobody serves name and type in ``within`` seconds."""
+        """Wait until it can send goals; False if no server of the name and type appears in ``within`` seconds."""
 
     def send_goal(self, **fields: Any) -> int:
-        """Send a goal, and ask for its result once it is accepted; its number."""
+        """Send a goal, and request its result once it is accepted. Return its number."""
 
     def cancel(self, goal: int) -> None:
-        """Ask to cancel a goal."""
+        """Request to cancel a goal."""

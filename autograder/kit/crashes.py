@@ -1,4 +1,4 @@
-"""Mistakes that are told from a traceback: which one counts, which mistake it shows, and what to do about it."""
+"""Mistakes recognized from a traceback: which traceback counts, which mistake it shows, and the advice."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ _NO_CRASH = re2.compile(
 
 
 def traceback_of(evidence: Evidence) -> str:
-    """The last traceback of any part that shows a crash.
+    """Return the last traceback of any part that shows a crash.
 
-    A TimeoutError is how a client is asked to say that nobody serves it, so it is none; nor is what a thread says when
-    the main program ends and shuts ROS down under it. What a program raises on purpose in one part, as where its goal
-    is refused, does not hide a slip in another one. One that was cut off, where two threads printed theirs at once,
-    only counts where there is no other.
+    A TimeoutError does not count, because a client is asked to raise it if there is no server. Neither does an error
+    in a thread when the main program shuts ROS down under it. An exception raised on purpose in one part, such as for
+    a refused goal, does not hide a slip in another part. A traceback that was cut off, because two threads printed at
+    once, counts only if there is no other.
     """
     last_first = [part.traceback for part in reversed(list(evidence)) if part.traceback]
     shown = sorted(last_first, key=lambda text: is_cut_off(text.split("\n")))
@@ -68,10 +68,10 @@ def what_and_where(traceback: str) -> str:
 
 
 def raised(how: str, traceback: str) -> Advice:
-    """The advice for an exception that has no name of its own here.
+    """Return the advice for an exception that is not a known mistake.
 
     Args:
-        how: What came of it, for the beginning of the sentence.
+        how: The consequence, for the beginning of the sentence.
         traceback: Its traceback.
     """
     why, next_step = meaning(traceback)
@@ -79,7 +79,7 @@ def raised(how: str, traceback: str) -> Advice:
 
 
 _EXECUTOR = "rclpy/executors.py"
-"""The file that calls callbacks: what a traceback has of the student's below it is one."""
+"""The file that calls callbacks: the student's code below it in a traceback is a callback."""
 _FRAME = re2.compile(r'(?m)^ +File "(?P<file>[^"\n]*)", line (?P<line>\d+), in (?P<function>[^\n]*)$')
 
 
@@ -100,12 +100,14 @@ def _exception_in_callback(evidence: Evidence) -> Advice | None:
     spins = next((place for place, file in enumerate(files) if file.endswith(_EXECUTOR)), len(files))
     called = files if _was_spun(evidence) else files[spins:]
     if all(map(is_a_library, called)) and ", in await_or_execute\n" not in traceback:
-        return None  # no callback was called: ROS raised it itself, as where it is to spin what is no node
+        return (
+            None  # not in a callback: ROS itself raised it, such as for spinning an object that is not a node
+        )
     return raised("A callback raised an exception, and that ended the spinning of the node", traceback)
 
 
 def _was_spun(evidence: Evidence) -> bool:
-    """True if a node of a notebook was made, and raised afterwards; its traceback has no line of rclpy's."""
+    """True if a node of a notebook was made, and raised an exception later; its traceback has no line of rclpy."""
     return any(p.first("subject", "constructed") for p in evidence if p.ending and p.ending.name == "raised")
 
 
@@ -124,13 +126,13 @@ _NONE_FOR_AN_ANSWER = re2.compile(
     rf"\.sum\b.*{MARKS}AttributeError: 'NoneType' object has no attribute 'sum'"
 )
 LEFT_LYING = 0.3
-"""Seconds for which an answer was there, before somebody is said not to have taken it."""
+"""Seconds that an answer must have been available before the client is said not to have taken it."""
 
 
 def _answer_not_taken(evidence: Evidence) -> Advice | None:
-    """In each run it goes on without an answer that was there for a while, as after a call with a limit.
+    """In each run the client goes on without an answer that was available for a while, as after a call with a limit.
 
-    In one run alone, a busy machine may be why it is late. What is read from a future may never have been waited for.
+    In a single run, a busy machine may have delayed it. A value read from a future may never have been waited for.
     """
     answered = [part for part in evidence if part.first("response") is not None]
     if not answered or not all(map(_went_on_without_it, answered)):
@@ -154,13 +156,13 @@ def _went_on_without_it(part: Part) -> bool:
 
 
 _COROUTINE = re2.compile(
-    # A method, or a function of rclpy's, may be a callback that the end of the program was too early for.
+    # A method, or a function of rclpy, may be a callback that did not run before the program ended.
     r"^<coroutine object (?P<returned>\S+) at |RuntimeWarning: coroutine '(?P<warned>[a-z]\w*)' was never awaited"
 )
 
 
 def _never_awaited(evidence: Evidence) -> Advice | None:
-    """A function of the student's made a coroutine, as its value or as Python's own warning says, and that was all."""
+    """A function of the student made a coroutine, as its value or Python's warning shows, that was never awaited."""
     said = [line for part in evidence for line in part.said()]
     found = next(filter(None, map(_COROUTINE.search, said)), None)
     name = (found["returned"] or found["warned"]).rpartition(".")[2] if found else ""
@@ -249,13 +251,13 @@ OTHER_CRASHES = (
     Mistake("exception_in_callback", _exception_in_callback, certain=True),
     Mistake("crashed", _crashed, certain=True),
 )
-"""Any other traceback; to be asked after what the graph shows."""
+"""Any other traceback; checked after the mistakes that the graph shows."""
 OTHER_SLIPS = tuple(map(_only_slips, OTHER_CRASHES))
-"""Tracebacks that nobody meant; what a program raises on purpose is asked after what else is wrong with it."""
+"""Tracebacks of accidental errors; exceptions raised on purpose are checked after all other mistakes."""
 
 
 SLIPS = ("AttributeError", "TypeError", "NameError", "UnboundLocalError", "KeyError", "IndexError")
-"""Exceptions that nobody raises in order to say something."""
+"""Exceptions that programs do not raise on purpose."""
 
 
 def raised_lines(traceback: str) -> list[str]:
@@ -278,5 +280,5 @@ def on_purpose(traceback: str) -> bool:
 
 
 def meant(traceback: str) -> bool:
-    """True if the innermost line of a traceback is one of the program's own that says ``raise`` or ``assert``."""
+    """True if the innermost line of a traceback is the program's own ``raise`` or ``assert``."""
     return re2.search(r"(?:^|[:;] *)(?:raise|assert)\b", own_line(traceback)) is not None

@@ -1,4 +1,4 @@
-"""The judge's record, and the questions an exercise asks of it."""
+"""The judge's record of a subject, and the questions that exercises ask about it."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from environment.installation import COMMAND
 
 @dataclass(frozen=True)
 class Event:
-    """One thing that happened.
+    """One recorded event.
 
     Attributes:
         t: Seconds of wall time since the part began.
         kind: What happened, such as ``message`` or ``goal``; docs/exercise-reference.md lists every kind with its data.
         name: The topic, service or action; the stream of an output line; what happened to the subject.
         data: The rest, as JSON-able values.
-        sim: Simulated seconds where the judge stepped the clock, else None.
+        sim: Simulated seconds if the judge stepped the clock, else None.
     """
 
     t: float
@@ -32,7 +32,7 @@ class Event:
 
     @property
     def moment(self) -> float:
-        """Seconds of the subject's time: simulated ones where the judge stepped its clock, else ``t``."""
+        """Seconds of the subject's time: simulated if the judge stepped its clock, else ``t``."""
         return self.t if self.sim is None else self.sim
 
 
@@ -45,7 +45,7 @@ class Part:
     events: Sequence[Event] = ()
 
     def of(self, kind: str, name: str | None = None) -> list[Event]:
-        """The events of a kind, in order; only those of ``name`` where one is given."""
+        """Return the events of a kind, in order; only those of ``name`` if it is given."""
         return [e for e in self.events if e.kind == kind and (name is None or e.name == name)]
 
     def first(self, kind: str, name: str | None = None) -> Event | None:
@@ -53,18 +53,18 @@ class Part:
         return next((e for e in self.events if e.kind == kind and (name is None or e.name == name)), None)
 
     def said(self, *, after: Event | None = None) -> list[str]:
-        """The subject's words (log lines, printed lines, what a function returned), in order.
+        """Return the subject's words (log lines, printed lines, a function's value), in order.
 
         Args:
-            after: Only what was said later than this event.
+            after: Only words after this event.
         """
         start = self.events.index(after) + 1 if after is not None else 0
-        # A traceback that has begun before that event goes on after it.
+        # A traceback that began before that event continues after it.
         own = without_tracebacks(self.events)
         return [text for i, e in own if i >= start and (text := spoken_by(e)) is not None]
 
     def endpoints(self, role: str) -> dict[str, str]:
-        """The subject's endpoints of a role that were on the graph at any time of this part: name -> type."""
+        """Return the subject's endpoints of a role that were ever on the graph in this part: name -> type."""
         found: dict[str, str] = {}
         for survey in self.of("interface"):
             found |= survey.data.get(role, {})
@@ -77,30 +77,30 @@ class Part:
 
     @property
     def had_node(self) -> bool:
-        """True if a node of the subject's was there, for however short a time."""
+        """True if the subject had a node, even for a short time."""
         return bool(self.of("announced")) or any(survey.data.get("nodes") for survey in self.of("interface"))
 
     @property
     def ending(self) -> Event | None:
-        """The end of the subject by itself: an event named ``exited``, ``returned`` or ``raised``; or None."""
+        """How the subject ended by itself: an event named ``exited``, ``returned`` or ``raised``; or None."""
         return next((e for e in self.events if e.kind == "subject" and e.name in _ENDINGS), None)
 
     @property
     def returned(self) -> str | None:
-        """A function's value, as Python writes it (``"None"`` for nothing); None where no function has returned."""
+        """A function's value, as Python writes it (``"None"`` for nothing); None if no function has returned."""
         ending = self.ending
         return str(ending.data.get("value")) if ending is not None and ending.name == "returned" else None
 
     @functools.cached_property
     def traceback(self) -> str:
-        """The last traceback that the subject showed, else an empty string; read once, as most mistakes ask for it.
+        """The last traceback that the subject showed, else empty; cached, because most mistakes need it.
 
-        One that comes from being stopped by the judge does not count: it means nothing.
+        A traceback from being stopped by the judge does not count.
         """
         for event in reversed(self.events):
             if event.kind == "subject" and event.data.get("traceback"):
                 return str(event.data["traceback"])
-        # Stream by stream, and program by program below a launch: lines of one may come between those of another.
+        # Separately for each stream, and for each program below a launch, because their lines may be mixed.
         streams: dict[str, list[str]] = {}
         for event in self.of("output"):
             stream, line = _stream_and_line(event)
@@ -109,11 +109,11 @@ class Part:
 
 
 _LAUNCHED = re2.compile(r"(?s)(\[[\w.]+-\d+\] )?(.*)")
-"""A line of output, behind what a launch puts before the lines of its programs, such as ``[talker-1]``."""
+"""A line of output, after the prefix that a launch puts before its programs' lines, such as ``[talker-1]``."""
 
 
 def _stream_and_line(event: Event) -> tuple[str, str]:
-    """The stream of an output line, with the program below a launch that wrote it, and the line without its prefix."""
+    """Return the stream of an output line, with its program below a launch, and the line without its prefix."""
     text = str(event.data["text"])
     if not text.startswith("["):
         return event.name, text
@@ -124,13 +124,14 @@ def _stream_and_line(event: Event) -> tuple[str, str]:
 _ENDINGS = ("exited", "returned", "raised")
 _OF_A_NOTEBOOK = ("started", "constructed", "never_constructed", "returned", "raised")
 INTERRUPTED = "Ctrl-C"
-"""The name of the event that stands where the judge has pressed Ctrl-C."""
+"""The name of the event that records that the judge pressed Ctrl-C."""
 
 
 _TRACEBACK = "Traceback (most recent call last)"
 _IGNORED = "Exception ignored in"
-"""The beginning of Python's words about an error in a destructor: it has stopped nothing, and often follows from what
-did."""
+"""The beginning of Python's message about an error in a destructor: it stops nothing, and is often a consequence of
+another error.
+"""
 _OF_A_TRACEBACK = (
     "Exception in thread ",
     _IGNORED,
@@ -143,16 +144,16 @@ _OF_A_TRACEBACK = (
     "During handling of the above exception",
     "The above exception was the direct cause",
 )
-"""The beginnings of lines of tracebacks and stacks, also where two threads print theirs at once.
+"""The beginnings of lines of tracebacks and stacks, even if two threads print theirs at once.
 
-A Python program that ends while a thread of it still spins is often aborted by the C++ runtime (``terminate called
-without an active exception``), and faulthandler shows what ran.
+A Python program that ends while one of its threads still spins is often aborted by the C++ runtime (``terminate
+called without an active exception``), and faulthandler prints the stacks.
 """
 _FRAME = re2.compile(r'\s+File ".*", line \d+')
 
 
 def without_tracebacks(events: Sequence[Event]) -> Iterator[tuple[int, Event]]:
-    """All but the output lines of tracebacks, with their places: they quote the program, which is not what it says."""
+    """Yield all events with their indexes, except lines of tracebacks: these quote the program, not its words."""
     inside: dict[str, bool] = {}
     for place, event in enumerate(events):
         if event.kind == "output":
@@ -166,25 +167,29 @@ def without_tracebacks(events: Sequence[Event]) -> Iterator[tuple[int, Event]]:
 
 
 REPORTS = ("@workspace ", "@process ")
-"""The beginning of a runner's line about a build or a launched process. These are not the subject's words."""
+"""The beginning of a runner's line about a build or a launched process. Such lines are not the subject's words."""
 _ROS2_RUN = "[ros2run]: "
-"""The beginning of a line of ``ros2 run`` itself, as where the program exited with failure 3: that says nothing of
-why."""
+"""The beginning of a line of ``ros2 run`` itself, such as that the program exited with failure 3: it does not tell
+why.
+"""
 _PREFIX = re2.compile(r"^\[\w+\] \[[\d.]+\] \[(?P<logger>[^\]]*)\]: ")
-"""The prefix that rcutils puts before a line on a terminal: level, time stamp, logger. These are nobody's words."""
+"""The prefix that rcutils puts before a line on a terminal: level, time stamp, logger.
+
+It is not the subject's words.
+"""
 
 
 _LIBRARIES = re2.compile(r"\.action_(client|server)$|^(rcl|rclpy|rcutils|rmw\w*)(\.|$)")
-"""Loggers that speak for ROS itself, such as "Ignoring unexpected result response" (rclpy/action/client.py)."""
+"""Loggers of ROS itself, for lines such as "Ignoring unexpected result response" (rclpy/action/client.py)."""
 _COLOURS = r"(?:\x1b\[[\d;]*m)*"
 _MIDDLEWARE = re2.compile(
     rf"^{_COLOURS}\d{{4}}-\d\d-\d\d [\d:.]+ .*\[{_COLOURS}\w+{_COLOURS} (Error|Warning)\]"
 )
-"""The beginning of a line of Fast DDS; on a busy machine it may complain beside the best of programs."""
+"""The beginning of a line of Fast DDS, which on a busy machine may complain even about a perfect program."""
 
 
 def spoken_by(event: Event) -> str | None:
-    """The subject's words in an event, without a terminal's prefix; None where it said nothing."""
+    """Return the subject's words in an event, without a terminal's prefix; None if the event has none."""
     if event.kind in ("log", "output"):
         text = str(event.data["text"])
         prefix = _PREFIX.match(text) if text.startswith("[") else None
@@ -207,15 +212,15 @@ def _is_a_library(logger: str) -> bool:
 
 
 def _is_the_middlewares(text: str) -> bool:
-    # Asked of every line at every event: the expression only of those that can be one.
+    # This is called for every line at every event, so the slow expression runs only for likely lines.
     return ("Error]" in text or "Warning]" in text) and _MIDDLEWARE.match(text) is not None
 
 
 def _traceback_in(lines: Sequence[str]) -> str:
-    """The last Python traceback among lines of output, the way a terminal shows it.
+    """Return the last Python traceback among lines of output, as a terminal shows it.
 
-    One that was cut off, as where the process died while it was printed, or where another thread printed its own in
-    between, only counts where there is no other.
+    A traceback that was cut off, because the process died or another thread printed in between, counts only if there
+    is no other.
     """
     starts = [
         i
@@ -236,7 +241,7 @@ def _traceback_in(lines: Sequence[str]) -> str:
 
 
 def is_cut_off(traceback: Sequence[str]) -> bool:
-    """True of the lines of a traceback that end before the error's own words."""
+    """True if the lines of a traceback end before the error's own message."""
     return len(traceback) < 2 or traceback[-1].startswith((" ", "\t", _TRACEBACK, *_OF_A_TRACEBACK))
 
 
@@ -250,13 +255,13 @@ def _traceback_at(lines: Sequence[str], start: int) -> list[str]:
 
 @dataclass(frozen=True)
 class Evidence:
-    """All that a criterion or a mistake may look at.
+    """Everything that a criterion or a mistake may use.
 
     Attributes:
-        parts: What was seen of the subject.
-        reference: What was recorded of the reference solution: the expected behaviour.
-        real_time: Whether this is the second look.
-        before: What the first look brought, when this is the second.
+        parts: The record of the subject.
+        reference: The record of the reference solution: the expected behavior.
+        real_time: True if this is the second look.
+        before: The result of the first look, in the second one.
     """
 
     parts: Sequence[Part]
@@ -265,7 +270,7 @@ class Evidence:
     before: Evidence | None = None
 
     def part(self, name: str) -> Part:
-        """The part of that name; an empty one where the scenario did not get so far."""
+        """Return the part of that name; an empty one if the scenario did not get so far."""
         return next((part for part in self.parts if part.name == name), Part(name))
 
     @property
@@ -275,11 +280,11 @@ class Evidence:
 
     @property
     def in_a_notebook(self) -> bool:
-        """True if the subject is a class or a function of a notebook, and not a program."""
+        """True if the subject is a class or a function of a notebook, not a program."""
         return any(e.kind == "subject" and e.name in _OF_A_NOTEBOOK for part in self for e in part.events)
 
     def ever_had(self, role: str) -> bool:
-        """True if an endpoint was seen in any run of both looks: who ends at once may be gone before it is known."""
+        """True if any run of both looks has such an endpoint: one that ends at once may be gone before it is seen."""
         return any(part.endpoints(role) for part in (*self, *(self.before or ())))
 
     def __iter__(self) -> Iterator[Part]:
@@ -288,12 +293,12 @@ class Evidence:
 
 @dataclass(frozen=True)
 class Reference:
-    """A reference output: what the reference solution does on the wire.
+    """A reference output: the behavior of the reference solution on the wire.
 
     Attributes:
         exercise: The exercise's id.
         interface: Role -> {name: type} of the reference solution's endpoints.
-        parts: What was seen of it, in the same parts as any subject's.
+        parts: Its record, in the same parts as any subject's.
     """
 
     exercise: str
@@ -301,7 +306,7 @@ class Reference:
     parts: Sequence[Part] = ()
 
     def part(self, name: str) -> Part:
-        """The part of that name.
+        """Return the part of that name.
 
         Raises:
             KeyError: The reference output has no such part: it must be recorded again.
@@ -314,7 +319,7 @@ class Reference:
         )
 
     def only(self, role: str) -> tuple[str, str]:
-        """The name and type of the one endpoint of a role.
+        """Return the name and type of the only endpoint of a role.
 
         Raises:
             KeyError: The reference solution has none of this role.

@@ -1,8 +1,8 @@
-"""Clients whose server is late or does not come: how long they wait, what they say meanwhile, and how they give up.
+"""Clients whose server is late or missing: how long they wait, what they say meanwhile, and how they give up.
 
 One rule holds for every client of the course. A client that ends and reports :data:`NOT_AVAILABLE` has given up well.
-A client that says again and again that it waits may go on, with a remark on the card about limits. A function that is
-told how long to wait, by a parameter ``patience_sec``, keeps that time.
+A client that repeatedly says that it waits may go on, with a remark about limits on the card. A function with a
+parameter ``patience_sec`` must wait that long.
 """
 
 from __future__ import annotations
@@ -22,60 +22,66 @@ if TYPE_CHECKING:
     from autograder.kit.model import Bench, Mistake
 
 PATIENCE = "patience_sec"
-"""The parameter by which a notebook's function is told how long to wait; also its name among a part's inputs."""
+"""The parameter that tells a notebook's function how long to wait; also its name among a part's inputs."""
 GIVE_UP_LIMIT = 12.0
-"""Seconds in which a client must have ended when nobody serves, or have said again and again that it waits."""
+"""Seconds within which a client without a server must have ended, or have said repeatedly that it waits."""
 LATENESS = 1.5
-"""Seconds that a late server comes after its client."""
+"""Seconds by which a late server comes after its client."""
 PATIENCES = (6.5, 6.95)
-"""Between which the seconds are drawn that a function is told to wait. No usual constant, such as 5 or 10, is taken for
-one of these: it may differ from its patience by what is below."""
+"""The range from which the seconds of patience are drawn.
+
+A usual constant, such as 5 or 10, cannot pass as one of them, even with the tolerances below.
+"""
 PATIENCES_WITHOUT_A_SERVER = {Pace.FAST: (0.33, 0.37), Pace.REAL_TIME: PATIENCES}
-"""The same for a run without a server, in which all of the patience is waited. No constant that is long enough for a
-late server is taken for the short one. A function that needs longer, as one that waits in whole seconds may, is told
+"""The same range for a run without a server, in which the function waits for all of its patience.
+
+A constant that is long enough for a late server is too long for these. A function that needs longer, such as one
+that waits in whole seconds, gets the longer range in a second look.
 the long one in a second look."""
 TOO_LONG = 2.0
-"""Seconds that a function may need on top of its patience: to make its node, to take it away, to be slow."""
+"""Seconds that a function may need in addition to its patience: to make its node, to remove it, to be slow."""
 SLACK = 3.0
-"""The same as a multiple of a short patience; who was slower than that in a quick look is told a longer one."""
+"""The tolerance as a multiple of a short patience; a slower function gets a longer patience in the second look."""
 TOO_SHORT = 0.5
-"""The share of its patience that a function must at least wait."""
+"""The smallest share of its patience that a function must wait."""
 PART_OF_A_WAIT = 1.0
 """Seconds that a function may leave out at the end of a longer patience: it may wait in whole seconds."""
 NOT_AVAILABLE = Outcome("not available")
-"""What a client has to say when its service or server is missing."""
+"""The words that a client must report if its service or server is missing."""
 WAITING = Outcome("not available", "waiting")
-"""What one has to say again and again that goes on waiting."""
+"""The words that a client which keeps waiting must say repeatedly."""
 AGAIN_AND_AGAIN = 3
-"""The number of times that a client says that it waits, to have said it again and again."""
+"""The number of times that a client must say that it waits."""
 SAYS_SO_TO = 8.0
-"""Seconds after which it must still say so: who says it every four seconds does, and who tried three times does not."""
+"""Seconds until which it must still say so: a client that says it every four seconds does, one that tried three
+times does not.
+"""
 _CLIENTS = ("client", "action_client")
 _AT_WORK = ("log", "called", "looked")
-"""The kinds of events that show a node at work, or a function that waits, also where the graph tells of neither."""
+"""The kinds of events that show a working node, or a waiting function, even if the graph shows neither."""
 MOMENT = 0.5
-"""Seconds: what is said within these is said once. A log line comes on two ways, and a loop may be in a hurry."""
+"""Seconds within which the same words count once: a log line arrives in two ways, and a loop may be fast."""
 
 
 # --- time ----------------------------------------------------------------------------------------------------
 
 
 def waited(part: Part) -> float:
-    """Seconds from a subject's start to its end, or to the last event if it goes on."""
+    """Return the seconds from a subject's start to its end, or to the last event if it goes on."""
     start = part.first("subject", "started")
     end = part.ending or (part.events[-1] if part.events else None)
     return (end.t if end else 0.0) - (start.t if start else 0.0)
 
 
 def patience(part: Part) -> float | None:
-    """The seconds that the subject was told to wait; None where it has no parameter for that."""
+    """Return the seconds that the subject was told to wait; None if it has no parameter for that."""
     start = part.first("subject", "started")
     takes = start is not None and PATIENCE in start.data["accepted"]
     return float(part.inputs[PATIENCE]) if takes and PATIENCE in part.inputs else None
 
 
 def drawn_patience(bench: Bench, between: tuple[float, float] = PATIENCES) -> float:
-    """Seconds that a function is to be told to wait, in whole hundredths."""
+    """Draw the seconds that a function is told to wait, in whole hundredths."""
     return round(bench.random.uniform(*between), 2)
 
 
@@ -88,9 +94,9 @@ def await_it(bench: Bench) -> None:
 
 
 def says_that_it_waits(part: Part) -> bool:
-    """True if the subject says that it waits again and again, and not only at the beginning.
+    """True if the subject says repeatedly that it waits, and not only at the beginning.
 
-    The beginning is where its client was seen: on a busy machine a program may need seconds to come so far.
+    The beginning is when its client was first seen: on a busy machine a program may need seconds until then.
     """
     looks = (event.t for event in part.of("interface") if any(map(event.data.get, _CLIENTS)))
     late = (next(looks, 0.0) + SAYS_SO_TO) / MOMENT
@@ -99,7 +105,7 @@ def says_that_it_waits(part: Part) -> bool:
 
 
 def _moments(part: Part, outcome: Outcome) -> set[int]:
-    """The moments at which it said the word of an outcome."""
+    """Return the moments at which the subject said the word of an outcome."""
     return {
         int(event.t / MOMENT)
         for event in part.events
@@ -108,27 +114,27 @@ def _moments(part: Part, outcome: Outcome) -> set[int]:
 
 
 def goes_on_waiting(part: Part) -> bool:
-    """True if the subject waits without end and may: it says so, and was not told how long to wait."""
+    """True if the subject waits for ever and may do so: it says so, and was not told how long to wait."""
     return bool(part.events) and part.ending is None and patience(part) is None and says_that_it_waits(part)
 
 
 def waits_in_silence(part: Part) -> bool:
-    """True if the subject waits without end and may not."""
+    """True if the client waits forever although the task forbids it."""
     return bool(part.events) and part.ending is None and not goes_on_waiting(part)
 
 
 def served_otherwise(
     served: Sequence[Part], absent: Part, asked: Callable[[Part], bool], looks_elsewhere: bool
 ) -> list[Part]:
-    """The runs in which the subject had its server, so that what it says there is no report of a missing one.
+    """Return the runs in which the subject had its server, so that its words there do not report a missing one.
 
-    In the first run the server comes late, so a client may say once that it is missing, unless it never asks there.
+    In the first run the server comes late, so a client may once report it missing there, unless it never calls there.
 
     Args:
         served: The runs with a server; in the first one the server comes late.
         absent: The run without one.
-        asked: Whether the subject asked the server for something in a run.
-        looks_elsewhere: Whether it looks for a server of another name.
+        asked: Returns True if the subject sent the server a request in a run.
+        looks_elsewhere: True if the subject looks for a server with another name.
     """
     late, *others = served
     found = [part for part in others if asked(part)]
@@ -136,11 +142,11 @@ def served_otherwise(
 
 
 def objection(part: Part, others: Sequence[Part] = (), role: str = "") -> str:
-    """The fault of a client that finds no server, in words; empty where it behaves well.
+    """Return the fault of a client that finds no server, in words; empty if it behaves well.
 
     Args:
         part: The run without a server.
-        others: Runs in which it had its server.
+        others: Runs in which the subject had its server.
         role: The endpoint of a client that waits for its server, such as ``"client"``.
     """
     if not part.events:
@@ -155,19 +161,19 @@ def objection(part: Part, others: Sequence[Part] = (), role: str = "") -> str:
 
 
 def _unsaid(part: Part, others: Sequence[Part]) -> str:
-    # What is said again and again may be said once where the machine is slow to show the server.
+    # On a machine that shows the server slowly, a client may say once what it otherwise says repeatedly.
     times = _moments(part, NOT_AVAILABLE)
     said_again = bool(times) and max(times) - min(times) > 1
     return "" if said_again else NOT_AVAILABLE.missing(part, others)
 
 
 def silent_end(part: Part, others: Sequence[Part], noun: str) -> Advice | None:
-    """The diagnosis of a client that ends without a server and does not report it, or returns an answer all the same.
+    """Return the diagnosis of a client that ends without a server and does not report it, or returns an answer anyway.
 
     Args:
         part: The run without a server.
-        others: Runs in which it had its server.
-        noun: What is missing, such as ``"service"``.
+        others: Runs in which the subject had its server.
+        noun: The word for what is missing, such as ``"service"``.
     """
     if part.ending is None:
         return None
@@ -188,14 +194,14 @@ def silent_end(part: Part, others: Sequence[Part], noun: str) -> Advice | None:
 
 
 def returned_answer(part: Part) -> str:
-    """The number or text that a function returned; empty where it returned nothing that looks like an answer."""
+    """Return the number or text that a function returned; empty if it returned nothing like an answer."""
     value = part.returned or ""
     is_answer = re2.fullmatch(r"-?\d+|['\"].*\pL.*", value) and not NOT_AVAILABLE.is_said_in(value)
     return value if is_answer else ""
 
 
 def broken_patience(part: Part) -> str:
-    """The difference between the time that a function took and its patience, in words; empty where it kept that."""
+    """Return how the time of a function differs from its patience, in words; empty if it kept the patience."""
     limit = patience(part)
     if limit is None or part.ending is None:
         return ""
@@ -205,13 +211,13 @@ def broken_patience(part: Part) -> str:
 
 
 def looks_elsewhere(evidence: Evidence, absent: Part, role: str) -> bool:
-    """True if a client that was never seen to ask for anything was seen to look for another server than the task's.
+    """True if a client that never called the server was seen to look for a server other than the task's.
 
-    One that ends, whether there is a server or not, must have looked under another name. One that goes on waiting may
-    have had the task's name and another type.
+    A client that ends, with or without a server, must have looked for another name. One that keeps waiting may have
+    used the task's name with another type.
 
     Args:
-        evidence: All of its runs.
+        evidence: All runs of the client.
         absent: The run without a server.
         role: ``client`` or ``action_client``.
     """
@@ -228,7 +234,7 @@ def ended_at_once(part: Part) -> bool:
 
 
 def patience_not_kept(absent: str) -> Mistake:
-    """A function waits by a limit of its own in the run without a server, which is called ``absent``."""
+    """Without a server, in the run named ``absent``, a function waits by a limit of its own."""
     return mistake(
         "patience_not_kept",
         lambda evidence: "" if _looked_for_nobody(evidence) else broken_patience(evidence.part(absent)),
@@ -240,7 +246,7 @@ def patience_not_kept(absent: str) -> Mistake:
 
 
 def remark(absent: str) -> Callable[[Evidence], str]:
-    """The card's remark on a client that goes on waiting in the run without a server, which is called ``absent``."""
+    """Return the card's remark on a client that keeps waiting without a server, in the run named ``absent``."""
     words = (
         "When there is no server, your client says again and again that it waits, and waits on. The task allows this; "
         "a robot that must not wait for ever needs a limit as well, such as a number of tries."
@@ -252,16 +258,16 @@ def remark(absent: str) -> Callable[[Evidence], str]:
 
 
 def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool]) -> bool:
-    """True if the subject ended before it had met a server that was there.
+    """True if the subject ended before it had found a server that was available.
 
-    On the wire a client that gave up and one that never meant to ask both only end. What tells them apart is that the
-    first says of a server that is there what it says of one that is not. In which of the runs it ends too early depends
-    on the machine: who looks once may find the server in some of them, in all or in none.
+    On the wire, a client that gave up looks like one that never meant to call: both just end. But the first says
+    about an available server what it says about a missing one. The machine decides in which runs it ends too early: a
+    client that looks only once may find the server in some runs, in all or in none.
 
     Args:
         served: The runs with a server; in the first one the server comes late.
         absent: The run without one.
-        asked: Whether the subject asked the server for something in a run.
+        asked: Returns True if the subject sent the server a request in a run.
     """
     if _looked_for_nobody((absent, *served)):
         return False
@@ -274,9 +280,9 @@ def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool])
 
 
 def _looked_for_nobody(parts: Iterable[Part]) -> bool:
-    """True of a subject that came to a good end in each of its runs and was never seen to be a node, nor to wait.
+    """True if the subject ended well in each run, and was never seen as a node or to wait.
 
-    A notebook's function may be gone before the graph tells of its node, so what it did is not known then.
+    A notebook's function may end before the graph shows its node; then its actions are unknown.
     """
     return all(
         part.ending is not None and part.ending.name in ("exited", "returned") and not _was_seen(part)
@@ -295,14 +301,14 @@ def not_forgotten(
     served: Callable[[Evidence], Sequence[Part]],
     asked: Callable[[Part], bool],
 ) -> Mistake:
-    """A client gives up where its server is there, and not where it is absent: its condition lacks a ``not``.
+    """A client gives up if its server is available, and not if it is absent: its condition lacks a ``not``.
 
     Args:
         absent: The name of the run without a server.
-        noun: What is waited for, ``"service"`` or ``"server"``, as in the name of the wait.
+        noun: The word for what the client waits for, ``"service"`` or ``"server"``, as in the name of the wait.
         role: The client's endpoint, such as ``"client"``.
-        served: Gives the runs with a server.
-        asked: Whether the subject asked the server for something in a run.
+        served: Returns the runs with a server.
+        asked: Returns True if the subject sent the server a request in a run.
     """
     wait = f"wait_for_{noun}"
     return mistake(
@@ -319,7 +325,7 @@ def not_forgotten(
 def _gives_up_where_served(
     served: Sequence[Part], absent: Part, role: str, asked: Callable[[Part], bool]
 ) -> str:
-    """The line by which a client reports a missing server where its server is there, and not where it is absent."""
+    """Return the line that reports a missing server in a run with a server, if no run without one has it."""
     if not (served and absent.events) or NOT_AVAILABLE.lines(absent):
         return ""
     if any(asked(part) or not (part.ending and part.endpoints(role)) for part in served):

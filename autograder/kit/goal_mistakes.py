@@ -1,4 +1,4 @@
-"""Known mistakes of clients that send goals and tell how they ended."""
+"""Known mistakes of clients that send goals and report how they ended."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ WRONG_ORDER = mistake(
 
 
 def _ended_before(evidence: Evidence) -> str:
-    """The answer that was still to come when it ended, in words; empty where it waited for its answers."""
+    """Return the answer that had not come yet when the client ended, in words; empty if it waited for its answers."""
     part = evidence.part(LATE)
     ending, answered, result = part.ending, part.first("goal_answered"), part.first("result")
     if not asked_for(part) or ending is None or (part.traceback and not meant(part.traceback)):
@@ -141,7 +141,7 @@ RESULT_OF_REJECTED_GOAL = mistake(
 
 
 def crashed_by_refusal(evidence: Evidence) -> Advice | None:
-    """It goes on with a refused goal until an exception stops it, and comes through all other parts without one."""
+    """The client goes on with a refused goal until an exception stops it, and finishes all other parts without one."""
     crashed = [part for part in evidence if part.traceback and not on_purpose(part.traceback)]
     if [part.name for part in crashed] != [REFUSED]:
         return None
@@ -182,7 +182,7 @@ REFUSAL_NOT_REPORTED = Mistake("refusal_not_reported", _refusal_not_reported)
 
 
 def _feedback_not_shown(evidence: Evidence) -> tuple[int, int] | None:
-    """The number of feedback messages that were sent, and of those that it showed."""
+    """Return the number of feedback messages that were sent, and of those that the client showed."""
     part = evidence.part(LATE)
     sent, missing = len(part.of("feedback")), len(unshown_feedback(part))
     return (sent, sent - missing) if missing and part.first("result_request") else None
@@ -219,7 +219,7 @@ RESULT_REPEATED = mistake(
 
 
 def _result_not_reported(evidence: Evidence) -> Advice | None:
-    """The result came and was not said."""
+    """The result came, but the client did not report it."""
     part = evidence.part(LATE)
     result = part.first("result")
     if result is None or part.first("result_request") is None or reports_result(part):

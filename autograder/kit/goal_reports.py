@@ -22,49 +22,52 @@ LATE = "the server comes late"
 REFUSED = "the goal is refused"
 ABORTED = "the goal is aborted"
 ABSENT = "there is no server"
-"""In this part nobody serves; in the first one of any exercise a goal is accepted."""
+"""In this part there is no server; in the first part of any exercise a goal is accepted."""
 SERVED = (LATE, REFUSED, ABORTED)
 """The parts in which a goal is expected."""
 
 FEEDBACKS = 14
-"""Feedback messages of the goal that succeeds: enough for a client that goes deaf after a while to be found out."""
+"""Feedback messages of the goal that succeeds: enough to detect a client that stops receiving after a while."""
 SUCCEEDED, CANCELED, WAS_ABORTED = Outcome("succeeded"), Outcome("canceled", "cancelled"), Outcome("aborted")
-"""How an accepted goal ended: by these words, or by the number of the status."""
+"""How an accepted goal ended: these words, or the number of the status."""
 REJECTED = Outcome("rejected")
 NOT_ENDED = "said so, and did not end"
 NO_GOAL = "no goal"
 UNASKED = "a request to cancel the goal"
 NOT_AWAITED = "it ended without taking in the answer to its goal"
 MANY_REQUESTS = 3
-"""Requests for one result that may have a reason; what asks more often goes on asking."""
+"""The number of requests for one result that may have a reason; a client with more keeps requesting."""
 
 AT_ONCE = 3.6
-"""Seconds after an answer in which a client ends that never meant to take it in. A process takes a tenth of a second to
-end, and more than one on a crowded machine. A client that spins for 5 seconds, as many do, ends later than this by more
-than half a second, though its answer was held back; one that spins for 3 ends a second before."""
+"""Seconds after an answer within which a client ends that never meant to use it.
+
+A process takes a tenth of a second to end, more than one on a busy machine. A client that spins for 5 seconds, as
+many do, ends more than half a second later than this, even if its answer was held back; one that spins for 3 ends a
+second earlier.
+"""
 STAYED = 1.5
-"""Seconds after a request: of a client that is still there then, it did not go under with its process."""
+"""Seconds after a request: if the client still exists then, the request was not lost with its process."""
 _WAYS = ("log", "output", "subject")
-"""The kinds of events in which something is said: on /rosout, printed, returned."""
+"""The kinds of events that contain the subject's words: on /rosout, printed, returned."""
 _TRACEBACK = "Traceback (most recent call last)"
 
 
 def asked_for(part: Part) -> list[int]:
-    """The orders of the goals, in order."""
+    """Return the orders of the goals, in order."""
     return [int(event.data["fields"]["order"]) for event in part.of("goal")]
 
 
 def left_at_once(part: Part, answer: str = "goal_answered") -> bool:
-    """True if the subject was about to end before the judge gave an answer that it holds back.
+    """True if the subject was about to end before the judge sent an answer that it holds back.
 
-    A process that ends takes its last requests along, or it does not: nothing may depend on which of them arrived. Its
-    traceback tells that it ends, before it has ended; and one that ends without a word may need a while for it.
+    The last requests of an ending process may or may not arrive, and nothing may depend on that. A traceback shows
+    that the process ends before it has ended; a process that ends silently may take a while.
     """
     if part.ending is None:
         return False
     for event in part.events:
         if event.kind == answer:
-            # Who has failed only now has taken something in: the answer, or the feedback behind it.
+            # A subject that fails only now has received something: the answer, or the feedback after it.
             went_on = part.traceback or part.said(after=event) or _stayed_for_more(part, event)
             return not went_on and part.ending.t - event.t < AT_ONCE
         if event is part.ending or (event.kind == "output" and event.data["text"].startswith(_TRACEBACK)):
@@ -73,7 +76,7 @@ def left_at_once(part: Part, answer: str = "goal_answered") -> bool:
 
 
 def _stayed_for_more(part: Part, answer: Event) -> bool:
-    """True if it was there for its goal's result, or for a while after what it has asked for behind an answer."""
+    """True if it existed when its goal's result was sent, or for a while after the request that followed the answer."""
     assert part.ending is not None
     end, later = part.ending.t, part.events[part.events.index(answer) :]
     stayed = {"result": 0.0, "result_request": STAYED, "cancel": STAYED}
@@ -81,7 +84,7 @@ def _stayed_for_more(part: Part, answer: Event) -> bool:
 
 
 def goals_as_seen(evidence: Evidence) -> str:
-    """The faults of the goals, in words."""
+    """Return the faults of the goals, in words."""
     if asked_for(evidence.part(LATE)) and left_at_once(evidence.part(LATE)):
         return NOT_AWAITED
     wanted = len(asked_for(evidence.reference.part(LATE)))
@@ -106,7 +109,7 @@ def goals_as_seen(evidence: Evidence) -> str:
 
 
 def cancels_unasked(part: Part) -> bool:
-    """True if it asks to cancel its goal before that has ended; one that was interrupted may."""
+    """True if it requests to cancel its goal before the goal has ended; an interrupted subject may do so."""
     for event in part.events:
         if event.kind == "result" or event.name == INTERRUPTED:
             return False
@@ -116,7 +119,7 @@ def cancels_unasked(part: Part) -> bool:
 
 
 def unshown_feedback(part: Part) -> list[Event]:
-    """The feedback messages whose newest number was not said after they were sent."""
+    """Return the feedback messages whose newest number was not said after they were sent."""
     return [
         event for event in part.of("feedback") if not mentions(part.said(after=event), _sequence(event)[-1])
     ]
@@ -128,23 +131,23 @@ def _sequence(event: Event) -> list[int]:
 
 
 def said_of_result(part: Part) -> list[str]:
-    """The words after the result was sent, without late echoes of something said before."""
+    """Return the words after the result was sent, without late echoes of earlier words."""
     return said_first_after(part.first("result"), part)
 
 
 def reports_result(part: Part) -> bool:
-    """Every number of the result was said after it was sent, in its order."""
+    """True if every number of the result was said after it was sent, in the right order."""
     result = part.first("result")
     if result is None or part.first("result_request") is None:
         return False
     numbers = [str(number) for number in _sequence(result)]
-    # A log line comes twice, as output and on /rosout: what is left out of one must not be found in the other.
+    # A log line comes twice, as output and on /rosout: numbers missing in one copy must not be taken from the other.
     ways = ([event for event in part.events if event is result or event.kind == way] for way in _WAYS)
     return any(_are_in_order(numbers, replace(part, events=events).said(after=result)) for events in ways)
 
 
 def _are_in_order(numbers: Sequence[str], lines: Sequence[str]) -> bool:
-    # The numbers are long and random, so that their digits alone are told from whatever is between them.
+    # The numbers are long and random, so their digits alone distinguish them from the text in between.
     digits, place = re2.sub(r"\D", "", " ".join(lines)), 0
     for number in numbers:
         place = digits.find(number, place)
@@ -159,13 +162,13 @@ _SEQUENCE = re2.compile(r"[\[(]|[a-z.]+\((?:'\w', )?[\[(]|[a-z.]+\((?:'\w')?\)")
 
 
 def returned_instead(part: Part, wanted: Sequence[int]) -> str:
-    """The value that a function returned in place of these numbers; empty where it is right, or no function.
+    """Return what a function returned instead of these numbers; empty if it is right, or no function returned.
 
-    Any kind of sequence is taken for a list, such as a tuple or an array; a message that has one is none.
+    Any kind of sequence counts as a list, such as a tuple or an array; a message that contains one does not.
     """
     if part.returned is None:
         return ""
-    # Beside the numbers may stand their type, as in np.int32(5), and how many there may be, as in deque([5], maxlen=9).
+    # The text may also contain the numbers' type, as in np.int32(5), or a length limit, as in deque([5], maxlen=9).
     numbers = re2.findall(r"\d+", re2.sub(r"int\d+|maxlen=\d+", "", part.returned))
     right = numbers == [str(number) for number in wanted]
     return "" if right and _SEQUENCE.match(part.returned) else part.returned
@@ -177,7 +180,7 @@ def _waits(late: Part) -> bool:
 
 
 def refused_as_seen(evidence: Evidence) -> str:
-    """The fault in the report of a refused goal, in words."""
+    """Return the fault in the report of a refused goal, in words."""
     part = evidence.part(REFUSED)
     goal = part.first("goal")
     if not part.events:
@@ -186,17 +189,17 @@ def refused_as_seen(evidence: Evidence) -> str:
         return NOT_AWAITED if goal else NO_GOAL
     if missing := REJECTED.missing(part, all_but(evidence, REFUSED)):
         return missing
-    # A client that goes on after a success, too, may go on here.
+    # A client that goes on after a success may go on here, too.
     return NOT_ENDED if part.ending is None and evidence.main.ending is not None else ""
 
 
 def all_but(evidence: Evidence, name: str) -> list[Part]:
-    """The other runs with a goal: each ended otherwise."""
+    """Return the other runs with a goal, in each of which the goal ended in another way."""
     return [part for part in evidence if part.name != name and part.first("goal")]
 
 
 def aborted_as_seen(evidence: Evidence) -> str:
-    """The fault in the report of an aborted goal, in words. The goal's status is on a topic, too."""
+    """Return the fault in the report of an aborted goal, in words. The goal's status is on a topic, too."""
     part = evidence.part(ABORTED)
     if not part.events:
         return "not reached"
@@ -206,12 +209,12 @@ def aborted_as_seen(evidence: Evidence) -> str:
 
 
 def given_up(evidence: Evidence) -> str:
-    """The fault in its giving up without a server, in words."""
+    """Return the fault in the way it gives up without a server, in words."""
     return objection(evidence.part(ABSENT), had_server(evidence), "action_client")
 
 
 def had_server(evidence: Evidence) -> list[Part]:
-    """The runs in which the client had its server."""
+    """Return the runs in which the client had its server."""
     absent = evidence.part(ABSENT)
     served = [evidence.part(name) for name in SERVED]
     elsewhere = looks_elsewhere(evidence, absent, "action_client")
@@ -222,7 +225,7 @@ def had_server(evidence: Evidence) -> list[Part]:
 
 
 def sends_the_goal(evidence: Evidence) -> Finding:
-    """In each run one goal, of the order that it was given."""
+    """Each run has one goal, of the order that the client was given."""
     wrong = goals_as_seen(evidence)
     expected = "one goal of the given order, in each run"
     return Finding(not wrong, expected, wrong or expected)
@@ -234,7 +237,7 @@ def shows_feedback(evidence: Evidence) -> Finding:
     sent, missing = part.of("feedback"), unshown_feedback(part)
     shown = len(sent) - len(missing)
     if sent and left_at_once(part, "result"):
-        # How much came before it ended is the machine's doing.
+        # The machine decides how many messages came before the client ended.
         return Finding(False, f"all {FEEDBACKS} feedback messages", "it ended before its goal did")
     return Finding(
         bool(sent) and not missing,
@@ -266,13 +269,13 @@ def reports_the_result(evidence: Evidence) -> Finding:
 
 
 def tells_of_refusal(evidence: Evidence) -> Finding:
-    """A refused goal is told, no result is asked for, and the client ends."""
+    """A refused goal is reported, no result is requested, and the client ends."""
     wrong = refused_as_seen(evidence)
     return Finding(not wrong, f"says {REJECTED} and ends", wrong or "it did")
 
 
 def returns_nothing_of_a_refused_goal(evidence: Evidence) -> Finding:
-    """As :func:`tells_of_refusal`; a function that returns has to return an empty list."""
+    """As :func:`tells_of_refusal`; a function that returns must return an empty list."""
     told = tells_of_refusal(evidence)
     returned = returned_instead(evidence.part(REFUSED), [])
     if not told.passed or not returned:
@@ -281,13 +284,13 @@ def returns_nothing_of_a_refused_goal(evidence: Evidence) -> Finding:
 
 
 def tells_of_abort(evidence: Evidence) -> Finding:
-    """An aborted goal is told, by the name or the number of its status."""
+    """An aborted goal is reported, by the name or the number of its status."""
     wrong = aborted_as_seen(evidence)
     return Finding(not wrong, f"says {WAS_ABORTED}, or `status` and 6", wrong or "it did")
 
 
 def waits_for_the_server(evidence: Evidence) -> Finding:
-    """With a server that comes late it sends its goal all the same."""
+    """The client sends its goal even if the server comes late."""
     part = evidence.part(LATE)
     wrong = "" if asked_for(part) else "no goal came"
     if not wrong and left_at_once(part):
@@ -296,10 +299,10 @@ def waits_for_the_server(evidence: Evidence) -> Finding:
 
 
 def ends_without_a_server(evidence: Evidence) -> Finding:
-    """Without a server it ends by itself and says so, or says again and again that it waits."""
+    """Without a server the client ends by itself and reports it, or says repeatedly that it waits."""
     wrong = given_up(evidence)
     return Finding(not wrong, f"says {NOT_AVAILABLE} and ends by itself", wrong or "it says so")
 
 
 may_wait_on = remark(ABSENT)
-"""A word on limits for a client that waits on."""
+"""A remark about limits for a client that keeps waiting."""

@@ -1,4 +1,4 @@
-"""The goals of an action server, of whatever type, as the judge's action client has seen them."""
+"""The goals of an action server, of any type, as the judge's action client has seen them."""
 
 from __future__ import annotations
 
@@ -29,22 +29,22 @@ STATUS = {
 
 @dataclass(frozen=True)
 class Goal:
-    """One goal, as far as it is known.
+    """Everything known about one goal.
 
     Attributes:
-        request: The fields of the goal; None where it was not sent.
-        accepted: The server's answer; None where there is none.
-        feedback: The fields of each message, in order; without those that were sent when the result had been heard.
-        sent: When each of them was sent, by their publisher's clock, in seconds of the epoch.
-        answered_at: When the server's answer to the goal was heard, by the judge's clock; None where it is not known.
-        cancel_answered_at: The same of the answer to the cancel request.
-        cancel_accepted: The answer to the cancel request; None where there is none.
-        cancelled_too_late: The answer to the cancel request was that the goal had ended.
+        request: The fields of the goal; None if it was not sent.
+        accepted: The server's answer; None if there is none.
+        feedback: The fields of each feedback message, in order, without those sent after the result was received.
+        sent: The time of sending of each of them, by the publisher's clock, in seconds of the epoch.
+        answered_at: The time at which the server's answer arrived, by the judge's clock; None if unknown.
+        cancel_answered_at: The same for the answer to the cancel request.
+        cancel_accepted: The answer to the cancel request; None if there is none.
+        cancelled_too_late: True if the answer to the cancel request was that the goal had ended.
         before_cancel: The number of feedback messages before the cancel request.
-        unread: How many feedback messages came between the cancel request and its answer.
-        seconds: Wall time from the acceptance to the result; None where one of them is missing.
-        status: The status that came with the result; None where none came.
-        result: The fields of the result; empty where none came.
+        unread: The number of feedback messages between the cancel request and its answer.
+        seconds: Wall time from the acceptance to the result; None if one of them is missing.
+        status: The status that came with the result; None if no result came.
+        result: The fields of the result; empty if no result came.
     """
 
     request: Mapping[str, Any] | None
@@ -63,21 +63,21 @@ class Goal:
 
     @property
     def over(self) -> bool:
-        """It has a result, or it was refused and gets none."""
+        """True if it has a result, or was refused and gets none."""
         return self.status is not None or self.accepted is False
 
     @property
     def pauses(self) -> tuple[float, ...]:
-        """Seconds between one feedback message and the next."""
+        """The seconds between feedback messages."""
         return tuple(after - before for before, after in pairwise(self.sent))
 
     def sent_after(self, moment: float | None) -> int:
-        """The number of feedback messages surely sent after a moment; 0 where the moment is not known."""
+        """Return the number of feedback messages certainly sent after a moment; 0 if the moment is unknown."""
         return 0 if moment is None else sum(sent > moment for sent in self.sent)
 
 
 def goal(part: Part, number: int) -> Goal:
-    """The goal of that number."""
+    """Return the goal of that number."""
     events = [event for event in part.events if event.data.get("goal") == number]
     first = {event.kind: place for place, event in reversed(list(enumerate(events)))}
     by_kind = {kind: events[place] for kind, place in first.items()}
@@ -108,10 +108,10 @@ def goal(part: Part, number: int) -> Goal:
 
 
 def all_goals(part: Part) -> list[Goal]:
-    """All goals that were sent."""
+    """Return all goals that were sent."""
     return [goal(part, int(event.data["goal"])) for event in part.of("goal_sent")]
 
 
 def status_text(number: int | None) -> str:
-    """A goal's status by name and number."""
+    """Return a goal's status as name and number."""
     return "none" if number is None else f"{STATUS.get(number, '?')} ({number})"

@@ -1,8 +1,8 @@
-"""Mistakes that a hung program's stack gives away: who waits for what, and in which thread.
+"""Mistakes recognized from a hung program's stack: which thread waits, and for what.
 
-The stack is what Python's faulthandler prints (innermost call first); the judge asks for it once a subject that should
-go on has fallen silent. From rclpy 7.1: ``Client.call`` waits in ``client.py``, the action client's blocking calls in
-``action/client.py``, ``Rate.sleep`` in ``timer.py``, callbacks run below ``executors.py``.
+The stack comes from Python's faulthandler (innermost call first). The judge requests it once a subject that should go
+on has fallen silent. In rclpy 7.1, ``Client.call`` waits in ``client.py``, the action client's blocking calls in
+``action/client.py``, ``Rate.sleep`` in ``timer.py``, and callbacks run below ``executors.py``.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _BLOCKING = {
     "action/client.py": {"send_goal", "cancel_goal", "get_result", "_cancel_goal"},
 }
 _CALLS_BACK = {("executors.py", "await_or_execute"), ("task.py", "__call__")}
-"""The functions that call a callback: of an entity, of a future."""
+"""The functions that call the callbacks of entities and futures."""
 _SPINS = {
     "spin",
     "spin_once",
@@ -37,7 +37,7 @@ _SPINS = {
 
 @dataclass(frozen=True)
 class Frame:
-    """One call: rclpy's file, or an empty text for anybody else's, the function, and the line in its file."""
+    """One call: rclpy's file, or an empty text for other files, the function, and the line in its file."""
 
     rclpy: str
     function: str
@@ -48,7 +48,7 @@ Stack = Sequence[Frame]
 
 
 def stacks(part: Part) -> list[Stack]:
-    """The stacks of the subject's threads when it hung, innermost call first."""
+    """Return the stacks of the subject's threads when it hung, innermost call first."""
     found: list[list[Frame]] = []
     for event in part.of("stack"):
         for line in str(event.data["text"]).splitlines():
@@ -69,12 +69,12 @@ def _blocks(stack: Stack) -> bool:
 
 
 def _in_callback(stack: Stack) -> bool:
-    """True if the innermost code of the student's was called by an executor."""
+    """True if an executor called the student's innermost code."""
     return any(frame.rclpy == "executors.py" for frame in stack[_innermost_own(stack) :])
 
 
 def _innermost_own(stack: Stack) -> int:
-    """The place of the innermost call of the student's; the length where there is none."""
+    """Return the index of the student's innermost call; the length of the stack if there is none."""
     own = (i for i, frame in enumerate(stack) if not frame.rclpy and frame.function != "wait")
     return next(own, len(stack))
 
@@ -89,7 +89,7 @@ def something_spins(part: Part) -> bool:
 
 
 def _spins_in_callback(stack: Stack) -> bool:
-    """True if there is a spin, code of the student's below it, and an executor below that."""
+    """True if the stack contains a spin, student's code outside it, and an executor outside that."""
     spins = [i for i, frame in enumerate(stack) if frame.rclpy and frame.function in _SPINS]
     if not spins:
         return False
@@ -102,7 +102,7 @@ def _sleeps_on_rate(stack: Stack) -> bool:
 
 
 def _stuck_callback(found: list[Stack]) -> str:
-    """The student's function that rclpy has called and that has not come back; empty where there is none."""
+    """Return the student's function that rclpy has called and that has not returned; empty if there is none."""
     for stack in found:
         for frame, caller in reversed(list(pairwise(stack))):
             if not frame.rclpy and (caller.rclpy, caller.function) in _CALLS_BACK:
@@ -111,25 +111,25 @@ def _stuck_callback(found: list[Stack]) -> str:
 
 
 def _that(found: list[Stack], waits: Callable[[Stack], bool]) -> Stack:
-    """The stack of the thread that waits in such a way, in a callback where one does; empty where none does."""
+    """Return the stack of a thread that waits like this, preferably in a callback; empty if there is none."""
     waiting = sorted(filter(waits, found), key=_in_callback, reverse=True)
     return waiting[0] if waiting else ()
 
 
 def _waiting(stack: Stack) -> str:
-    """The blocking call of rclpy that a thread waits in, as the student has written it; empty where there is none."""
+    """Return the blocking call of rclpy in which a thread waits, in the student's words; empty if there is none."""
     calls = [frame.function for frame in stack if frame.function in _BLOCKING.get(frame.rclpy, ())]
     return calls[-1] if calls else ""
 
 
 def _place(stack: Stack) -> str:
-    """The student's line that has led to a wait, in brackets; empty where there is none."""
+    """Return the student's line that led to a wait, in parentheses; empty if there is none."""
     own = stack[_innermost_own(stack) :]
     return f" (line {own[0].line}, in {own[0].function})" if own else ""
 
 
 def _executes_a_goal(stack: Stack) -> bool:
-    """True if code of the student's was called by an action server to execute a goal."""
+    """True if an action server called the student's code to execute a goal."""
     return bool(_stuck_callback([stack])) and any(frame.rclpy == "action/server.py" for frame in stack)
 
 

@@ -1,11 +1,11 @@
-"""Counts, lists, the difference of two texts, and the sentences that concern a student's kind of answer."""
+"""Counts, lists, the difference between two texts, and the sentences that concern a student's kind of answer."""
 
 from __future__ import annotations
 
 import re2
 
 SHOWN = 16
-"""Characters that are quoted behind the place where two texts differ."""
+"""The number of characters that are quoted after the position at which two texts differ."""
 _LONG_LIST = re2.compile(r"\[(-?\d+(?:, -?\d+){4}), (?:-?\d+, ){6,}(-?\d+, -?\d+)\]")
 """A list of more than a dozen numbers: its first five and its last two are kept."""
 _OF_ITS_KIND = {
@@ -19,7 +19,7 @@ def counted(number: int, thing: str) -> str:
 
 
 def first_difference(said: str, wanted: str) -> str:
-    """The place where a text stops being the one that was asked for, in a sentence; empty where they are the same."""
+    """Return, as a sentence, where a text begins to differ from the expected one; empty if they are equal."""
     if said == wanted:
         return ""
     same = said[
@@ -35,7 +35,7 @@ def _next(text: str, same: str) -> str:
 
 
 def shortened(text: str) -> str:
-    """The text with the middle of each long list of numbers left out."""
+    """Return the text without the middle of each long list of numbers."""
     return str(_LONG_LIST.sub(lambda found: f"[{found[1]}, …, {found[2]}]", text))
 
 
@@ -48,12 +48,12 @@ def visible(text: str) -> str:
 
 
 def of_its_kind(text: str, in_a_notebook: bool) -> str:
-    """The text without the sentences for the other kind of answer.
+    """Return the text without the sentences for the other kind of answer.
 
     Args:
-        text: A sentence of it that begins with ``In a notebook,`` is for those who work in one, and a sentence that
-            begins with ``In a program,`` for those who have written a program.
-        in_a_notebook: Whether the answer is a class or a function of a notebook.
+        text: A sentence of it that begins with ``In a notebook,`` is for students with a notebook; one that begins
+            with ``In a program,`` is for students with a program.
+        in_a_notebook: True if the answer is a class or a function of a notebook.
     """
     other = _OF_ITS_KIND["program" if in_a_notebook else "notebook"]
     return str(other.sub(r"\1", text)).strip()

@@ -1,6 +1,6 @@
-"""Mistakes that a traceback of rclpy gives away: pattern, cause, next step.
+"""Mistakes recognized from a traceback of rclpy: pattern, cause, next step.
 
-The patterns are what rclpy 7.1 and Python say; each was reproduced. The order matters: the first that fits wins.
+The patterns match messages of rclpy 7.1 and Python; each was reproduced. The order matters: the first match wins.
 """
 
 from __future__ import annotations
@@ -33,15 +33,15 @@ NOT_SPUN_WHILE_CALLING = (
     "rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0) spins the node while it waits. Or spin "
     "the node in the background while you use call."
 )
-"""What to do where a call waits for its answer, and nothing spins its node."""
+"""The advice if a call waits for its answer, and its node is not spun."""
 
 _CALLED_BY_RCLPY = (
     r"(?:\A|rclpy/(?:executors|task|event_handler|action/client|action/server)\.py\".*\n(?: .*\n){1,2})"
 )
-"""Before what is raised where rclpy calls a callback; a notebook's traceback leaves rclpy's own lines out."""
+"""Precedes an error raised where rclpy calls a callback; a notebook's traceback omits rclpy's own lines."""
 _UNKNOWN_KEYWORD = r"Invalid arguments passed to constructor: '?(?P<keyword>\w+(?:, \w+)*)"
 _CALLED = r"\n(?: .*\n)*"
-"""From a line of code to what Python says of it: a program's traceback has the lines of the message's own module."""
+"""From a line of code to Python's message about it: a program's traceback has lines of the message's own module."""
 
 KNOWN = (
     Crash(
@@ -58,7 +58,7 @@ KNOWN = (
     ),
     Crash(
         ASKS_FOR_INPUT.key,
-        # In a class's kernel; in a program, whose standard input is empty.
+        # In a class's kernel; and in a program, whose standard input is empty.
         r"^(?:IPython\.core\.error\.)?StdinNotImplementedError\b|^EOFError: EOF when reading a line",
         ASKS_FOR_INPUT.text,
         ASKS_FOR_INPUT.next_step,
@@ -66,7 +66,7 @@ KNOWN = (
     Crash(
         "not_initialized",
         r"NotInitializedException|rclpy\.init has not been called|context (?:must be initialized|is not valid)"
-        # An executor that was made before: spinning makes one.
+        # For an executor that was made before; spinning makes one.
         r"|guard_condition\.py\".*\n.*self\._context\.handle",
         "The node was made before ROS was started, or after it was shut down.",
         "In a notebook, call start_ros() before you make a node. In a program, call rclpy.init() before you make "
@@ -195,7 +195,7 @@ KNOWN = (
     ),
     Crash(
         "callback_signature",
-        # What each node has, and no message.
+        # Attributes that each node has and no message has.
         rf"\bself\.(?:get_logger|get_clock|create_\w+)\b.*{MARKS}AttributeError: '(?P<type>String|Twist|U?Int\d+"
         r"|\w+_(?:Request|Response|Goal|FeedbackMessage)|ServerGoalHandle|Future)' object has no attribute "
         r"'(?:get_logger|get_clock|create_\w+)'",
@@ -236,7 +236,7 @@ KNOWN = (
     ),
     Crash(
         "callback_returned_none",
-        # A notebook leaves rclpy's own lines out, so that nothing but the last line is there.
+        # A notebook omits rclpy's own lines, so only the last line is left.
         r"(?:rclpy/service\.py\".* in send_response|service_send_response)(?:.*\n)+TypeError|\A\s*TypeError\s*\z",
         "A service callback returned no response: nothing at all, a field of it, or a type without parentheses.",
         "End the callback with `return` and the whole response that it was given, such as `return response`.",

@@ -1,8 +1,8 @@
 """A client's patience: with a server that comes late, and with answers that take a moment.
 
-On a quiet machine everything is there in milliseconds, and who hardly waits is as right as who does. So the judge
-takes its time, as a server on a robot may: long enough to tell the two apart, and well below the few seconds that a
-client has to allow for. Where a person waits beside a check cell, an answer takes less.
+On a quiet machine everything is available in milliseconds, so a client that hardly waits looks as right as one that
+waits. So the judge is slow, as a server on a robot may be: slow enough to tell the two apart, and much faster than
+the few seconds that a client must allow for. If a person waits for a check cell, answers come sooner.
 """
 
 from __future__ import annotations
@@ -20,23 +20,28 @@ if TYPE_CHECKING:
     from autograder.kit.model import Bench, Mistake
 
 SOON = 0.3
-"""Seconds that a server comes late after a client that has missed it by a moment."""
+"""Seconds by which a server comes late for a client that has just missed it."""
 ANSWERS_LATE, ANSWERS_SOON = 0.7, 0.12
-"""Seconds that an answer is held back; fewer where a person waits, and for a client that has just missed one. Neither
-is a limit that programs are given, such as half a second."""
+"""Seconds that an answer is held back; fewer if a person waits, and for a client that has just missed an answer.
+
+Neither is a usual limit in programs, such as half a second.
+"""
 PATIENT_WITH_AN_ANSWER = 0.9
-"""Seconds after which a client that has given up on an answer was patient: on a busy machine it may have missed it."""
+"""Seconds after which a client that gave up on an answer was patient: on a busy machine it may have missed the
+answer.
+"""
 PATIENT_WITH_A_RESULT = 4.0
-"""The same for the result of a goal, whose feedback takes longer on a busy machine: between the 3 and the 5 seconds for
-which many a client waits."""
+"""The same for the result of a goal, whose feedback takes longer on a busy machine: between the 3 and the 5 seconds
+that many clients wait.
+"""
 TRIES = 3
-"""The number of times that such a client is started again: a slow machine may miss what comes soon."""
+"""The number of times that such a client is started again: a slow machine may miss even an early answer."""
 PATIENT = 1.2
-"""Seconds after which a client that has given up was patient: it may have missed the server by a moment."""
+"""Seconds after which a client that gave up was patient: it may have missed the server by a moment."""
 
 
 def answers_late(bench: Bench) -> float:
-    """Seconds that an answer is held back."""
+    """Return the seconds that an answer is held back."""
     return ANSWERS_SOON if bench.in_a_cell else ANSWERS_LATE
 
 
@@ -78,18 +83,18 @@ def was_patient(part: Part) -> bool:
 
 
 def was_patient_with_an_answer(part: Part, requests: Sequence[str]) -> bool:
-    """True if a client that ended had waited for the answer to its last request as long as anybody may ask.
+    """True if a client that ended had waited long enough for the answer to its last request.
 
     Args:
         part: What was seen of the client.
-        requests: The kinds of the requests whose answers are held back.
+        requests: The event kinds of the requests whose answers are held back.
     """
     request = next((event for event in reversed(part.events) if event.kind in requests), None)
     return _waited_since(part, request, PATIENT_WITH_AN_ANSWER)
 
 
 def missed_a_result(part: Part) -> bool:
-    """True if a client that ended before its goal did had waited for the result as long as anybody may ask."""
+    """True if a client that ended before its goal did had waited long enough for the result."""
     result, ending = part.first("result"), part.ending
     missed = ending is not None and (result is None or ending.t <= result.t)
     return missed and _waited_since(part, part.first("result_request"), PATIENT_WITH_A_RESULT)
@@ -98,23 +103,23 @@ def missed_a_result(part: Part) -> bool:
 def _waited_since(part: Part, beginning: Event | None, seconds: float) -> bool:
     if beginning is None or part.ending is None:
         return False
-    # A process may take its time to end; what it says of its end comes before that.
+    # A process may take time to end; its last words come before that.
     last = next((event for event in reversed(part.events) if event.kind in ("output", "log")), part.ending)
     return last.t - beginning.t >= seconds
 
 
 def await_goal(bench: Bench, server: ActionCounterpart, within: float) -> bool:
-    """Wait for the subject's goal, and ask the subject's node something else while the answer is held back.
+    """Wait for the subject's goal, and send the subject's node another request while the answer is held back.
 
-    Any node on the graph may do so: a client that takes the first event for the answer is right only by chance.
+    Any node on the graph may do so: a client that takes the first event for its answer is right only by chance.
 
     Args:
-        bench: Where it happens.
+        bench: The bench of the scenario.
         server: The judge's server.
-        within: Seconds that the goal may take.
+        within: The time limit for the goal, in seconds.
 
     Returns:
-        Whether the goal came and was answered.
+        True if the goal came and was answered.
     """
     came = bench.wait_until(lambda evidence: bool(evidence.main.of("goal")), within)
     if came:
@@ -125,7 +130,7 @@ def await_goal(bench: Bench, server: ActionCounterpart, within: float) -> bool:
 def hold_back(bench: Bench, kind: str) -> None:
     """Let time pass until the first event of a kind, a request, is as old as an answer that is held back.
 
-    It takes longer while the machine is crowded: a subject that hardly waits needs time to say so.
+    It takes longer on a busy machine: a subject that hardly waits needs time to report that.
     """
     seen = bench.seen()
     request = seen.first(kind)
@@ -136,17 +141,17 @@ def hold_back(bench: Bench, kind: str) -> None:
 def again_while(
     bench: Bench, missed: Callable[[Part], bool], meet: Callable[[], bool], done: bool, times: int = TRIES
 ) -> bool:
-    """Start a subject again while it has missed something that it waited for.
+    """Start a subject again as long as it has just missed something that it waited for.
 
     Args:
-        bench: Where it happens.
-        missed: Whether it has, by what was seen of its last run.
-        meet: One more run; whether the subject came to an end of its work.
-        done: Whether it did in the run before.
-        times: How often at most.
+        bench: The bench of the scenario.
+        missed: Returns True if it has, from the record of its last run.
+        meet: Makes one more run; returns True if the subject finished its work.
+        done: True if it finished its work in the run before.
+        times: The most runs to make.
 
     Returns:
-        Whether it did in the last run.
+        True if it finished its work in the last run.
     """
     for _ in range(times):
         if not done or not missed(bench.seen()):
@@ -162,18 +167,18 @@ def _missed(request: str) -> Callable[[Part], bool]:
 
 
 def meets_late(bench: Bench, meet: Callable[[float], bool], role: str, request: str) -> bool:
-    """Have the subject meet a server that comes late; again, with less, where a patient one just missed it.
+    """Let the subject meet a late server; again, with shorter delays, if a patient subject just missed it.
 
-    What a client asks that dies in the same moment may be lost, too.
+    A request that a client sends in the moment in which it ends may be lost, too.
 
     Args:
-        bench: Where it happens.
-        meet: One run: how many seconds the server comes late. Whether the subject came to an end of its work.
-        role: Of the subject's endpoint, such as ``client``.
-        request: The kind of the event with which it asks the server.
+        bench: The bench of the scenario.
+        meet: Makes one run with a server this many seconds late; returns True if the subject finished its work.
+        role: The role of the subject's endpoint, such as ``client``.
+        request: The event kind of its request to the server.
 
     Returns:
-        Whether it came to an end of its work in the last run.
+        True if the subject finished its work in the last run.
     """
 
     def sooner() -> bool:
@@ -181,22 +186,22 @@ def meets_late(bench: Bench, meet: Callable[[float], bool], role: str, request: 
 
     done = again_while(bench, _missed(request), sooner, meet(LATENESS), 1)
     name, _ = bench.reference.only(role)
-    # Who waits for another server would only wait once more.
+    # A client that waits for another server would only wait once more.
     times = TRIES - 1 if name in bench.seen().endpoints(role) else 0
     return again_while(bench, _missed(request), sooner, done, times)
 
 
 def meets_late_action(bench: Bench, meet: Callable[[float, float], bool], requests: Sequence[str]) -> bool:
-    """Have the subject meet an action server that comes late; again, with less, where a patient one just missed it.
+    """Let the subject meet a late action server; again, with shorter delays, if a patient subject just missed it.
 
     Args:
-        bench: Where it happens.
-        meet: One run: how many seconds the server comes late, how many an answer is held back. Whether the subject
-            came to an end of its work.
-        requests: The kinds of the requests whose answers are held back.
+        bench: The bench of the scenario.
+        meet: Makes one run, given the seconds by which the server is late and an answer is held back; returns True if
+            the subject finished its work.
+        requests: The event kinds of the requests whose answers are held back.
 
     Returns:
-        Whether it did in the last run.
+        True if the subject finished its work in the last run.
     """
     held = answers_late(bench)
     done = meets_late(bench, lambda lateness: meet(lateness, held), "action_client", "goal")
@@ -210,21 +215,21 @@ def meets_late_action(bench: Bench, meet: Callable[[float, float], bool], reques
 def meets_present(
     bench: Bench, meet: Callable[[], bool], request: str, *, known: bool, wanted: int = 1
 ) -> bool:
-    """Have the subject meet a server that is there; again where one that knows how to ask it ended without asking.
+    """Let the subject meet an available server; again if a client that can call it ended without calling.
 
-    What a client asks that ends in the same moment is lost now and then: it is started again once. On a very busy
-    machine a client may take longer to hear of its server than it waits for it: a patient one is started again and
-    again.
+    A request that a client sends in the moment in which it ends is sometimes lost, so the client is started once
+    more. On a very busy machine a client may wait for a shorter time than it needs to discover its server; a patient
+    client is started several times.
 
     Args:
-        bench: Where it happens.
-        meet: One run; whether the subject came to an end of its work.
-        request: The kind of the event with which it asks the server.
-        known: Whether it has asked a server in an earlier run. One that never asks is not started again.
-        wanted: How many requests it is to send.
+        bench: The bench of the scenario.
+        meet: Makes one run; returns True if the subject finished its work.
+        request: The event kind of its request to the server.
+        known: True if the subject has called a server in an earlier run. One that never calls is not started again.
+        wanted: The number of requests that it should send.
 
     Returns:
-        Whether it came to an end of its work in the last run.
+        True if the subject finished its work in the last run.
     """
 
     def asked_too_little(seen: Part) -> bool:

@@ -1,4 +1,4 @@
-"""A launch's report to the judge on its processes: one line of JSON each, among its other output."""
+"""A launch's report to the judge about its processes: one line of JSON for each, among its other output."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ class Process:
     """A process below a launch.
 
     Attributes:
-        pid: Its id, as it sees it itself.
-        parent: The id of the process that started it, in the same way.
+        pid: The process id that the process itself sees.
+        parent: The id of the process that started it, likewise.
         argv: Its command line.
     """
 
@@ -30,12 +30,12 @@ class Process:
 
 
 def process_line(process: Process) -> str:
-    """The line that travels."""
+    """Return the line of the report."""
     return MARK + json.dumps([process.pid, process.parent, *process.argv], ensure_ascii=False)
 
 
 def processes(part: Part) -> list[Process]:
-    """The processes that a launch started; one that became another program has an entry for each."""
+    """Return the processes that a launch started; one that became another program has an entry for each."""
     texts = [str(event.data["text"]) for event in part.of("output")]
     found = [_parsed(text[len(MARK) :]) for text in texts if text.startswith(MARK)]
     return [process for process in found if process is not None]
@@ -53,15 +53,15 @@ def _parsed(text: str) -> Process | None:
 
 
 def remappings(argv: Sequence[str]) -> list[tuple[str, str]]:
-    """The rules ``from:=to`` that a command line hands to its node."""
+    """Return the rules ``from:=to`` that a command line passes to its node."""
     return [(old, new) for _, old, new in placed_remappings(argv)]
 
 
 def placed_remappings(argv: Sequence[str]) -> list[tuple[range, str, str]]:
-    """The rules ``from:=to`` of a command line, each with the places of its words.
+    """Return the rules ``from:=to`` of a command line, each with the indexes of its words.
 
-    Behind ``--ros-args`` a rule follows ``-r`` or ``--remap``. Elsewhere a word alone is one: rcl calls that form
-    deprecated, and obeys it (rcl/arguments.h).
+    After ``--ros-args`` a rule follows ``-r`` or ``--remap``. Elsewhere a single word is a rule: rcl calls that form
+    deprecated, but obeys it (rcl/arguments.h).
     """
     found, of_ros = [], False
     for place, word in enumerate(argv):

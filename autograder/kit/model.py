@@ -1,8 +1,8 @@
-"""The parts of an exercise: plain data, and the words in which a scenario is written.
+"""The parts of an exercise: plain data, and the methods with which a scenario is written.
 
-An exercise module says what to stimulate (a scenario), what must hold (criteria) and which mistakes are known
-(mistakes). It drives the judge through the :class:`Bench` protocol and never imports it, so that an exercise
-reads like its specification and can be tested without ROS.
+An exercise module defines what the judge does (a scenario), what must hold (criteria) and known mistakes (mistakes).
+It drives the judge through the :class:`Bench` protocol and never imports it, so that an exercise reads like its
+specification and can be tested without ROS.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ if TYPE_CHECKING:
 
 
 STEP = 0.05
-"""Simulated seconds that pass at once where a scenario does not say more: small beside any period of the course."""
+"""Simulated seconds in one step if the scenario gives no other number: short compared with any period in the course."""
 
 
 class Pace(StrEnum):
-    """The kind of time in which the judge looks at a subject."""
+    """The kind of time in which the judge observes a subject."""
 
     FAST = "fast"
-    """Simulated time is stepped where the subject follows it; counterparts answer as fast as they can."""
+    """Simulated time is stepped if the subject follows it; counterparts answer as fast as they can."""
     REAL_TIME = "real time"
-    """Everything at the pace that the task names. What fails fast is looked at again so."""
+    """Everything happens at the task's pace. A subject that fails fast is observed again like this."""
 
 
 @dataclass(frozen=True)
@@ -44,12 +44,12 @@ class Finding:
 
 @dataclass(frozen=True)
 class Criterion:
-    """One thing that is asked for.
+    """One requirement.
 
     Attributes:
         name: A stable key.
-        title: One line for a person.
-        points: Points it carries.
+        title: A one-line name for people.
+        points: The points for it.
         judge: Decides from the evidence; called once, after the scenario has ended.
     """
 
@@ -61,12 +61,12 @@ class Criterion:
 
 @dataclass(frozen=True)
 class Advice:
-    """The words of a recognised mistake to the student.
+    """The message to the student about a recognized mistake.
 
     Attributes:
         text: What happened and why.
         next_step: What to do now.
-        traceback: The one that it was told from, which the card shows; empty where it was told from anything else.
+        traceback: The traceback that shows the mistake, for the card; empty if something else showed it.
     """
 
     text: str
@@ -76,13 +76,13 @@ class Advice:
 
 @dataclass(frozen=True)
 class Mistake:
-    """A known mistake and how to recognise it.
+    """A known mistake, and how to recognize it.
 
     Attributes:
         key: A stable name, listed in ``docs/mistakes.md``.
-        recognise: Gives the advice where the evidence shows this mistake, else None.
-        certain: The evidence proves the failure whatever the machine's load was, so a second look in real
-            time would only cost the student time.
+        recognise: Returns the advice if the evidence shows this mistake, else None.
+        certain: True if the evidence proves the failure whatever the machine's load was, so that a second look in
+            real time would only cost time.
     """
 
     key: str
@@ -93,14 +93,14 @@ class Mistake:
 def mistake(
     key: str, found: Callable[[Evidence], object], text: str, next_step: str, *, certain: bool = False
 ) -> Mistake:
-    """A known mistake that is told in two sentences.
+    """Make a known mistake that is described in two sentences.
 
     Args:
         key: A stable name, listed in ``docs/mistakes.md``.
-        found: Gives what shows the mistake; anything that is false where the evidence does not show it.
-        text: What happened and why; ``{}`` stands for what was found, ``{0[1]}`` for a part of it.
-        next_step: What to do now, with the same places.
-        certain: The evidence proves the failure whatever the machine's load was.
+        found: Returns what shows the mistake; anything false if the evidence does not show it.
+        text: What happened and why; ``{}`` stands for the value that was found, ``{0[1]}`` for a part of it.
+        next_step: What to do now, with the same placeholders.
+        certain: True if the evidence proves the failure whatever the machine's load was.
     """
 
     def recognise(evidence: Evidence) -> Advice | None:
@@ -111,26 +111,26 @@ def mistake(
 
 
 class Bench(Protocol):
-    """The words of a scenario. Every wait ends at an event or at its limit, and says which."""
+    """The methods of a scenario. Every wait ends at an event or at its limit, and returns which."""
 
     pace: Pace
     before: Evidence | None
-    """In a second look: what the first one brought."""
+    """In a second look: the result of the first one."""
     random: Random
     reference: Any
     in_a_cell: bool
-    """True if the subject runs in a notebook's kernel, so that somebody may be waiting beside the check cell."""
+    """True if the subject runs in a notebook's kernel, so that a student may be waiting for the check cell."""
 
     def part(self, name: str, **inputs: Any) -> None:
         """Begin a part: a fresh run of the subject; ``inputs`` are written into the transcript."""
 
     def again(self) -> None:
-        """Begin the last part anew: a fresh run, and what was seen of the first one does not count."""
+        """Begin the last part again: a fresh run; the record of the first one does not count."""
 
     def keep(self, name: str) -> bool:
-        """In a second look: take over a part of the first one in which the subject came to its own end.
+        """In a second look: reuse a part of the first look in which the subject ended by itself.
 
-        For parts in which nothing depends on the pace. False where there is nothing to take over, where the subject was
+        For parts in which nothing depends on the pace. Return False if there is no such part, or if the subject was
         told how long to wait.
         """
 
@@ -142,13 +142,13 @@ class Bench(Protocol):
         """
 
     def release(self) -> None:
-        """Let a held subject spin. Does nothing for a subject that runs already."""
+        """Let a held subject spin; does nothing if the subject runs already."""
 
     def await_endpoint(self, role: str, name: str) -> bool:
         """Wait until the subject's endpoint is on the graph and matched.
 
-        Gives up at once when the subject has ended or is known to have made all it makes. A held subject that may make
-        it in a callback is released for that.
+        Gives up at once when the subject has ended or is known to have made all its endpoints. If a held subject may
+        make the endpoint in a callback, it is released.
 
         Args:
             role: ``"publisher"``, ``"subscription"``, ``"client"``, ``"action_client"``, ``"service"`` or
@@ -157,10 +157,10 @@ class Bench(Protocol):
         """
 
     def await_node(self) -> bool:
-        """Wait until a node of the subject's is on the graph; whether there is one, or was in a subject that ended."""
+        """Wait for a node of the subject on the graph. Return True if there is one, or was in a subject that ended."""
 
     def await_sign_of_life(self, within: float) -> bool:
-        """Wait until the subject has said something or has a node on the graph; nothing is written down.
+        """Wait until the subject has said something or has a node on the graph; nothing is recorded.
 
         Args:
             within: Seconds of wall time at most; gives up earlier when the subject has ended.
@@ -172,8 +172,8 @@ class Bench(Protocol):
         Args:
             topic: The full name.
             type_name: Such as ``"std_msgs/msg/String"``.
-            latched: Ask for what was published before, too (transient local). A publisher that keeps nothing for late
-                listeners is not heard at all then, and the mismatch is written down.
+            latched: True to request earlier messages, too (transient local). Then a publisher that keeps nothing for
+                late subscribers is not heard at all, and the mismatch is recorded.
         """
 
     def speak(self, topic: str, type_name: str) -> Speaker:
@@ -187,20 +187,20 @@ class Bench(Protocol):
         *,
         hold: int = 0,
     ) -> Server:
-        """Serve; each request and response goes into the transcript.
+        """Serve; each request and response is recorded.
 
         Args:
             service: The full name.
             type_name: Such as ``"std_srvs/srv/Empty"``.
-            answer: From the request's fields to the response's.
-            hold: Which request's answer is held back until it is released, from 1 on; 0 for none.
+            answer: Returns the response's fields for the request's fields.
+            hold: The number, from 1, of the request whose answer is held back until it is released; 0 for none.
         """
 
     def call(self, service: str, type_name: str) -> Caller:
-        """Be a client of the subject's service; each call and answer goes into the transcript."""
+        """Make a client for the subject's service; each call and answer is recorded."""
 
     def call_action(self, action: str, type_name: str) -> ActionCaller:
-        """Be a client of the subject's action; each goal and what comes back goes into the transcript."""
+        """Make a client for the subject's action; each goal and everything that comes back is recorded."""
 
     def serve_action(
         self,
@@ -214,48 +214,48 @@ class Bench(Protocol):
     ) -> ActionCounterpart:
         """Serve an action whose every step the scenario decides.
 
-        The answers to goals and cancel requests are sent so many seconds of wall time after the requests.
+        The answers to goals and cancel requests are sent this many seconds of wall time after the requests.
         """
 
     def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> None:
-        """Put a node of the judge's on the graph for the subject to look at; ``{topic: type}`` for each side."""
+        """Put a node of the judge on the graph for the subject to look at; ``{topic: type}`` for each side."""
 
     def compare_type(self, service: str, like: str) -> None:
-        """Write down whether the type of a service of the subject's has the fields of the type ``like``."""
+        """Record whether the subject's service type has the fields of the type ``like``."""
 
     def note_its_log(self) -> None:
-        """Write down each text of its log once, for the reference output."""
+        """Record each different text of its log once, for the reference output."""
 
     def seen(self) -> Part:
-        """The events of this part so far."""
+        """Return the events of this part so far."""
 
     def heard(self, topic: str) -> int:
-        """The number of messages that arrived on a topic so far in this part."""
+        """Return the number of messages that arrived on a topic so far in this part."""
 
     def doubt(self) -> None:
-        """Have this look confirmed in real time."""
+        """Require that this look is confirmed in real time."""
 
     def settle(self) -> None:
-        """Wait until the subject's executors have taken what was sent to them, as far as they turn at all.
+        """Wait until the subject's executors have taken what was sent to them, if they still spin.
 
         Without it a busy machine would make a quick subject look slow.
         """
 
     def await_attention(self) -> None:
-        """Wait until the nodes that the judge speaks to are spun and know that it does.
+        """Wait until the nodes that the judge publishes to are spun and have discovered the judge.
 
-        A best-effort subscription loses what is sent before its own side knows the publisher, however long the
-        publisher's side has known it.
+        A best-effort subscription loses messages until its own side has discovered the publisher, however long the
+        publisher has known the subscription.
         """
 
     def note_whether_it_spins(self) -> None:
-        """Ask the subject's nodes something that any spun node answers; write down when one does not.
+        """Send the subject's nodes a request that any spun node answers; record if one does not answer.
 
-        Where one does not, the subject is asked where it hangs, which ends a command.
+        In that case the subject is asked for its stacks, which ends a command.
         """
 
     def note_where_it_hangs(self) -> None:
-        """Write down where the subject's threads are. This ends a command; to be asked last in a part."""
+        """Record the stacks of the subject's threads. This ends a command, so do it last in a part."""
 
     def run_time(
         self,
@@ -265,26 +265,26 @@ class Bench(Protocol):
         quiet: float | None = None,
         step: float = STEP,
     ) -> bool:
-        """Let ``seconds`` of the subject's time pass: simulated ones where it follows, else real ones.
+        """Let ``seconds`` of the subject's time pass: simulated time if it follows, else real time.
 
         Args:
-            seconds: At most so long.
-            until: Stop when this holds.
-            quiet: In real time, stop when nothing at all happened for so many seconds.
-            step: Simulated seconds that pass at once. A timer with a shorter period is called once a step, so times
-                are seen to this precision; each step costs a few milliseconds of the subject's and of the judge's.
+            seconds: The most seconds to pass.
+            until: Stop when this returns True.
+            quiet: In real time, stop when nothing at all happened for this many seconds.
+            step: Simulated seconds in one step. A timer with a shorter period is called once a step, so times have
+                this precision; each step costs a few milliseconds on both sides.
 
         Returns:
-            False where simulated time could not go on, because the subject's executor does not turn any more.
+            False if simulated time could not go on, because the subject's executor no longer spins.
         """
 
     def pass_time(self, seconds: float, role: str, name: str) -> None:
-        """Let ``seconds`` pass for a subject that lives in real time, so that its timers do what they would do later.
+        """Let ``seconds`` pass for a subject in real time, so that its timers do now what they would do later.
 
-        Its clock is simulated meanwhile, and its own again afterwards; where it does not follow, the time is real.
+        Its clock is simulated meanwhile, and real again afterwards; if it does not follow, the time is real.
 
         Args:
-            seconds: Of the subject's time.
+            seconds: Seconds of the subject's time.
             role: With ``name``: the endpoint whose node is meant.
             name: The full name of a topic, service or action.
         """
@@ -295,58 +295,58 @@ class Bench(Protocol):
         """Wait for something in the evidence of this part; gives up when the subject has ended.
 
         Args:
-            condition: What to wait for.
-            within: Seconds of wall time at most.
-            quiet: Give up earlier when nothing at all happened for so many seconds.
+            condition: Returns True when the wait is over.
+            within: The limit in seconds of wall time.
+            quiet: Give up earlier when nothing at all happened for this many seconds.
         """
 
     def let_wait(self, seconds: float) -> None:
-        """Let the subject wait ``seconds`` of wall time for a server that comes late, or until the subject ends."""
+        """Let the subject wait ``seconds`` of wall time for a late server, or until the subject ends."""
 
     def watch_graph(self, condition: Callable[[Evidence], bool], within: float) -> bool:
-        """The same for what the graph tells of, which is asked again and again: endpoints, and whose they are."""
+        """Wait likewise for something on the graph, which is polled: endpoints, and the nodes that own them."""
 
     def press_ctrl_c(self, within: float) -> bool:
-        """Press Ctrl-C, as in the subject's terminal, and wait until it has ended.
+        """Press Ctrl-C, as in the subject's terminal, and wait until the subject has ended.
 
         Args:
-            within: Seconds of wall time at most.
+            within: The limit in seconds of wall time.
 
         Returns:
-            Whether it ended by that; False also where it had ended before, and then nothing is pressed.
+            True if Ctrl-C ended it; False also if it had ended before, in which case nothing is pressed.
         """
 
     def await_end(self, within: float) -> bool:
         """Wait until the subject has ended by itself, at most ``within`` seconds of wall time."""
 
     def stop(self) -> None:
-        """End the subject and take away what the judge put up for this part."""
+        """End the subject and remove what the judge made for this part."""
 
 
 @dataclass(frozen=True)
 class Exercise:
-    """One graded behaviour.
+    """One graded behavior.
 
     Attributes:
         id: Such as ``"lab_1_2.talker"``.
-        title: Its name for a person.
-        task: One sentence: what is asked for.
+        title: The name for people.
+        task: One sentence that states the task.
         scenario: Drives the bench through all parts.
-        criteria: What must hold, in the order of the card.
+        criteria: The requirements, in the order of the card.
         mistakes: Known mistakes, most telling first.
-        text: What the text of the task says, sentence by sentence -> the names of the criteria that judge it, with
-            blanks between them. A demand that no criterion judges is called not graded in the list below the task.
-        remarks: What is worth a word on the card and costs no points; each gives a sentence, or an empty text.
-        roles: The endpoints that make up the subject's public face, such as ``("publisher",)``; `record` waits for one.
-        limit: Seconds of wall time after which the judge gives up on a check, all looks together. A command, which may
-            build first, has more (`autograder/judge/subjects/command.py`).
-        arguments: What a command is called with, in words; empty where it takes none.
-        sample_arguments: Arguments with which ``record`` looks at the reference solution's interface.
-        second_look: Whether what fails fast is looked at again in real time.
-        runner: What `autograder.workspaces` does with a path that is given in place of a command; None where a path
-            is no subject.
-        wraps_commands: Whether commands are run by that runner too.
-        recorded: The kinds of events that a reference output keeps; None for all that it keeps of any exercise.
+        text: The sentences of the task's text -> the names of the criteria that judge them, separated by blanks. A
+            requirement that no criterion judges is listed as not graded below the task.
+        remarks: Functions for remarks on the card that cost no points; each returns a sentence, or an empty text.
+        roles: The roles of the subject's endpoints, such as ``("publisher",)``; `record` waits for one of them.
+        limit: Seconds of wall time after which the judge gives up on a check, all looks together. A command, which
+            may build first, has more (`autograder/judge/subjects/command.py`).
+        arguments: A command's arguments, in words; empty if it takes none.
+        sample_arguments: Arguments with which ``record`` starts the reference solution to see its interface.
+        second_look: True if a subject that fails fast is observed again in real time.
+        runner: What `autograder.workspaces` does with a path given instead of a command; None if a path cannot be a
+            subject.
+        wraps_commands: True if commands are run by that runner, too.
+        recorded: The kinds of events that a reference output keeps; None for the kinds that every exercise keeps.
     """
 
     id: str

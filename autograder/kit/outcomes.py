@@ -25,7 +25,7 @@ _STATUS = re2.compile(r"(?i)status")
 _STATUS_NUMBER = re2.compile(r"(^\D*|[:=]\s*|\bis )([0-6])\b")
 """A number behind the word ``status``: the first one, or one behind a colon or an equals sign, or behind ``is``."""
 _NUMBERS = re2.compile(r"[\pL\pN_.+-]*\pN[\pL\pN_.+-]*|[\[\](){},;\s]+")
-"""Numbers, words with a digit in them (such as a goal's id), and what stands between the numbers of a list."""
+"""Numbers, words with a digit in them (such as a goal's id), and separators between the numbers of a list."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,8 @@ class Outcome:
     """An outcome, with the word that the task names for it.
 
     Attributes:
-        word: The word; capitals do not matter. The number of a goal's status behind the word ``status`` is as good.
+        word: The word; upper or lower case does not matter. A goal's status number after the word ``status`` also
+            counts.
         other: Another spelling, or a second word that the task names.
     """
 
@@ -54,13 +55,13 @@ class Outcome:
 
         Args:
             part: The run that ended with this outcome.
-            others: Runs that ended otherwise.
+            others: Runs with another outcome.
         """
         usual = shapes(others)
         return next((line for line in self.lines(part) if shape(line) not in usual), "")
 
     def missing(self, part: Part, others: Sequence[Part]) -> str:
-        """Return what was said in place of a report, in words for the card; empty if the outcome is reported."""
+        """Return what was said instead of a report, in words for the card; empty if the outcome is reported."""
         if self.reported(part, others):
             return ""
         if told := self.lines(part):
@@ -72,7 +73,7 @@ class Outcome:
 
         Args:
             part: The run that ended with this outcome.
-            others: Runs that ended otherwise.
+            others: Runs with another outcome.
             what: What happened in the run, in a clause such as ``"The goal was rejected"``.
             next_step: What to do about it.
         """
@@ -86,7 +87,7 @@ class Outcome:
         return Advice(f"{what}, and {says}.", next_step)
 
     def __str__(self) -> str:
-        """The word as the card names it."""
+        """The word as the card shows it."""
         return f"the word{'s' * (' ' in self.word)} `{self.word}`"
 
 
@@ -115,7 +116,7 @@ def _with_status_names(line: str) -> str:
 
 
 def _most_telling(part: Part, others: Sequence[Part]) -> str:
-    """The last line with words that other runs do not have, else the last line with words."""
+    """Return the last line with words that other runs do not have, else the last line with words."""
     lines = [line for line in all_lines(part) if re2.search(r"\pL", line) and line != "None"]
     usual = shapes(others)
     new = [line for line in lines if shape(line) not in usual]

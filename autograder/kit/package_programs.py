@@ -1,4 +1,4 @@
-"""A package's programs, as they are known: built or not, and the modules of their entry points."""
+"""A package's programs, as reported before and after the build, and the modules of their entry points."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ if TYPE_CHECKING:
     from autograder.kit.workspace_report import PackageReport, WorkspaceReport
 
 BEGINNING = {Pace.FAST: 4.0, Pace.REAL_TIME: 15.0}
-"""Seconds of wall time in which a program or its build must have said its first word."""
+"""Seconds of wall time within which a program or its build must print its first line."""
 
 
 @dataclass(frozen=True)
 class Entry:
-    """The entry point that a task asks for.
+    """The entry point that a task requires.
 
     Attributes:
         package: The package.
         program: The program, as ``ros2 run`` knows it.
-        file: The name of its file without ``.py``; that of the program where it is empty.
+        file: The name of its file without ``.py``; empty if it is the program's name.
     """
 
     package: str
@@ -42,7 +42,7 @@ class Entry:
 
     @property
     def line(self) -> str:
-        """Its line in setup.py."""
+        """The entry point's line in setup.py."""
         return f"'{self.program} = {self.package}.{self.module}:main'"
 
 
@@ -50,20 +50,20 @@ FORM = "a string of this form: executable = package.module:function, with no sla
 
 
 def await_build(bench: Bench) -> None:
-    """Wait until the workspace of a subject that was just started is built, where it is one."""
-    # A command may say nothing while it waits for the judge: nobody must wait for its words then.
+    """Wait until the workspace of a subject that was just started is built, if it is one."""
+    # A command may print nothing while it waits for the judge, so this wait has a limit.
     bench.await_sign_of_life(BEGINNING[bench.pace])
     if bench.wait_until(lambda evidence: report_of(evidence.main, "found") is not None, 0.0):
         bench.wait_until(lambda evidence: report_of(evidence.main) is not None, BUILDING)
 
 
 def package_of(report: WorkspaceReport | None, name: str) -> PackageReport | None:
-    """The package of that name; None where it is not in the workspace, or there is no workspace."""
+    """Return the package of that name; None if it is not in the workspace, or there is no workspace."""
     return next((package for package in report.packages if package.name == name), None) if report else None
 
 
 def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
-    """The package is there, and its setup.py does not name the program, or names what is not there."""
+    """The package exists, but its setup.py does not name the program, or names something that does not exist."""
     report = report_of(evidence.main)
     if report is not None and report.built and report.missing == entry.program:
         own = package_of(report, entry.package)
@@ -76,7 +76,7 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
                 f"{_again(evidence)}",
             )
         named = ", ".join(own.programs) if own else ""
-        # Who has written none yet is told the form: the line itself is the answer.
+        # A student who has no entry point yet is told the format; the line itself would be the answer.
         return Advice(
             f"The package is built, but it has no program {entry.program}: "
             + (
@@ -94,7 +94,7 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
                 f"Write {entry.line}: behind the module a colon, and the function. {_again(evidence)}",
                 part.traceback,
             )
-    # All that is below the start of a program is Python's own: no file of the student's has imported anything yet.
+    # Everything below the start of a program is Python's own code: no file of the student has imported anything yet.
     started = (part.traceback for part in evidence if _LOADS in part.traceback)
     tracebacks = "\n".join(text for text in started if not own_line(text))
     found = re2.search(
@@ -114,7 +114,7 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
 
 
 _LOADS = "next(matches).load()"
-"""The line, in the file that a build makes of an entry point, that imports its module."""
+"""The line that imports the module, in the file that a build makes for an entry point."""
 _NO_FUNCTION = re2.compile(
     r"load_entry_point\(.*\)\(\)\)\n(?:[ ~^]*\n)?TypeError: 'module' object is not callable"
 )
@@ -122,7 +122,7 @@ _LED_NOWHERE = re2.compile(r"(?m)^ModuleNotFoundError: No module named '(?P<modu
 
 
 def _again(evidence: Evidence) -> str:
-    """The next step after a change: a workspace's judge builds it, `ros2 run` starts what is built."""
+    """Return the next step after a change: the judge builds a workspace, but `ros2 run` starts an earlier build."""
     return (
         "Then build and check again."
         if report_of(evidence.main) is None
@@ -131,7 +131,7 @@ def _again(evidence: Evidence) -> str:
 
 
 def _unknown_module(tracebacks: str, entry: Entry, again: str) -> Advice | None:
-    """The entry point names a module in another way than with the package before it."""
+    """The entry point names its module in another way than with the package before it."""
     found = _LED_NOWHERE.search(tracebacks)
     if found is None or found["module"] == entry.package:
         return None
@@ -144,7 +144,7 @@ def _unknown_module(tracebacks: str, entry: Entry, again: str) -> Advice | None:
 
 
 def no_executable(evidence: Evidence, entry: Entry) -> Advice | None:
-    """`ros2 run` knows the package and finds no such program in it."""
+    """`ros2 run` finds the package, but no such program in it."""
     if not any("No executable found" in str(event.data["text"]) for event in evidence.main.of("output")):
         return None
     return Advice(
@@ -154,7 +154,7 @@ def no_executable(evidence: Evidence, entry: Entry) -> Advice | None:
 
 
 def package_name(evidence: Evidence, package: str) -> Advice | None:
-    """The workspace holds packages, and none of the task's name."""
+    """The workspace contains packages, but none with the task's name."""
     report = report_of(evidence.main)
     if report is None or not report.built or report.missing != package:
         return None
@@ -167,7 +167,7 @@ def package_name(evidence: Evidence, package: str) -> Advice | None:
 
 
 def wrong_folder(evidence: Evidence, entry: Entry) -> Advice | None:
-    """The program's file is in the package, and not among its modules."""
+    """The program's file is in the package, but not among its modules."""
     package, file = entry.package, f"{entry.module}.py"
     report = report_of(evidence.main)
     own = package_of(report, package)
@@ -184,9 +184,9 @@ def wrong_folder(evidence: Evidence, entry: Entry) -> Advice | None:
 
 
 def lost_entry_point(report: WorkspaceReport | None, package: str, program: str) -> bool:
-    """True if a module of an earlier lab is in the package, and no program starts it any more.
+    """True if a module of an earlier lab is in the package, but no program starts it any more.
 
-    What is installed counts: an entry point can be written, or computed, in more ways than can be read from setup.py.
+    Installed programs count: an entry point can be written, or computed, in ways that setup.py's text does not show.
     """
     own = package_of(report, package)
     if own is None or f"{package}/{program}.py" not in own.modules or program in own.installed:
@@ -195,10 +195,10 @@ def lost_entry_point(report: WorkspaceReport | None, package: str, program: str)
 
 
 def _module(entry: str) -> str:
-    """The module of an entry point such as ``name = module:function``."""
+    """Return the module of an entry point such as ``name = module:function``."""
     return entry.partition("=")[2].partition(":")[0].strip()
 
 
 def _dotted(file: str) -> str:
-    """A file as Python imports it."""
+    """Return a file's name as Python imports it."""
     return file.removesuffix(".py").replace("/", ".")

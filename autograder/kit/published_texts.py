@@ -1,4 +1,4 @@
-"""A publisher as it was heard, and the questions about its texts."""
+"""A publisher as it was heard, and questions about its texts."""
 
 from __future__ import annotations
 
@@ -18,11 +18,13 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part
 
 SURE = 2
-"""Messages that a publisher has sent that surely was there: a single one may come before anybody can hear it."""
+"""Messages after which a publisher certainly existed: a single one may come before the judge can receive it."""
 SLOWLY = 1.5
-"""Intervals of the reference in one of a slow publisher; and of that, how long it may be silent at the end."""
+"""Intervals of the reference in one of a slow publisher; also how many of its own intervals it may be silent at the
+end.
+"""
 BURST = 0.3
-"""Seconds within which a program that has ended may have published all at once, on a busy machine."""
+"""Seconds within which a program that has ended may have published everything at once, on a busy machine."""
 _NUMBER, _WHOLE = re2.compile(r"-?\d+(?:[.,]\d+|e[+-]?\d+)*"), re2.compile(r"0|-?[1-9]\d{0,17}")
 _DIGITS = re2.compile(r"\d{1,18}")
 
@@ -32,9 +34,9 @@ class Publisher:
     """A publisher, as it was heard.
 
     Attributes:
-        topic: That it is to publish on.
-        part: The run in which it was listened to.
-        enough: Messages that were listened to; 0 for the reference.
+        topic: The topic on which it should publish.
+        part: The run in which the judge listened.
+        enough: The number of messages that the judge waited for; 0 for the reference.
     """
 
     topic: str
@@ -53,7 +55,7 @@ class Publisher:
 
     @cached_property
     def counters(self) -> list[int]:
-        """The last number of each text, where that is a whole one; without those of greetings."""
+        """The last number of each text, if it is a whole number; greetings are left out."""
         return counters(self.texts[self.greetings :])
 
     @cached_property
@@ -63,13 +65,13 @@ class Publisher:
 
     @cached_property
     def greetings(self) -> int:
-        """The number of messages before it begins to count: they have another text, and no number that leads on.
+        """The number of messages before it begins to count: their text differs, and no number continues from theirs.
 
-        Who publishes one while it makes its publisher is heard or not, by chance, and counts the same in both cases.
+        Such a message, published together with the publisher itself, is heard or not by chance, and counts the same.
         """
         begins = self.templates.index(Counter(self.templates).most_common(1)[0][0]) if self.texts else 0
         around = last_numbers(self.texts[begins - 1 : begins + 1]) if begins else []
-        # Also of a number in another form: 10 goes on from 09.
+        # A number in another form also continues: 10 follows 09.
         leads_on = (
             len(around) > 1 and all(map(_DIGITS.fullmatch, around)) and int(around[1]) == int(around[0]) + 1
         )
@@ -77,9 +79,9 @@ class Publisher:
 
     @property
     def number_of_first(self) -> int:
-        """The number that the first counting message has by DDS, which numbers each publisher's messages from 1.
+        """The number by DDS of the first counting message; DDS numbers each publisher's messages from 1.
 
-        Greetings that were heard are left out, so that it tells how many came before it and were not heard.
+        Greetings that were heard are left out, so it tells how many earlier messages were not heard.
         """
         counting = self.messages[self.greetings :]
         return max(1, int(counting[0].data.get("number", 1)) - self.greetings) if counting else 1
@@ -101,16 +103,16 @@ class Publisher:
 
     @property
     def begun(self) -> int:
-        """The number of publishers heard from their first message on: DDS numbers each one's messages from 1."""
+        """The number of publishers heard from their first message on: DDS numbers each publisher's messages from 1."""
         return sum(message.data.get("number") == 1 for message in self.messages)
 
     @property
     def went_on(self) -> bool:
-        """True if it published for more than a moment, so that no chance decides whether anything of it is heard."""
+        """True if it published for more than a moment, so that chance does not decide whether it is heard."""
         if not self.messages:
             return False
         first, last = self.messages[0], self.messages[-1]
-        # By the publisher's clock: what was sent at once may arrive one after the other.
+        # By the publisher's clock: messages sent at once may arrive one after the other.
         seconds = float(last.data.get("sent", last.t)) - float(first.data.get("sent", first.t))
         if self.part.ending is not None and last.sim is None and seconds < BURST:
             return False
@@ -118,7 +120,7 @@ class Publisher:
 
     @property
     def pauses(self) -> list[float]:
-        """Seconds of its time between one message and the next."""
+        """The seconds of its time between messages."""
         times = simulated(self.messages) or sent_times(self.messages)
         return [after - before for before, after in pairwise(times)]
 
@@ -131,10 +133,10 @@ class Publisher:
 
     @property
     def endpoints(self) -> dict[str, str]:
-        """Its publishers, topic -> type; none of a program that has ended at once.
+        """Its publishers, topic -> type; empty for a program that ended at once.
 
-        Whether the graph showed those before they were gone is a matter of chance. A notebook's class is held until
-        they are known, and one whose QoS does not fit was there when that was noticed.
+        Chance decides whether the graph showed those before they were gone. A notebook's class is held until they are
+        known, and one with incompatible QoS existed when that was noticed.
         """
         ending, misfit = self.part.ending, self.part.first("mismatch", self.topic)
         met = (
@@ -146,10 +148,10 @@ class Publisher:
         return self.part.endpoints("publisher") if met else {}
 
     def at_once(self, expected: Publisher) -> bool:
-        """True if all that it published and said to have published is of one moment, or came at four times the pace.
+        """True if everything that it published or said it published is of one moment, or came at four times the pace.
 
-        A crowded machine may keep it from going on for longer than a moment. The first messages may come before anybody
-        can hear them, and the last ones go under with the program: what it said, and the moment in which it was met,
+        On a busy machine a program may go on for longer than a moment. The first messages may come before the judge
+        can receive them, and the last ones may be lost with the program: its own words, and the moment of discovery,
         tell of those.
         """
         said = [e.t for e in self.part.of("output") if expected.templates[0] in template(str(e.data["text"]))]
@@ -160,20 +162,20 @@ class Publisher:
         return True
 
     def claims(self, expected: Publisher) -> list[str]:
-        """The lines in which it says that it published the first of the texts that are expected."""
+        """Return the lines in which it says that it published the first of the expected texts."""
         return [line for line in self.part.said() if expected.templates[0] in template(line)]
 
 
 def template(text: str) -> str:
-    """A text with a ``#`` for each whole number."""
+    """Return a text with a ``#`` for each whole number."""
     return str(_NUMBER.sub(lambda number: "#" if _WHOLE.fullmatch(number[0]) else number[0], text))
 
 
 def counters(texts: Sequence[str]) -> list[int]:
-    """The last number of each text, where that is a whole one."""
+    """Return the last number of each text, if it is a whole number."""
     return [int(number) for number in last_numbers(texts) if _WHOLE.fullmatch(number)]
 
 
 def last_numbers(texts: Sequence[str]) -> list[str]:
-    """The last number of each text that has one, in whatever form."""
+    """Return the last number of each text that has one, in any form."""
     return [numbers[-1] for text in texts if (numbers := _NUMBER.findall(text))]

@@ -1,7 +1,7 @@
 """Python's own errors in a beginner's program: one row for each wording, with its meaning and the next step.
 
-The rows were made from what Python 3.11 and 3.12 and rclpy 7.1 print. The first row that fits wins. A row is worth its
-lines if two answers of the bank, or a public question, need it: the card quotes Python's own words in any case.
+The rows match messages of Python 3.11 and 3.12 and rclpy 7.1. The first match wins. A row is worth its lines if two
+answers in the bank, or a public question, need it: the card quotes Python's own message in any case.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 Row = tuple[str, str, str]
-"""A pattern that is searched in a traceback, and the two texts, which may name groups of the pattern."""
+"""A pattern that is searched in a traceback, and the two texts, which may contain groups of the pattern."""
 
 
 class Meaning(NamedTuple):
@@ -67,7 +67,7 @@ READING: Sequence[Row] = (
         "before it.",
     ),
 )
-"""Python's words about a text that it cannot read."""
+"""Python's messages about a text that it cannot parse."""
 
 _IMPORTED_FROM = {
     "action_msgs.msg": "GoalStatus",
@@ -84,7 +84,7 @@ _NOT_STUDENTS = (
     r"list|dict|tuple|set|str|bytes|bool|int|float|\w+GoalHandle|Publisher|Subscription|Timer|Client|Service"
     r"|ActionClient|ActionServer|RcutilsLogger"
 )
-"""Types that a student has not written."""
+"""Types that come from libraries, not from the student."""
 
 RUNNING: Sequence[Row] = (
     *(
@@ -189,7 +189,7 @@ RUNNING: Sequence[Row] = (
         "{{message.data}}. To add numbers, turn the string into a number first: int(...).",
     ),
     (
-        # The executor keeps its nodes in a set; a notebook's traceback leaves rclpy's own lines out.
+        # The executor keeps its nodes in a set; a notebook's traceback omits rclpy's own lines.
         r"(?:\A|rclpy/executors\.py\".*\n(?: .*\n){1,2})TypeError: unhashable type: '(?P<class>\w+)'",
         "ROS cannot keep your node: its class {class} has no hash, which @dataclass, or a method __eq__ of the class, "
         "takes away.",
@@ -197,7 +197,7 @@ RUNNING: Sequence[Row] = (
         "super().__init__('your_node_name') as its first line. Set the fields below that, as in self.count = 0.",
     ),
     (
-        # A notebook's traceback leaves out rclpy's own line, which reads node.subscriptions.
+        # A notebook's traceback omits rclpy's own line, which reads node.subscriptions.
         rf"(?:\bspin\w*\((?P<class>[A-Za-z_]\w*)[,)].*\n(?:.*\n)*?|node\.subscriptions.*{MARKS})"
         r"TypeError: 'property' object is not iterable",
         "A spin takes a node, and got the class of one.",
@@ -216,7 +216,7 @@ RUNNING: Sequence[Row] = (
         "needed, give the whole list. Two numbers are added with +, and not with sum.",
     ),
     (
-        # Raised where rclpy calls the callback; a notebook's traceback leaves rclpy's own lines out.
+        # Raised where rclpy calls the callback; a notebook's traceback omits rclpy's own lines.
         r"(?:\A|rclpy/(?:executors|task)\.py\".*\n(?: .*\n){1,2})TypeError: '(?P<kind>\w+)' object is not callable",
         "ROS was to call a method of yours, and was given a value of the type {kind} in its place.",
         "Look at what create_timer(...), or whatever takes a callback, has in this place: the name of the method, with "
@@ -291,7 +291,7 @@ RUNNING: Sequence[Row] = (
         "create_... and of what spins, with the lab's text: types, names, methods and their order.",
     ),
 )
-"""Python's words about a program that runs."""
+"""Python's messages about a program that runs."""
 
 
 def meaning(traceback: str) -> Meaning:

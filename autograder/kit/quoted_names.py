@@ -1,7 +1,7 @@
-"""The student's own names, as far as the line that a traceback quotes tells them.
+"""The student's own names, as far as the quoted line in a traceback shows them.
 
-Advice on a card says ``fut.result()`` where the program calls its future ``fut``. The last line of code in a traceback
-is enough for that; where it does not tell the name, the advice has words of its own.
+Advice on a card says ``fut.result()`` if the program names its future ``fut``. The last line of code in a traceback
+is enough for that; if it does not show the name, the advice uses a general term.
 """
 
 from __future__ import annotations
@@ -9,23 +9,23 @@ from __future__ import annotations
 import re2
 
 MARKS = r"\n(?:[ ~^]*\n)?"
-"""From a line of code to what Python says of it: perhaps a line of marks below the code."""
+"""From a line of code to Python's message about it: perhaps with a line of marks below the code."""
 _FRAME_WITH_CODE = re2.compile(r'(?m)^ {2}File "(?P<file>[^"]*)", line \d+.*\n {4,}(?P<code>\S.*)$')
 """A frame of a traceback, with the line of code that is quoted below it."""
 _LIBRARY = re2.compile(r"/lib/python3(?:\.\d+)?/|/(?:site|dist)-packages/|^/opt/ros/|^<frozen")
 _BUILT = re2.compile(
     r"/install/(?:[^/.]+/)?(?:local/)?lib/python3[^/]*/(?:site|dist)-packages/(?P<package>\w+)"
 )
-"""A package that a build has installed, as a student's own is; so is ROS, where it was built from source."""
+"""A package that a build has installed, such as a student's own; or ROS, if it was built from source."""
 _ROS = ("rclpy", "launch", "launch_ros", "ros2cli", "ros2run")
 _MISSED = re2.compile(r"AttributeError: .*(?:has no attribute|object attribute) '(?P<name>\w+)'")
 _OWNER = r"(?:^|[^\w.)\]])(?P<owner>[A-Za-z_][\w.]*(?:(?:\(\)|\[[^\[\]]*\])[\w.]*)*)\.{name}\b"
-"""What stands before a name and a dot: names and dots, calls without arguments, places in a list."""
+"""The text before a dot and a name: names and dots, calls without arguments, indexes."""
 _RESULT = ".result()"
 
 
 class Name(str):
-    """A name for a template, which has other words where it is not known: ``{owner:your future}``."""
+    """A name in a template, with another text if it is unknown: ``{owner:your future}``."""
 
     __slots__ = ()
 
@@ -34,7 +34,7 @@ class Name(str):
 
 
 def is_a_library(file: str) -> bool:
-    """True of a file of Python, of ROS or of an installed package; a package that a student has built is none."""
+    """True for a file of Python, of ROS or of an installed package, but not of a student's own package."""
     built = _BUILT.search(file)
     return _LIBRARY.search(file) is not None and (built is None or built["package"] in _ROS)
 
@@ -46,10 +46,10 @@ def own_line(traceback: str) -> str:
 
 
 def names(traceback: str) -> dict[str, Name]:
-    """The names that a traceback tells, for a template: ``owner`` and ``future``, empty where they are not known.
+    """Return the names in a traceback for a template: ``owner`` and ``future``, empty if they are unknown.
 
-    Of ``fut.result().sum``, where there is no ``sum``, the owner is ``fut.result()`` and the future ``fut``. A call is
-    no name of a future: it would give another one each time.
+    In ``fut.result().sum``, if ``sum`` does not exist, the owner is ``fut.result()`` and the future is ``fut``. A
+    call is never the name of a future: it would return another one each time.
     """
     owner = _owner(traceback)
     future = owner.removesuffix(_RESULT) if owner.endswith(_RESULT) else ""
@@ -57,7 +57,7 @@ def names(traceback: str) -> dict[str, Name]:
 
 
 def _owner(traceback: str) -> str:
-    """What the student's line has before the attribute that is missing; empty where several things may be meant."""
+    """Return what the student's line has before the missing attribute; empty if it is ambiguous."""
     missed = _MISSED.search(traceback)
     if missed is None:
         return ""

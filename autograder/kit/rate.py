@@ -1,8 +1,8 @@
-"""The rate of the talker: by the simulated clock where it follows that one, else by its own.
+"""The rate of the talker: by the simulated clock if the talker follows it, else by the talker's own clock.
 
-In simulated time intervals are exact, so that all of them count. In real time a message may be late on a busy machine:
-one may be among some messages in a row, and there is time for such a row. Their times are the publisher's own, unless
-these disagree with the times of arrival.
+In simulated time intervals are exact, so all of them count. In real time a message may be late on a busy machine, so
+one in a row of messages may be late, and the judge waits for such a row. The times are the publisher's own, unless
+they disagree with the times of arrival.
 """
 
 from __future__ import annotations
@@ -21,34 +21,36 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part
 
 ROW = 7
-"""Messages in a row that show a rate in real time."""
+"""The number of successive messages that show a rate in real time."""
 LATE = 6
-"""One in so many messages of a row may be late."""
+"""One message in so many may be late."""
 SIMULATED_TOLERANCE = 0.05
-"""The part of the reference's interval by which the mean simulated one may differ."""
+"""The share of the reference's interval by which the simulated mean may differ."""
 SIMULATED_JITTER = 0.1
-"""Simulated seconds by which one interval may differ: two steps of the judge's clock, or a long one."""
+"""Simulated seconds by which one interval may differ: two steps of the judge's clock, or one long step."""
 SLOWER, FASTER = 0.18, 0.1
-"""The parts of the reference's interval by which the median real one may differ: load makes a talker slower only."""
+"""The shares of the reference's interval by which the real median may differ: load makes a talker only slower."""
 AT_ONCE = 0.1
-"""The part of the period within which one message follows the other in a burst."""
+"""The share of the period within which one message follows another in a burst."""
 UNEVEN = 0.3
-"""The part of the period by which an interval in real time is too long or too short."""
+"""The share of the period above which an interval in real time is too long or too short."""
 ON_THE_WAY = 0.3
-"""Seconds that a message may take; where it seems to take longer, or less than none, no time of sending is believed."""
+"""Seconds that a message may travel; if it seems to take longer, or less than nothing, its time of sending is not
+used.
+"""
 ROUNDING = 0.005
 """Seconds by which two readings of one clock may seem to be in the wrong order."""
 
 
 @dataclass(frozen=True)
 class Rate:
-    """A rate that was seen.
+    """A measured rate.
 
     Attributes:
-        period: Seconds between two messages, as a whole.
-        intervals: Seconds between each two.
-        even: Whether these are the same, as far as can be expected.
-        kept: Whether it is the one that is asked for.
+        period: The mean seconds between two messages.
+        intervals: The seconds between each two.
+        even: True if the intervals are equal, within the tolerance.
+        kept: True if the rate is the required one.
     """
 
     period: float
@@ -58,21 +60,21 @@ class Rate:
 
 
 def simulated(messages: Sequence[Event]) -> list[float]:
-    """The simulated times of messages, where they follow that clock to the end.
+    """Return the simulated times of messages, if they follow that clock to the end.
 
-    The first is left out: the jump to simulated time distorts it.
+    The first message is left out: the jump to simulated time distorts it.
     """
     follows = bool(messages) and messages[-1].sim is not None
     return [event.sim for event in messages if event.sim is not None][1:] if follows else []
 
 
 def rate_of(messages: Sequence[Event], wanted: float, row: int = ROW) -> Rate | None:
-    """The rate of messages; None where there are too few for one.
+    """Return the rate of messages; None if there are too few.
 
     Args:
-        messages: As the judge heard them.
+        messages: The messages that the judge received.
         wanted: The reference's period, in seconds.
-        row: Messages in a row that must keep to it in real time; the first such row counts.
+        row: The number of successive messages that must keep the rate in real time; the first such row counts.
     """
     if times := simulated(messages):
         return _exact(times, wanted) if len(times) > 1 else None
@@ -83,10 +85,10 @@ def rate_of(messages: Sequence[Event], wanted: float, row: int = ROW) -> Rate | 
 
 
 def sent_times(messages: Sequence[Event]) -> list[float]:
-    """The time at which each message was sent: as its publisher says, where that can be true.
+    """Return the time at which each message was sent: the publisher's own time, if it is plausible.
 
-    A busy judge hears messages late and close together, so their publisher's clock is the better one; but a publisher
-    whose clock was tampered with says what it likes. Both read the clock of one machine.
+    A busy judge receives messages late and close together, so the publisher's clock is better; but a publisher with a
+    manipulated clock can report any time. Both read the clock of one machine.
     """
     return [_sent(event) for event in messages]
 
@@ -98,23 +100,23 @@ def _sent(event: Event) -> float:
 
 
 def burst_at_the_start(messages: Sequence[Event], unheard: int, wanted: float) -> str:
-    """What shows that a publisher began with a burst of messages, in words; else empty.
+    """Return what shows that a publisher began with a burst of messages, in words; else empty.
 
-    Args:
+    messages: The messages that the judge received, from the first one that counts.
         messages: As the judge heard them, from the first that counts on.
-        unheard: The number of messages before these that nobody could hear. They took a period each; more time than has
-            passed since the publisher's program began they cannot take.
+        unheard: The number of earlier messages that the judge could not receive. At the right rate each took one
+            period, so together at most the time since the program began.
         wanted: The reference's period, in seconds.
     """
     if not messages:
         return ""
     first = messages[0]
     arrived = float(first.data.get("arrived", first.t))
-    # By the publisher's clock alone: what was held up while the two ends met arrives at once, and rightly so.
+    # Only the publisher's clock is used: messages held up during discovery rightly arrive at once.
     in_real_time = (one for one in messages if one.sim is None or one is first)
     sent = [float(one.data.get("sent", one.data.get("arrived", one.t))) for one in in_real_time]
     since = sent[0] - (arrived - first.t)
-    # The jump to simulated time may have brought the first one that was heard forward.
+    # The jump to simulated time may have moved the first received message forward.
     if (unheard - (first.sim is not None)) * wanted * (1 - FASTER) > since:
         return f"{counted(unheard + 1, 'message')} in the first {since:.1f} s"
     gaps = [after - before for before, after in pairwise(sent)]
@@ -133,7 +135,7 @@ def _exact(times: Sequence[float], wanted: float) -> Rate:
 def _at_a_glance(times: Sequence[float], wanted: float) -> Rate:
     gaps = [later - earlier for earlier, later in pairwise(times)]
     period, most = median(gaps), UNEVEN * wanted
-    # A late message makes one interval longer, and the next one shorter where a timer keeps to its time.
+    # A late message makes one interval longer, and the next one shorter if the timer keeps its schedule.
     even = all(
         sum(off > most for off in offs) <= len(gaps) // LATE
         for offs in ([gap - period for gap in gaps], [period - gap for gap in gaps])
@@ -143,16 +145,16 @@ def _at_a_glance(times: Sequence[float], wanted: float) -> Rate:
 
 
 def confirmed(rate: Rate, before: Rate, wanted: float) -> bool:
-    """True if a rate in real time shows the same wrong period as the simulated clock did.
+    """True if a rate in real time shows the same wrong period as in simulated time.
 
-    A thread that sleeps by that clock may seem slow in simulated time, and only there.
+    A thread that sleeps by that clock may seem slow, but only in simulated time.
     """
     wrong = abs(before.period - wanted) > SIMULATED_TOLERANCE * wanted
     return wrong and abs(rate.period - before.period) < abs(rate.period - wanted)
 
 
 def keeps_rate(seen: Part, expected: Part) -> Finding:
-    """A criterion for one topic: the messages come as often as the reference's.
+    """Judge, for one topic, that messages come as often as the reference's.
 
     Raises:
         ValueError: The reference has no rate.
@@ -165,7 +167,7 @@ def keeps_rate(seen: Part, expected: Part) -> Finding:
 
 
 def another_rate(seen: Part, expected: Part) -> str:
-    """A mistake for one topic: how often it publishes, where that is not the reference's rate; else an empty text."""
+    """Return how often it publishes on one topic if that is not the reference's rate; else an empty text."""
     rate = rate_of(seen.of("message"), _period(expected))
     return keeps_rate(seen, expected).seen if rate is not None and not rate.kept else ""
 

@@ -29,16 +29,16 @@ class _SomeText:
 
 
 SOME_TEXT = _SomeText()
-"""Stands in an expected reply for a text in the student's own words."""
+"""Stands in an expected reply for any text of the student's own."""
 
 
 def value(event: Event) -> Any:
-    """The content of a message, a request or an answer: its field ``data``; all its fields where it has none."""
+    """Return the content of a message, a request or an answer: its field ``data``, or all its fields if it has none."""
     return event.data["fields"].get("data", event.data["fields"])
 
 
 def values(kind: str, name: str | None = None) -> Callable[[Part], list[Any]]:
-    """The contents of all events of a kind, in order; only those of ``name`` where one is given."""
+    """Return a function for the contents of all events of a kind, in order; only those of ``name`` if it is given."""
     return lambda seen: [value(event) for event in seen.of(kind, name)]
 
 
@@ -47,7 +47,7 @@ SENT = values("sent")
 
 
 class Given(NamedTuple):
-    """Something that a subject was given: how many seconds of its time ago, its :func:`value`, and on which name."""
+    """Something that a subject was given: its age in seconds of the subject's time, its :func:`value`, its name."""
 
     age: float
     value: Any
@@ -55,16 +55,16 @@ class Given(NamedTuple):
 
 
 State = Callable[[Sequence[Given]], Any]
-"""From all that a subject was given until a moment, in order, to what it says then, or to what holds then."""
+"""From everything that a subject was given until a moment, in order, to what it must say, or to what holds, then."""
 
 
 @dataclass(frozen=True)
 class StateRule:
-    """A rule for a subject that says from time to time how things are, by what it was given until then, and when.
+    """A rule for a subject that reports a state from time to time, depending on what it was given, and when.
 
     Attributes:
-        rule: From what it was given to what it is to say.
-        slack: Seconds that anything may take: what was right so long before is right, too, and what is so long after.
+        rule: Returns what it must say.
+        slack: Seconds of tolerance: a report that was right this long before, or will be this long after, is accepted.
         given: The kind of the events in which it is given something.
     """
 
@@ -73,9 +73,9 @@ class StateRule:
     given: str = "sent"
 
     def when(self, holds: State) -> Judge[Part]:
-        """A criterion: while something holds, what it says is right.
+        """Return a criterion: while something holds, its reports are right.
 
-        It has to say a quarter of what the reference solution says then: how fast it speaks is asked elsewhere.
+        It must report a quarter as often as the reference solution; another criterion judges its rate.
         """
 
         def judge(seen: Part, expected: Part) -> Finding:
@@ -91,7 +91,7 @@ class StateRule:
         return judge
 
     def taken_for(self, *wrong: State) -> Callable[[Part, Part], bool]:
-        """A mistake: all that it says is what one of these wrong rules says, and not what the right one does."""
+        """Return a mistake: all its reports follow one of these wrong rules, and not the right one."""
 
         def recognise(seen: Part, _: Part) -> bool:
             said = list(self._said(seen))
@@ -104,19 +104,19 @@ class StateRule:
         return recognise
 
     def only_in_answer(self, seen: Part, _: Part) -> bool:
-        """A mistake: it speaks once for each thing that it is given, and never by itself."""
+        """Return a mistake: it reports once for each thing that it is given, and never by itself."""
         given = [len(later) for _, (*_, later) in self._said(seen)]
         return bool(given) and all(number <= so_far for number, so_far in enumerate(given, 1))
 
     def _decided(self, part: Part, holds: State) -> Iterator[tuple[Any, Any]]:
-        """What is due and what is said where only one thing is due, and something holds without a doubt."""
+        """Yield the due and the actual report whenever only one report is right, and the condition certainly holds."""
         for what, views in self._said(part):
             due, *others = map(self.rule, views)
             if all(map(holds, views)) and all(same(due, other) for other in others):
                 yield due, what
 
     def _said(self, part: Part) -> Iterator[tuple[Any, list[list[Given]]]]:
-        """All that it says, each with what it was given: as of a little earlier, of then, and of a little later."""
+        """Yield each report with what the subject had been given a little earlier, at that time, and a little later."""
         given: list[Event] = []
         for event in part.events:
             if event.kind == self.given:
@@ -133,15 +133,15 @@ class StateRule:
 
 
 def _moment(event: Event) -> float:
-    """When something was said: in real time without what it took to arrive."""
+    """Return the time of a report: in real time without the time that it took to arrive."""
     on_its_way = float(event.data.get("arrived", event.t)) - sent_times([event])[0]
     return event.moment - (on_its_way if event.sim is None else 0.0)
 
 
 def same(one: Any, other: Any, tolerance: float = 1e-6) -> bool:
-    """Return whether two contents, or rows of contents, are equal.
+    """True if two contents, or rows of contents, are equal.
 
-    Numbers with a point may differ by ``tolerance`` (absolute, or relative to the larger one). NaN equals NaN, and
+    Floating-point numbers may differ by ``tolerance`` (absolute, or relative to the larger one). NaN equals NaN, and
     :data:`SOME_TEXT` equals every text that is not blank.
     """
     if one is SOME_TEXT or other is SOME_TEXT:

@@ -1,20 +1,20 @@
-"""The handling of a path that is given in place of a command."""
+"""What to do with a path that is given instead of a command."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 ALONE = "--alone"
-"""The first argument of a start of one program in place of a launch; what follows is as ``ros2 run`` takes it."""
+"""The first argument for starting one program instead of a launch; the rest is as for ``ros2 run``."""
 
 
 @dataclass(frozen=True)
 class RunsProgram:
-    """The workspace is built, and a program of one of its packages run.
+    """Build the workspace, and run a program of one of its packages.
 
     Attributes:
         package: The package.
-        program: The program, as ``ros2 run`` knows it.
+        program: The program's name for ``ros2 run``.
     """
 
     package: str
@@ -23,11 +23,11 @@ class RunsProgram:
 
 @dataclass(frozen=True)
 class RunsPrograms:
-    """The workspace is built, and of one of its packages the program run whose name each start gives first.
+    """Build the workspace, and run the program of one of its packages that each start names first.
 
     Attributes:
         package: The package.
-        programs: The programs, as ``ros2 run`` knows them, in the order of the task.
+        programs: The programs' names for ``ros2 run``, in the order of the task.
     """
 
     package: str
@@ -36,10 +36,10 @@ class RunsPrograms:
 
 @dataclass(frozen=True)
 class ServesInterface:
-    """The workspace is built, and a service type that it makes is served by a node of ours.
+    """Build the workspace, and serve a service type that it generates with a node of the judge.
 
     Attributes:
-        file: The file of the service type, such as ``"AddTwoInts.srv"``, in whatever package.
+        file: The file of the service type, such as ``"AddTwoInts.srv"``, in any package.
         service: The name under which it is served.
     """
 
@@ -49,9 +49,9 @@ class ServesInterface:
 
 @dataclass(frozen=True)
 class Launches:
-    """The launch file is launched, with what it needs of the workspace around it.
+    """Launch the launch file, with what it needs from the workspace around it.
 
-    A start whose arguments begin with :data:`ALONE` is one of a program, where the launch would find it.
+    A start whose arguments begin with :data:`ALONE` runs one program, as the launch would find it.
     """
 
 

@@ -1,4 +1,4 @@
-"""A service client as it was seen in its runs, and the questions about it."""
+"""A service client as it was seen in its runs, and questions about it."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ is also that of one whose timer waits for the service, and which is right. So a 
 
 @dataclass(frozen=True)
 class Client:
-    """A service client, as it was seen, or recorded of the reference solution.
+    """A service client, as it was seen, or as it was recorded from the reference solution.
 
     Attributes:
-        evidence: All of its runs.
+        evidence: All runs of the client.
     """
 
     evidence: Evidence | Reference
@@ -58,7 +58,7 @@ class Client:
 
     @property
     def calls(self) -> int:
-        """The number of calls where the service comes late."""
+        """The number of calls if the service comes late."""
         return len(requests(self.late))
 
     @property
@@ -67,36 +67,36 @@ class Client:
         return isinstance(self.evidence, Evidence) and self.evidence.ever_had("client")
 
     def called_each_time(self) -> bool:
-        """True if each run with a service came to a call: time had no part in the number of calls then."""
+        """True if each run with a service has a call: then timing did not decide the number of calls."""
         return all(map(requests, self.served))
 
     def ended_each_time(self) -> bool:
-        """True if each run came to its own end: time had no part in it then."""
+        """True if each run ended by itself: then timing did not decide anything."""
         return all(part.ending for part in self.evidence.parts)
 
     def called(self, wanted: int) -> bool:
-        """True if it called so many times in each run with a service."""
+        """True if it made this many calls in each run with a service."""
         return all(len(requests(part)) == wanted for part in self.served)
 
 
 def requests(part: Part) -> list[Event]:
-    """The calls, in order."""
+    """Return the calls, in order."""
     return part.of("request")
 
 
 def answers(part: Part) -> list[int]:
-    """The answers, in order."""
+    """Return the answers, in order."""
     return [int(event.data["fields"]["sum"]) for event in part.of("response")]
 
 
 def pair(event: Event) -> list[int]:
-    """The two numbers of a call, the smaller first."""
-    # The sum does not care which number is a and which is b.
+    """Return the two numbers of a call, the smaller first."""
+    # For the sum it does not matter which number is a and which is b.
     return sorted((int(event.data["fields"]["a"]), int(event.data["fields"]["b"])))
 
 
 def reports(part: Part) -> bool:
-    """The last answer is said after it was given, and a function that returns something returns that."""
+    """True if the last answer is said after it was given, and if a function with a return value returns that."""
     given = part.of("response")
     said = bool(given) and mentions(part.said(after=given[-1]), answers(part)[-1])
     return said and not says_otherwise(part)
@@ -109,9 +109,9 @@ def returns_another(part: Part) -> bool:
 
 
 def says_otherwise(part: Part) -> bool:
-    """True if one of its reports of the last answer is wrong, whatever another one says.
+    """True if one of its reports of the last answer is wrong, even if another one is right.
 
-    A function that raised has returned nothing to whoever called it. A line that has the answer with the other sign
+    A function that raised an exception returned nothing to its caller. A line with the answer and the wrong sign
     tells its reader a wrong sum.
     """
     if returns_another(part) or (part.ending is not None and part.ending.name == "raised"):
@@ -125,9 +125,9 @@ def says_otherwise(part: Part) -> bool:
 
 
 def has_reported(part: Part, calls: int) -> bool:
-    """An answer is said after it was given, the one to the call of that number (from 1 on) or to a later one.
+    """True if an answer is said after it was given: the one to the call of that number (from 1), or a later one.
 
-    Who goes on calling is stopped at some moment, and what was said before must not depend on which.
+    A client that goes on calling is stopped at some moment, and the result must not depend on which.
     """
     return any(
         mentions(part.said(after=given), int(given.data["fields"]["sum"]))
@@ -136,13 +136,13 @@ def has_reported(part: Part, calls: int) -> bool:
 
 
 def new_words(part: Part, given: Event | None = None) -> list[str]:
-    """The words after an answer, the last one if none is named, without late echoes."""
+    """Return the words after an answer, or after the last one, without late echoes."""
     given = given or next(reversed(part.of("response")), None)
     return list(filter(str.strip, said_first_after(given, part)))
 
 
 def braces_left(part: Part) -> Advice | None:
-    """It said the name of a variable in braces where the sum was to be: Python fills them only in an f-string."""
+    """The client said a variable's name in braces instead of the sum: Python fills them only in an f-string."""
     return not_filled_in(new_words(part))
 
 
@@ -172,7 +172,7 @@ def reports_the_sum(evidence: Evidence) -> Finding:
 
 
 def gives_up_in_time(evidence: Evidence) -> Finding:
-    """Without a service it gives up, or goes on, as the one rule for all clients says."""
+    """Without a service the client gives up, or goes on, as the one rule for all clients requires."""
     part = evidence.part(ABSENT)
     if own_sum(part) is not None:
         wrong = "named a sum that no service gave"
@@ -193,7 +193,7 @@ def own_sum(part: Part) -> int | None:
 
 
 def served_otherwise(evidence: Evidence) -> list[Part]:
-    """The runs in which the client had its service."""
+    """Return the runs in which the client had its service."""
     absent = evidence.part(ABSENT)
     elsewhere = giving_up.looks_elsewhere(evidence, absent, "client")
     return giving_up.served_otherwise(
@@ -205,7 +205,7 @@ no_limit = giving_up.remark(ABSENT)
 
 
 def how_it_went(part: Part) -> str:
-    """The end of a part, in words."""
+    """Return the end of a part, in words."""
     if not part.events:
         return "not reached"
     ending = part.ending
@@ -215,7 +215,7 @@ def how_it_went(part: Part) -> str:
 
 
 def cut_short(client: Client) -> str:
-    """The event that ended the judge's runs early, because the client hung; empty where it made all."""
+    """Return the event that ended the judge's runs early, because the client hung; empty if all runs were made."""
     hung = next((part for part in client.served if part.events and part.ending is None), None)
     if hung is None or all(part.events for part in client.served):
         return ""
@@ -225,7 +225,7 @@ def cut_short(client: Client) -> str:
 
 
 def ended_before_its_answer(part: Part) -> bool:
-    """True if the subject had ended when an answer was given, or a call had not even left it."""
+    """True if the subject had ended when an answer was sent, or before a call had left it."""
     if part.ending is None:
         return False
     asked = max(len(requests(part)), len(part.of("called")))

@@ -1,4 +1,4 @@
-"""Known mistakes of clients that call a service and tell what it answered."""
+"""Known mistakes of clients that call a service and report its answers."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 def _does_not_wait_for_answers(evidence: Evidence) -> bool:
     served, calls = Client(evidence).served, Client(evidence.reference).calls
-    # Who has made all its calls where an answer came just as late waits for answers, and has not liked this one.
+    # A client that made all its calls although another answer came just as late does wait for answers.
     waits = any(len(requests(part)) >= calls for part in served if part.of("response"))
     return any(
         ended_before_its_answer(part)
@@ -45,9 +45,9 @@ def _does_not_wait_for_answers(evidence: Evidence) -> bool:
 
 
 def _gave_up_on_its_answer(part: Part, served: Sequence[Part]) -> bool:
-    """True if it said before its answer what it says in no run with a quick one, and reported those.
+    """True if it reports, before its answer, what it reports in no run with a quick answer, and reported those.
 
-    A process takes its time to end, so the answer may be given while it is on its way out.
+    A process takes time to end, so the answer may be sent while the process is ending.
     """
     asked, given = part.first("request"), part.first("response")
     quick = [other for other in served if other is not part and reports(other)]
@@ -59,10 +59,10 @@ def _gave_up_on_its_answer(part: Part, served: Sequence[Part]) -> bool:
 
 
 def _made_nothing_of_its_answer(part: Part) -> bool:
-    """True if the subject ended with its first answer, and neither called again nor said a number that came of it.
+    """True if the subject ended with its first answer, without another call or a number that follows from it.
 
-    A process takes its time to end, so the answer may be given while one that has not waited for it is on its way out.
-    Of a client with one call only an exception tells that it has not waited, and not just kept the sum to itself.
+    A process takes time to end, so the answer may be sent while a client that has not waited for it is ending. If a
+    client makes one call, only an exception shows that it did not wait, rather than just not reporting the sum.
     """
     if part.ending is None or len(requests(part)) != 1 or len(part.of("response")) != 1:
         return False
@@ -81,7 +81,7 @@ ANSWER_NOT_AWAITED = mistake(
 
 
 def _dislikes_zero(evidence: Evidence) -> bool:
-    """True if all is well but where the service answered 0."""
+    """True if everything is right except when the service answered 0."""
     served = Client(evidence).served
     wrong = [part for part in served if part.ending and not reports(part)]
     zero = all(answers(part)[-1:] == [0] and not ended_before_its_answer(part) for part in wrong)

@@ -1,4 +1,4 @@
-"""Mistakes in a workspace, told from the report of its build and from what ``ros2`` says."""
+"""Mistakes in a workspace, recognized from the report of its build and from the messages of ``ros2``."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ if TYPE_CHECKING:
 
 
 def build_report(part: Part) -> WorkspaceReport | None:
-    """The report of the build; where it never came so far, that of what was found before it."""
+    """Return the report of the build; if there is none, the report from before it."""
     return report_of(part) or report_of(part, "found")
 
 
 def seen_of_build(report: WorkspaceReport) -> str:
-    """The outcome of a build, in a few words for a card."""
+    """Return the outcome of a build, in a few words for a card."""
     if report.trouble in ("build", "entry_point"):
         return f"colcon could not build {report.package or 'it'}: {report.line}"
     return report.line or report.trouble.replace("_", " ")
@@ -37,7 +37,7 @@ def changed_since_build(evidence: Evidence) -> str:
 
 
 def _trouble(evidence: Evidence, *kinds: str) -> WorkspaceReport | None:
-    """The report of the build, where the trouble is of one of these kinds."""
+    """Return the report of the build if its trouble is of one of these kinds."""
     report = build_report(evidence.main)
     return report if report is not None and report.trouble in kinds else None
 
@@ -61,7 +61,7 @@ def _build_failed(evidence: Evidence) -> Advice | None:
 
 
 def _unreadable(evidence: Evidence) -> tuple[str, WorkspaceReport] | None:
-    """The file that Python could not read when its package was built, and the report."""
+    """Return the file that Python could not parse when its package was built, and the report."""
     report = _trouble(evidence, "build")
     if report is None or not re2.search(r"(?:Syntax|Indentation|Tab)Error", report.line):
         return None

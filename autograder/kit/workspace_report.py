@@ -1,9 +1,9 @@
-"""The report of a student's side on a workspace: one line of JSON behind a mark, among a program's other output.
+"""The report about a workspace: one line of JSON after a mark, among a program's other output.
 
-The judge sees a workspace's programs on the wire. What no wire can tell (which line the build stumbled over) is
-reported by the program that built it, before the student's own program says anything: only the first report counts.
-A line holds less than a workspace does. So the packages that the exercise needs come first, and a report says of itself
-whether all of them is in it: what was left out is never judged as missing or wrong.
+The judge sees a workspace's programs on the wire. The program that builds the workspace reports what is not visible
+there (such as the line at which the build failed), before the student's own program prints anything: only the first
+report counts. A line holds less than a workspace. So the packages that the exercise needs come first, and a report
+tells whether it contains all of them: what was left out is never judged as missing or wrong.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
 
 MARK = REPORTS[0]
 MAX_LINE = 3_900
-"""Bytes of a report: the judge reads lines of at most 4,000."""
+"""The limit on a report in bytes: the judge reads lines of at most 4,000."""
 _LIMITS = (2_500, 1_200, 600, 200, 50)
-"""Characters of each text of a report, tried in turn until its line is short enough."""
+"""The limits on each text of a report in characters, tried in turn until its line is short enough."""
 AMENT_PACKAGE = "ament_package()"
-"""The missing thing, in a report, of a package that was built and that ROS does not find."""
+"""The missing thing in the report on a package that was built but that ROS does not find."""
 BUILDING = 180.0
 """Seconds of wall time that a build may take: a Python package needs one, an interface package ten."""
 _FEW = 10
-"""Packages beside the needed ones that are named where there is no room for all."""
+"""The number of other packages that are named if there is no space for all."""
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ class Interface:
     """An interface file of a package.
 
     Attributes:
-        file: Its path inside the package, such as ``"srv/AddTwoInts.srv"``.
-        text: What it says, without comments; None where the exercise is not about it, or it was left out.
+        file: The path inside the package, such as ``"srv/AddTwoInts.srv"``.
+        text: The content without comments; None if the exercise is not about it, or if it was left out.
         listed: Whether the package's CMakeLists.txt names it, or is too long to be looked into.
     """
 
@@ -54,10 +54,10 @@ class PackageReport:
     Attributes:
         name: The name in its package.xml.
         build_type: ``"ament_python"`` or ``"ament_cmake"``.
-        programs: Its console scripts, as ``name = module:function``: those that are installed, before the build
-            those that can be read in setup.py.
+        programs: Its console scripts, as ``name = module:function``: the installed ones, or before the build those
+            that can be read in setup.py.
         interfaces: Its interface files.
-        dependencies: Everything that package.xml depends on, ``member_of_group`` included.
+        dependencies: All dependencies in package.xml, including ``member_of_group``.
         modules: Its Python files, as paths inside the package.
         commented: What package.xml would depend on, too, if the lines inside its comments counted.
         installed: The programs that `ros2 run` finds of it, by name; empty before the build.
@@ -82,11 +82,11 @@ class WorkspaceReport:
 
     Attributes:
         phase: ``"found"`` before the build, ``"built"`` after it.
-        built: Whether every package was built.
-        trouble: Which kind of trouble: ``"no_workspace"``, ``"no_package"``, ``"bad_package"``, ``"entry_point"``,
+        built: True if every package was built.
+        trouble: The kind of trouble: ``"no_workspace"``, ``"no_package"``, ``"bad_package"``, ``"entry_point"``,
             ``"build"`` or empty.
-        package: The package that failed, else empty.
-        line: The one line that matters of a failure.
+        package: The package that failed; empty if none did.
+        line: The most telling line of a failure.
         log: The end of the log of a failure.
         packages: The packages of the workspace, those that the exercise needs first.
         missing: Of what the exercise asks for (a program, an interface), what is not there after the build.
@@ -107,11 +107,11 @@ class WorkspaceReport:
 
 
 def as_line(report: WorkspaceReport, others: Sequence[PackageReport] = ()) -> str:
-    """The line that travels; what has no room in it is left out.
+    """Return the line of the report; what does not fit is left out.
 
     Args:
-        report: Its packages are those that the exercise needs.
-        others: The other packages of the workspace: in full, by name or not at all, as there is room.
+        report: A report on the packages that the exercise needs.
+        others: The other packages of the workspace: in full, by name or not at all, depending on the space.
     """
     whole = _written(report)
     named = [PackageReport(package.name, package.build_type) for package in others]
@@ -132,13 +132,13 @@ def as_line(report: WorkspaceReport, others: Sequence[PackageReport] = ()) -> st
 
 
 def _shortened(package: PackageReport, limit: int) -> PackageReport:
-    """A package without its longer definitions and the ends of its lists; the same where all of it is short."""
+    """Return a package without its longer definitions and the ends of its lists; unchanged if all of it is short."""
     few = limit // 20
     return replace(
         package,
         programs=package.programs[:few],
         interfaces=[_left_out(i) if len(i.text or "") > limit else i for i in package.interfaces[:few]],
-        # Those that a task may ask for come first: what generates interfaces.
+        # Dependencies that a task may require come first: those that generate interfaces.
         dependencies=sorted(package.dependencies, key=lambda name: not name.startswith("rosidl_"))[
             : max(few, 5)
         ],
@@ -155,23 +155,23 @@ def _left_out(interface: Interface) -> Interface:
 
 def _written(report: WorkspaceReport) -> str:
     line = MARK + json.dumps(asdict(report), ensure_ascii=False, separators=(",", ":"))
-    # The name of a file that is no UTF-8 has lone surrogates in Python, with which nothing can be printed.
+    # The name of a file that is not UTF-8 has lone surrogates in Python, which cannot be printed.
     return line.encode(errors="replace").decode()
 
 
 def report_of(part: Part, phase: str = "built") -> WorkspaceReport | None:
-    """The first report of a phase; None where there is none, as where a command was run that built nothing."""
+    """Return the first report of a phase; None if there is none, for example if a command built nothing."""
     return next((report for _, report in _reports(part) if report.phase == phase), None)
 
 
 def tells_of_a_build(line: str) -> bool:
-    """True if a line of output is the report of a build that has ended."""
+    """True if a line of output is the report of a finished build."""
     report = _parsed(line.removeprefix(MARK)) if line.startswith(MARK) else None
     return report is not None and report.phase == "built"
 
 
 def build_ended(part: Part) -> float:
-    """Seconds after the beginning of a part at which the workspace was built; 0 where nothing was built in it."""
+    """Return the time in a part at which the workspace was built, in seconds; 0 if nothing was built."""
     return next((event.t for event, report in _reports(part) if report.phase == "built"), 0.0)
 
 

@@ -1,1 +1,1 @@
-"""One module for each kind of subject: how it is driven, what can be asked of it, and which mistakes are common."""
+"""One module for each kind of subject: its scenario, criteria and common mistakes."""

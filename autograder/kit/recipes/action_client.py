@@ -1,8 +1,8 @@
 """A client of an action: the judge is the server.
 
-Its numbers are no Fibonacci numbers and in no order, one of them is there twice, and its result is another one than its
-last feedback, so that only a client that shows what it gets can be right. It comes late once, refuses a goal, aborts
-another, and in the last part it is not there.
+The judge's numbers are not Fibonacci numbers, not sorted, one of them occurs twice, and the result differs from the
+last feedback, so that only a client that shows what it receives can be right. The server comes late once, refuses a
+goal, aborts another one, and is absent in the last part.
 """
 
 from __future__ import annotations
@@ -45,30 +45,34 @@ if TYPE_CHECKING:
     from autograder.kit.model import Advice
 
 ORDERS = {LATE: (41, 46), REFUSED: (-9, -1), ABORTED: (0, 0), ABSENT: (11, 30)}
-"""The smallest and the largest order that the client is given: a large one, a bad one, none at all is each a number."""
+"""The smallest and the largest order that the client gets; a negative one and 0 are valid numbers, too."""
 SHOWN_WITHIN = {Pace.FAST: 0.5, Pace.REAL_TIME: 1.5}
-"""Seconds at most in which a client shows a feedback message before the next one is sent."""
+"""The most seconds for a client to show a feedback message before the next one is sent."""
 HASTE = {Pace.FAST: 0.1, Pace.REAL_TIME: 0.075}
-"""The same once it has not shown one, so that the result of a silent client's goal comes after some 3.5 s: between the
-3 and the 5 seconds for which many a client waits."""
+"""The same for a client that has not shown one, so that the result of its goal comes after some 3.5 s: between the 3
+and the 5 seconds that many clients wait.
+"""
 AT_PACE = 3
-"""Feedback messages at the end that come at the pace of the lab's server, whether the ones before were shown or not:
-who shows by a timer of its own what came last leaves some out."""
+"""The number of feedback messages at the end that come at the pace of the lab's server, whether earlier ones were
+shown or not: a client that shows the newest one by a timer leaves some out.
+"""
 LAB_PACE = 0.5
 """Seconds of the client's time between two of these."""
 RESULT = 28
-"""Numbers of a result at least: a client that shows the first ten, or twenty, of them is found out. A result of a
-larger order has one number more than its order says, as the lab's own have."""
+"""The least numbers of a result, to detect a client that shows only the first ten or twenty.
+
+A result for a larger order has one number more than the order, as in the lab.
+"""
 GOAL_LIMIT = 15.0
-"""Seconds in which a goal must arrive once the client is on the graph."""
+"""Seconds within which a goal must arrive once the client is on the graph."""
 END_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 8.0}
-"""Seconds in which a client must ask for the result, must have reported it, must have ended after a refusal."""
+"""Seconds within which a client must request the result, must have reported it, must have ended after a refusal."""
 AFTERMATH = 1.0
 """Seconds in which a client that has reported may end, or say more."""
 
 
 def scenario(bench: Bench) -> None:
-    """Four runs: a goal that succeeds at a late server, then one refused, one aborted, no server, in any order."""
+    """Four runs: a goal that succeeds at a late server, then one refused, one aborted, and no server, in any order."""
     if late(bench) and not called_before_server(bench.seen()):
         known = bool(bench.seen().of("goal"))
         for run in bench.random.sample((refused, aborted, unserved), 3):
@@ -76,10 +80,10 @@ def scenario(bench: Bench) -> None:
 
 
 def begin(bench: Bench, name: str) -> dict[str, Any]:
-    """Begin a part; what the subject is to be started with."""
+    """Begin a part. Return the inputs with which the subject is started."""
     order = bench.random.randint(*ORDERS[name])
     inputs = {
-        # On a command line, -3 could be an option.
+        # On a command line, -3 could look like an option.
         "order": order if bench.in_a_cell else abs(order),
         PATIENCE: drawn_patience(
             bench, PATIENCES_WITHOUT_A_SERVER[bench.pace] if name == ABSENT else PATIENCES
@@ -95,7 +99,7 @@ def start(bench: Bench, inputs: Mapping[str, Any]) -> None:
 
 
 def late(bench: Bench) -> bool:
-    """One run with a server that comes late; whether the subject came to an end of its work."""
+    """Make one run with a late server. Return True if the subject finished its work."""
     inputs = begin(bench, LATE)
 
     def meet(lateness: float, held: float) -> bool:
@@ -113,14 +117,14 @@ def late(bench: Bench) -> bool:
 def meets_late_server(
     bench: Bench, inputs: Mapping[str, Any], lateness: float, held: float, shown_within: Mapping[Pace, float]
 ) -> bool:
-    """Start the subject and let it wait for its server; whether it came to an end of its work.
+    """Start the subject and let it wait for its server. Return True if the subject finished its work.
 
     Args:
-        bench: Where it happens.
-        inputs: What the subject is started with.
-        lateness: Seconds after its client at which the server comes.
+        bench: The bench of the scenario.
+        inputs: The inputs of the subject.
+        lateness: Seconds by which the server comes after its client.
         held: Seconds that the answer to the goal is held back.
-        shown_within: Seconds that it has to show each feedback message, until it has not shown one.
+        shown_within: Seconds for showing each feedback message, until one was not shown.
     """
     action, type_name = bench.reference.only("action_client")
     start(bench, inputs)
@@ -132,14 +136,14 @@ def meets_late_server(
 
 
 def meets_server(bench: Bench, *, accept: bool = True) -> ActionCounterpart:
-    """Serve as soon as the judge has met the subject, which was started just now.
+    """Serve as soon as the judge has discovered the subject, which was just started.
 
-    Where the server was there before, a client may know it first, and the goal of one that ends at once would reach the
-    judge or not, as it happens.
+    If the server already existed, a client may discover it first, and then chance decides whether the goal of a
+    client that ends at once reaches the judge.
 
     Args:
-        bench: Where it happens.
-        accept: Whether goals are accepted.
+        bench: The bench of the scenario.
+        accept: True to accept goals.
     """
     action, type_name = bench.reference.only("action_client")
     bench.await_endpoint("action_client", action)
@@ -147,7 +151,7 @@ def meets_server(bench: Bench, *, accept: bool = True) -> ActionCounterpart:
 
 
 def aborted(bench: Bench, known: bool) -> None:
-    """One run with a goal that is aborted; ``known`` says whether the subject has sent a goal before."""
+    """Make one run with an aborted goal; ``known`` is True if the subject has sent a goal before."""
     inputs = begin(bench, ABORTED)
 
     def meet() -> bool:
@@ -161,37 +165,37 @@ def aborted(bench: Bench, known: bool) -> None:
 def works_on_a_goal(
     bench: Bench, server: ActionCounterpart, status: str, feedbacks: int, shown_within: float
 ) -> bool:
-    """Send feedback for the subject's goal and end it; whether the subject came to an end of its work.
+    """Send feedback for the subject's goal and end the goal. Return True if the subject finished its work.
 
     Args:
-        bench: Where it happens.
+        bench: The bench of the scenario.
         server: The judge's server.
-        status: How the goal ends, such as ``"succeeded"``.
-        feedbacks: Feedback messages before that.
-        shown_within: Seconds that the subject has to show each of them, until it has not shown one.
+        status: The end of the goal, such as ``"succeeded"``.
+        feedbacks: The number of feedback messages before that.
+        shown_within: Seconds for showing each of them, until one was not shown.
     """
-    # As many as an int32 allows, so that nobody can say them all.
+    # So large that a subject cannot say all possible numbers.
     numbers = bench.random.sample(range(10**8, 10**9), feedbacks + 2)
     newest = bench.random.sample(range(10**8, 10**9), feedbacks)
     length = max(RESULT, bench.seen().inputs["order"] + 1)
     result = bench.random.sample(range(10**9, 2 * 10**9), length - 1)
-    # Neither the first number nor the last: who leaves out either of these cannot make up for it.
+    # The repeated number is neither the first nor the last: leaving out either of those is always noticed.
     result.insert(-1, result[1])
     done = await_goal(bench, server, GOAL_LIMIT)
     if done:
-        # The first feedback must not come together with the goal's answer: what a client that takes in one event and
-        # ends has then would be chance. Who goes on asks for the result next.
+        # The first feedback must not come together with the goal's answer: chance would decide what a client
+        # receives that takes one event and ends. A client that goes on requests the result next.
         server.await_result_request(SHOWN_WITHIN[bench.pace])
         action, _ = bench.reference.only("action_client")
         for count, last in enumerate(newest, start=2):
-            # The last number of a message is in no other one: who leaves out a message cannot make up for it.
+            # The last number of a message is in no other message: leaving out a message is always noticed.
             server.send_feedback(partial_sequence=[*numbers[:count], last])
             left = feedbacks + 1 - count
             if 0 < left < AT_PACE:
                 bench.pass_time(LAB_PACE, "action_client", action)
             elif not bench.wait_until(lambda seen: not unshown_feedback(seen.main), shown_within):
                 shown_within = HASTE[bench.pace]
-                # Its queue holds ten messages: a client on a busy machine must have come to those that it has.
+                # Its queue holds ten messages: a client on a busy machine must have taken those that it has.
                 bench.settle()
         server.await_result_request(END_LIMIT[bench.pace])
         hold_back(bench, "result_request")
@@ -206,7 +210,7 @@ def works_on_a_goal(
 
 
 def is_done(evidence: Evidence) -> bool:
-    """True if the subject has ended or, as a program may, has said something of the result and goes on spinning."""
+    """True if the subject has ended or, as a program may, has said something of the result and keeps spinning."""
     part = evidence.main
     result = part.first("result")
     return part.ending is not None or (result is not None and bool(part.said(after=result)))
@@ -222,9 +226,9 @@ def refuse(bench: Bench, begin_it: Callable[[], object], *, known: bool) -> None
     """Refuse the goal of the subject; the part ends with that.
 
     Args:
-        bench: Where it happens.
+        bench: The bench of the scenario.
         begin_it: Starts the subject.
-        known: Whether it has sent a goal before.
+        known: True if it has sent a goal before.
     """
 
     def meet() -> bool:
@@ -256,11 +260,11 @@ _WHAT_IS_SAID = (
     goals.ABORT_NOT_REPORTED,
     goals.SILENT_END,
 )
-"""The criteria on what a client asks and says: where it ended by itself in every part, timing did not decide them."""
+"""The criteria about a client's requests and words: certain if it ended by itself in every part."""
 
 
 def _not_by_refusal(mistake: Mistake) -> Mistake:
-    """A crash, unless only a refused goal leads to it: that is told after what else is wrong."""
+    """Return the same mistake, but not for an error that only a refused goal causes; that is checked later."""
 
     def recognise(evidence: Evidence) -> Advice | None:
         return None if goals.crashed_by_refusal(evidence) else mistake.recognise(evidence)
@@ -269,12 +273,12 @@ def _not_by_refusal(mistake: Mistake) -> Mistake:
 
 
 class ActionClient(SeenAsItIs):
-    """The recipe for a client of an action. Its views are the evidence itself: there is a goal in each of several runs.
+    """The recipe for a client of an action. Its views are the evidence itself, because several runs have a goal.
 
     Args:
-        scenario: Drives the bench. It takes the action's name and type from ``bench.reference.only("action_client")``.
-        ladder: The mistakes, most telling first, between those that keep a client from sending a right goal and those
-            that are asked for when nothing more exact fits.
+        scenario: Drives the bench. The action's name and type are ``bench.reference.only("action_client")``.
+        ladder: The mistakes, most telling first: after those that prevent a right goal, and before those that are
+            checked if nothing more exact fits.
     """
 
     roles = ("action_client",)
@@ -296,7 +300,7 @@ class ActionClient(SeenAsItIs):
 
 
 def sends_goals() -> ActionClient:
-    """The recipe for a client that sends one goal of a given order, and tells how it ended."""
+    """Return the recipe for a client that sends one goal of a given order, and reports how it ended."""
     return ActionClient(
         scenario,
         goals.WRONG_ORDER,
@@ -311,7 +315,7 @@ def sends_goals() -> ActionClient:
         *(replace(hang, certain=True) for hang in HANGS),
         common.AWAITS_IN_VAIN,
         common.went_deaf("action_client"),
-        # Never certain: a client that is starved of time may leave feedback unread when its result is there.
+        # Never certain: a client without processor time may leave feedback unread when its result comes.
         goals.FEEDBACK_NOT_SHOWN,
         *map(common.only_if_ended, _WHAT_IS_SAID),
         goals.STAYS_AFTER_REFUSAL,

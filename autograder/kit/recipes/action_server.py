@@ -1,4 +1,4 @@
-"""An action server: it is sent goals, one of which is canceled while it works."""
+"""An action server: the judge sends it goals, one of which is canceled while the server works on it."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
     from autograder.kit.model import Bench
 
 AT_ONCE = 0.3
-"""Seconds in which many numbers are found only by a server that takes no time for any of them."""
+"""Seconds within which only a server that takes no time per number computes many numbers."""
 MANY = 2
-"""Feedback messages in a row that show that a server does not read a request while it works."""
+"""Successive feedback messages that show that a server reads no request while it works."""
 
 
 class SendsGoals(SeenAsItIs):
-    """The recipe for an action server. Its views are the evidence itself: there are several goals in several runs.
+    """The recipe for an action server. Its views are the evidence itself, because several runs have several goals.
 
     Args:
-        scenario: Drives the bench. It takes the action's name and type from ``bench.reference.only("action_server")``.
-        good: The goals that are to succeed.
+        scenario: Drives the bench. The action's name and type are ``bench.reference.only("action_server")``.
+        good: The goals that should succeed.
         canceled: The goal that is canceled while the server works on it.
     """
 
@@ -56,7 +56,7 @@ class SendsGoals(SeenAsItIs):
                 "Make one ActionServer only, and one node.",
             ),
             Mistake("result_missing", _result_missing, certain=True),
-            # Before any crash: a goal that should have been refused may end in one.
+            # Before any crash: a goal that should have been refused may cause one.
             OWN,
             *common.CRASHES,
             common.endpoint_name("action_server"),
@@ -76,7 +76,7 @@ class SendsGoals(SeenAsItIs):
         )
 
     def _goal_not_succeeded(self, evidence: Evidence) -> Advice | None:
-        """The goal is aborted: the subject says so, or does not say that it succeeded."""
+        """The goal is aborted: the subject says so, or does not report success."""
         aborted = [seen for seen in self._good(evidence) if seen.status == ABORTED]
         if not aborted or traceback_of(evidence):
             return None
@@ -87,7 +87,7 @@ class SendsGoals(SeenAsItIs):
         )
 
     def _cancel_refused(self, evidence: Evidence) -> Advice | None:
-        """The cancel request was answered with no."""
+        """The server refused the cancel request."""
         long = self.canceled(evidence)
         if long.cancelled_too_late and long.sent_after(long.cancel_answered_at):
             return Advice(
@@ -107,11 +107,11 @@ class SendsGoals(SeenAsItIs):
         )
 
     def _cancel_refused_on_its_way(self, evidence: Evidence) -> Advice | None:
-        """The same, of a goal that had not ended: whether the request came in time has no part in it."""
+        """The same, for a goal that had not ended, so that the timing of the request does not matter."""
         return None if self.canceled(evidence).cancelled_too_late else self._cancel_refused(evidence)
 
     def _cancel_not_read(self, evidence: Evidence) -> Advice | None:
-        """The goal goes on and the cancel request is not answered."""
+        """The goal goes on, and the cancel request is not answered."""
         long = self.canceled(evidence)
         if long.cancel_accepted or long.unread < MANY or is_quick(long):
             return None
@@ -125,7 +125,7 @@ class SendsGoals(SeenAsItIs):
         )
 
     def _cancel_ignored(self, evidence: Evidence) -> Advice | None:
-        """The cancel was accepted and the goal went on."""
+        """The cancel request was accepted, but the goal went on."""
         long = self.canceled(evidence)
         if not long.cancel_accepted or long.status == CANCELED:
             return None
@@ -149,7 +149,7 @@ def _result_missing(evidence: Evidence) -> Advice | None:
         (list(seen.result) for part in evidence.reference.parts for seen in all_goals(part) if seen.result),
         [],
     )
-    # What rclpy says when it sends the result, and what autograder/notebook says in its place.
+    # rclpy's error when it sends the result, and the replacement for it in autograder/notebook.
     absent = rf"'NoneType' object has no attribute '_?(?:{'|'.join(fields)})'|" if fields else ""
     said = f"{absent}must return a result of the action"
     traceback = traceback_of(evidence)
@@ -165,7 +165,7 @@ def _result_missing(evidence: Evidence) -> Advice | None:
 
 
 def _exception_in_execute(evidence: Evidence) -> Advice | None:
-    """The execute callback raised, so rclpy aborted the goal."""
+    """The execute callback raised an exception, so rclpy aborted the goal."""
     traceback = traceback_of(evidence)
     if not traceback or not any(seen.status == ABORTED for part in evidence for seen in all_goals(part)):
         return None

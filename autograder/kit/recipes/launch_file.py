@@ -1,8 +1,8 @@
-"""A launch file that starts two programs, one that publishes and one that says what it hears, and moves their topic.
+"""A launch file that starts two programs, a publisher and one that says what it hears, and remaps their topic.
 
-The judge hears the one and talks to the other under the new name. The programs stay as they are: what the launch tells
-of its processes shows which of them were given a rule. Each program is then started once more without its rule: one in
-whose code the topic has the new name is there all the same.
+The judge listens to one and publishes to the other under the new name. The programs are not changed: the launch
+reports its processes, which shows which of them got a rule. Each program is then started again without its rule: if
+it still uses the new name, the name is in its code.
 """
 
 from __future__ import annotations
@@ -28,21 +28,22 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Part
 
 NODES = 2
-"""Programs that are to be started, each with a rule."""
+"""The number of programs that should be started, each with a rule."""
 MESSAGES = 2
-"""Messages of the publisher's that are waited for."""
+"""The number of messages from the publisher to wait for."""
 SAYING = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
-"""Seconds of wall time in which the other program must have said the judge's text."""
+"""Seconds of wall time within which the other program must have said the judge's text."""
 BEGINNING = {Pace.FAST: 20.0, Pace.REAL_TIME: 40.0}
-"""Seconds of wall time in which a launch must have started its first process, or ended."""
+"""Seconds of wall time within which a launch must have started its first process, or ended."""
 PAUSE = {Pace.FAST: 3.0, Pace.REAL_TIME: 10.0}
-"""Seconds of wall time that a launch may let pass between its first process and its second."""
+"""Seconds of wall time that a launch may leave between its first process and its second."""
 LATE = 4.5
-"""Seconds of wall time in which the publisher must have spoken, also where its first message was lost and holds up the
-next ones until its writer's heartbeat, 3 s later (Fast DDS)."""
+"""Seconds of wall time within which the publisher must be heard, even if its first message was lost and delays the
+next ones until its writer's heartbeat, 3 s later (Fast DDS).
+"""
 PART = "launching"
 MOST = 4
-"""Programs that are started without their rules, of a launch file that starts more of them."""
+"""The most programs that are started without their rules, if a launch file starts many."""
 _OF_A_PACKAGE = re2.compile(r"/lib/(\w[\w-]{0,60})/(\w[\w.-]{0,60})$")
 """The end of the path of a package's program."""
 
@@ -51,14 +52,14 @@ class Launched:
     """The programs that a launch file started, as they were seen.
 
     Args:
-        evidence: All that was seen.
-        package: Of the two programs.
-        old_name: The topic's name in the code of the programs.
+        evidence: All evidence.
+        package: The package of the two programs.
+        old_name: The topic's name in the programs' code.
 
     Attributes:
         topic: The new name.
-        publishers: The names under which something publishes messages of the topic's type.
-        subscriptions: The names under which something subscribes to them.
+        publishers: The names on which a publisher of the topic's type was seen.
+        subscriptions: The names on which a subscription to the type was seen.
     """
 
     def __init__(self, evidence: Evidence, package: str, old_name: str) -> None:
@@ -84,22 +85,22 @@ class Launched:
 
     @property
     def elsewhere(self) -> list[str]:
-        """The other names under which something is."""
+        """The other names with an endpoint."""
         return sorted((self.publishers | self.subscriptions) - {self.topic})
 
     @property
     def old_names(self) -> list[str]:
-        """Those of them that are the name in the code, in whatever namespace."""
+        """Those other names that are the name in the code, in any namespace."""
         return [name for name in self.elsewhere if name.rpartition("/")[2] == self._old_name]
 
     @property
     def is_there(self) -> bool:
-        """True if something is under the old or the new name."""
+        """True if there is an endpoint under the old or the new name."""
         return bool(self.old_names) or self.topic in self.publishers | self.subscriptions
 
     @property
     def not_moved(self) -> list[str]:
-        """The programs that are under the new name without their rules, too."""
+        """The programs that are under the new name even without their rules."""
         seen = [(one.main, Launched(one, self._package, self._old_name)) for one in self._alone]
         return [
             str(part.inputs["program"]) for part, it in seen if it.topic in it.publishers | it.subscriptions
@@ -107,9 +108,10 @@ class Launched:
 
     @property
     def without_rules(self) -> list[tuple[str, ...]]:
-        """The programs under the new name as they are started without rules: package, program and arguments.
+        """The programs under the new name, as started without rules: package, program, arguments.
 
-        One that was given no rule for the topic is started without arguments: a rule of another form may be in them.
+        A program that got no rule for the topic is started without arguments, because they may contain a rule of
+        another form.
         """
         ends = self._sides[0] | self._sides[1]
         there = [one for one in processes(self._part) if {0, _lower(one.pid)} & ends]
@@ -122,20 +124,20 @@ class Launched:
 
     @property
     def talkers(self) -> int:
-        """The number of programs that publish under the new name. One more listener does no harm."""
+        """The number of programs that publish under the new name. One more subscriber does no harm."""
         return len(self._sides[0])
 
     @property
     def given_a_rule(self) -> int:
-        """The number of programs under the new name that were given a rule that leads there."""
+        """The number of programs under the new name that got a rule for it."""
         return len(self._given & (self._sides[0] | self._sides[1]))
 
     @property
     def moved_by_rules(self) -> bool:
-        """True if all programs under the new name were given such a rule.
+        """True if all programs under the new name got such a rule.
 
-        Where an endpoint does not tell whose it is, any process that was given a rule may have it. Who else listens
-        there, such as ``ros2 topic echo``, needs no rule.
+        If an endpoint does not tell its process, any process with a rule may own it. Other subscribers there, such as
+        ``ros2 topic echo``, need no rule.
         """
         given, (talk, listen) = self._given, self._sides
         listeners = listen & (given | self._own) or listen
@@ -143,38 +145,38 @@ class Launched:
 
     @property
     def own_without_a_rule(self) -> bool:
-        """True if a program of the package is under the new name, and no rule led it there."""
+        """True if a program of the package is under the new name without a rule for it."""
         return bool(((self._sides[0] | self._sides[1]) & self._own) - self._given)
 
     @property
     def has_a_talker(self) -> bool:
-        """True if a program of the package publishes under the new name, or one that does not tell whose it is."""
+        """True if a program of the package publishes under the new name, or an endpoint of an unknown process does."""
         return self._has_one_of_its_own(self._sides[0])
 
     @property
     def has_a_listener(self) -> bool:
-        """True if such a program subscribes there."""
+        """True if a program of the package subscribes there, or an endpoint with an unknown process does."""
         return self._has_one_of_its_own(self._sides[1])
 
     def _has_one_of_its_own(self, side: set[int]) -> bool:
-        # A package may have another name than the course's: then the rule tells its programs from tools.
+        # If the package's name differs from the course's, the rule distinguishes its programs from tools.
         return bool(side & (self._own | self._given)) or 0 in side
 
     @property
     def is_settled(self) -> bool:
-        """True if all is known of the launch: each program's ends are on the graph, or one too many is."""
+        """True if the launch is fully known: each program's endpoints are on the graph, or there is one too many."""
         if self.elsewhere or not (self.publishers and self.subscriptions):
             return True
         return self.moved_by_rules and self.talkers < NODES and self.all_are_there
 
     @property
     def rules(self) -> list[str]:
-        """The names that the rules of the launch's programs are for."""
+        """The topic names to which the programs' rules apply."""
         return [old for process in processes(self._part) for old, _ in remappings(process.argv)]
 
     @property
     def all_are_there(self) -> bool:
-        """True if each program that was started has an end of a topic on the graph, or one has that does not tell."""
+        """True if each started program has a topic endpoint on the graph, or an endpoint's process is unknown."""
         known = {process for _, _, process in self._ends}
         started = processes(self._part)
         parents = {process.parent for process in started}
@@ -183,13 +185,13 @@ class Launched:
 
     @property
     def _ends(self) -> set[tuple[str, str, int]]:
-        """The ends of topics that were ever seen: role, topic, process."""
+        """The topic endpoints that were ever seen: role, topic, process."""
         surveys = self._part.of("interface")
         return {(role, name, process) for s in surveys for role, name, process in s.data.get("ends", ())}
 
     @property
     def _sides(self) -> tuple[set[int], set[int]]:
-        """The processes that publish under the new name, and those that subscribe; 0 for one that is not known."""
+        """The processes that publish under the new name, and those that subscribe; 0 for an unknown one."""
         talk, listen = (
             {process for role, name, process in self._ends if (role, name) == (side, self.topic)}
             for side in ("publisher", "subscription")
@@ -202,7 +204,7 @@ class Launched:
 
     @property
     def _own(self) -> set[int]:
-        """The processes of the package's programs; a tool may have its name among its arguments, too."""
+        """The processes of the package's programs; a tool may also have a program's name among its arguments."""
         return {
             _lower(process.pid)
             for process in processes(self._part)
@@ -210,11 +212,11 @@ class Launched:
         }
 
     def _without_rule(self, argv: Sequence[str]) -> tuple[str, ...]:
-        """A command line as ``ros2 run`` takes it, without its rules for the name; empty for no package's program.
+        """Return a command line as ``ros2 run`` takes it, without rules for the name; empty for other processes.
 
-        Nor has it a file of parameters: a launch writes one for itself, and takes it away at its end.
+        Files of parameters are left out, too, because a launch writes one and removes it at its end.
         """
-        # A prefix, such as `python3 -u`, may stand before the program.
+        # A prefix, such as `python3 -u`, may precede the program.
         own = argv[: argv.index("--ros-args")] if "--ros-args" in argv else argv
         for place, word in enumerate(own, 1):
             if found := _OF_A_PACKAGE.search(word) or _OF_A_PACKAGE.search(self._program(word)):
@@ -228,7 +230,7 @@ class Launched:
         return ()
 
     def _program(self, word: str) -> str:
-        """The end of the path of the program that setup.py makes of a module, or of its file; empty for none."""
+        """Return the end of the path of the program that setup.py makes of a module or file; empty for none."""
         file = word.removesuffix(".py") if word.endswith(".py") else word.replace(".", "/")
         return next((path for module, path in self._programs if f"/{file}".endswith(f"/{module}")), "")
 
@@ -247,16 +249,16 @@ class Launched:
         return any(self._leads_there(old, new) for old, new in remappings(argv))
 
     def _leads_there(self, old: str, new: str) -> bool:
-        """True if a rule leads from the name in the code, with a node's name or a namespace before it, to the topic."""
+        """True if a rule maps the name in the code, with any node name or namespace before it, to the topic."""
         begins = old.rpartition(":")[2].rpartition("/")[2] == self._old_name
         return begins and _leads_to(self.topic, new)
 
 
 class LaunchFile:
-    """The recipe for a launch file that moves a topic of two programs.
+    """The recipe for a launch file that remaps a topic of two programs.
 
     Args:
-        package: Of the two programs.
+        package: The package of the two programs.
         old_name: The topic's name in their code.
     """
 
@@ -283,11 +285,11 @@ class LaunchFile:
         return Launched(evidence, self._package, self._old_name)
 
     def expected(self, evidence: Evidence) -> Launched:
-        """The same: it knows the new name, which is all that is taken from the reference output."""
+        """The same: only the new name is taken from the reference output, and it knows that."""
         return self.seen(evidence)
 
     def scenario(self, bench: Bench) -> None:
-        """Launch it; hear the one program and talk to the other under the new name."""
+        """Launch it; listen to one program and publish to the other under the new name."""
         topic, type_name = bench.reference.only("publisher")
         text = f"status {bench.random.randrange(10_000, 100_000)} from the judge"
         bench.part(PART, text=text)
@@ -296,7 +298,7 @@ class LaunchFile:
         bench.start()
         bench.wait_until(_has_begun, BUILDING + BEGINNING[bench.pace], quiet=BUILDING)
         bench.wait_until(lambda evidence: len(_of_nodes(evidence.main)) >= NODES, PAUSE[bench.pace])
-        # The first program on the graph says nothing of the others: on a crowded machine they come seconds later.
+        # The first program on the graph does not mean that the others come soon: on a busy machine they take seconds.
         bench.watch_graph(lambda evidence: self.seen(evidence).all_are_there, PAUSE[bench.pace])
         talks = bench.await_endpoint("publisher", topic)
         listens = bench.await_endpoint("subscription", topic)
@@ -307,7 +309,7 @@ class LaunchFile:
         if talks:
             bench.wait_until(lambda evidence: len(self.seen(evidence).heard) >= MESSAGES, LATE)
         if talks and listens:
-            # The launch's processes are reported beside the wire, and a third one may still be on its way to the graph.
+            # The processes are not reported on the graph, so a third one may still be about to appear there.
             bench.watch_graph(lambda evidence: self.seen(evidence).is_settled, PAUSE[bench.pace])
         seen = self.seen(Evidence([bench.seen()], bench.reference))
         bench.stop()
@@ -315,14 +317,14 @@ class LaunchFile:
             self._run_alone(bench, words)
 
     def _run_alone(self, bench: Bench, words: Sequence[str]) -> None:
-        """Start a program without its rules, until it is on the topic, under whichever name."""
+        """Start a program without its rules, until it is on the topic under either name."""
         bench.part(f"{words[1]} without its rule", program=words[1])
         bench.start(ALONE, *words)
         bench.watch_graph(lambda evidence: self.seen(evidence).is_there, BEGINNING[bench.pace])
         bench.stop()
 
     def _launch_error(self, evidence: Evidence) -> Advice | None:
-        """The launch failed and says why."""
+        """The launch failed and reports the reason."""
         what = _complaint(evidence.main)
         if not what:
             return None
@@ -373,27 +375,27 @@ def _says_its_text(part: Part) -> bool:
 
 
 def _lower(pid: int) -> int:
-    """The part of a process's id that its endpoints tell."""
+    """Return the part of a process's id that its endpoints contain."""
     return pid & 0xFFFF
 
 
 def _is_a_tool(argv: tuple[str, ...]) -> bool:
-    """True if a command line is one of the command ``ros2``, perhaps behind its Python."""
+    """True if a command line is one of the command ``ros2``, perhaps after its Python."""
     return any(word.rpartition("/")[2] == "ros2" for word in argv[:2])
 
 
 def _leads_to(topic: str, target: str) -> bool:
-    """True if a rule's target is the topic; a relative one has the node's namespace in front."""
+    """True if a rule's target is the topic; a relative name has the node's namespace in front."""
     return topic == target or topic.endswith(f"/{target.removeprefix('~').lstrip('/')}")
 
 
 def _of_nodes(part: Part) -> list[Process]:
-    """The processes that a launch started with arguments for ROS."""
+    """Return the processes that a launch started with arguments for ROS."""
     return [process for process in processes(part) if "--ros-args" in process.argv]
 
 
 def _complaint(part: Part) -> str:
-    """The launch's own message about the file, without the words around it."""
+    """Return the launch's own message about the file, without the text around it."""
     lines = [str(event.data["text"]) for event in part.of("output")]
     for number, line in enumerate(lines):
         if "[ERROR] [launch]:" not in line and not line.startswith("ros2: "):
@@ -406,7 +408,7 @@ def _complaint(part: Part) -> str:
 
 
 def _syntax_error(evidence: Evidence) -> Advice | None:
-    """Python cannot read the launch file."""
+    """Python cannot parse the launch file."""
     what = _complaint(evidence.main)
     if not re2.match(r"(?:Syntax|Indentation|Tab)Error", what):
         return None

@@ -1,4 +1,4 @@
-"""Subjects for which the exercise writes its own scenario: the recipe has the ladder of common mistakes around it."""
+"""Subjects for which the exercise has its own scenario: the recipe adds the common mistakes."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ if TYPE_CHECKING:
 _NOUN = {"publisher": "a publisher on", "subscription": "a subscription to", "client": "a client of"}
 _NOUN |= {"service": "a service", "action_client": "a client of the action", "action_server": "an action"}
 SERVED = 3.0
-"""Seconds of wall time in which a service that is on the graph may be called."""
+"""Seconds of wall time within which a service on the graph must become callable."""
 
 
 @dataclass(frozen=True)
 class Met:
-    """A subject that is met and spun, and whom it meets: a listener on each topic on which the reference publishes.
+    """A subject that is discovered and spun, with the judge's endpoints that it talks to.
 
     Attributes:
-        bench: Where it happens.
-        topics: These topics; in the order of their names, as the others.
-        speakers: A publisher of the judge's for each topic that the reference subscribes to.
-        callers: A client of the judge's for each of its services.
+        bench: The bench of the scenario.
+        topics: The topics on which the reference publishes; sorted by name, like the others.
+        speakers: A publisher of the judge for each topic that the reference subscribes to.
+        callers: A client of the judge for each of the reference's services.
     """
 
     bench: Bench
@@ -42,15 +42,16 @@ class Met:
 
     @property
     def heard(self) -> int:
-        """The number of messages that arrived so far, on the one topic or the first."""
+        """The number of messages received so far, on the only topic or the first one."""
         return self.bench.heard(self.topics[0])
 
 
 def once_met(happens: Callable[[Met], bool]) -> Callable[[Bench], None]:
-    """The scenario of one part: a subject is met at all of the reference's endpoints, and then something happens.
+    """Return the scenario of one part: the judge discovers the subject at all endpoints, then ``happens`` runs.
 
     Args:
-        happens: Says whether all that it waited for came; where it did not, the judge asks whether the subject is spun.
+        happens: Returns True if everything that it waited for came; otherwise the judge checks whether the subject is
+            spun.
     """
 
     def scenario(bench: Bench) -> None:
@@ -75,11 +76,11 @@ def once_met(happens: Callable[[Met], bool]) -> Callable[[Bench], None]:
 
 
 class OwnScenario:
-    """The recipe for a subject with endpoints of some roles. Its view is what was seen in the first part.
+    """The recipe for a subject with endpoints of some roles. Its view is the record of the first part.
 
     Args:
-        scenario: Drives the bench, such as one of :func:`once_met`. One of your own takes name and type from
-            ``bench.reference.only(role)``; where it has several, their types by their names from
+        scenario: Drives the bench, such as one of :func:`once_met`. Your own gets name and type from
+            ``bench.reference.only(role)``; if a role has several endpoints, their types by name are in
             ``bench.reference.interface[role]``.
         roles: Such as ``"publisher"``, the most telling first.
     """
@@ -95,7 +96,7 @@ class OwnScenario:
     def expected(self, evidence: Evidence) -> Part:
         """The recording of the reference solution, with its endpoints.
 
-        While that is being recorded it is what was seen itself.
+        While the reference is being recorded, this is the record itself.
         """
         if not evidence.reference.parts:
             return evidence.main
@@ -103,7 +104,7 @@ class OwnScenario:
         return replace(recorded, events=[Event(0.0, "interface", "graph", interface), *recorded.events])
 
     def has(self, role: str) -> Callable[[Evidence], Finding]:
-        """For :meth:`autograder.kit.draft.Draft.asks`: the endpoints of a role have the reference's names and types."""
+        """Return a function for :meth:`autograder.kit.draft.Draft.asks`: a role has the reference's names and types."""
 
         def judge(evidence: Evidence) -> Finding:
             wanted, made = evidence.reference.interface.get(role, {}), evidence.main.endpoints(role)
@@ -141,13 +142,13 @@ def _in_words(role: str, endpoints: Mapping[str, str]) -> str:
 
 
 class OwnLadder(SeenAsItIs):
-    """The recipe for a subject without an endpoint: the exercise says which common mistakes it may show, too.
+    """The recipe for a subject without an endpoint: the exercise lists the common mistakes that it may show.
 
-    Its view is all that was seen.
+    Its view is all evidence.
 
     Args:
         scenario: Drives the bench.
-        ladder: The common mistakes, most telling first, with the places of the exercise's own among them.
+        ladder: The common mistakes, most telling first, with placeholders for the exercise's own.
     """
 
     roles = ()

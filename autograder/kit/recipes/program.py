@@ -19,18 +19,18 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
 
 SAYING = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
-"""Seconds of wall time, after its node appeared, in which it must have said its line."""
+"""Seconds of wall time, after its node appeared, within which it must have said its line."""
 LATE = 0.3
-"""Seconds without any event after which the log of a program that said its line has arrived."""
+"""Seconds without any event after which the log of a program that said its line is complete."""
 COMPARED, LONG = 200, 400
-"""Lines, and characters of a line, that are compared with the expected one: comparing a flood would take minutes."""
+"""The most lines, and characters of a line, that are compared: comparing a flood would take minutes."""
 
 
 class Ran:
     """A program, as it was seen.
 
     Args:
-        evidence: All that was seen.
+        evidence: All evidence.
     """
 
     def __init__(self, evidence: Evidence) -> None:
@@ -38,35 +38,35 @@ class Ran:
 
     @property
     def line(self) -> str:
-        """The line that the reference solution logs; empty while that is being recorded."""
+        """The line that the reference solution logs; empty while the reference is being recorded."""
         recorded = self._evidence.reference.parts
         said = recorded[0].first("said") if recorded else None
         return str(said.data["text"]) if said is not None else ""
 
     @property
     def nodes(self) -> list[str]:
-        """The names of its nodes."""
+        """The names of the program's nodes."""
         return sorted({node for part in self._evidence for node in _nodes(part)})
 
     @property
     def has_node(self) -> bool:
-        """True if it made a node; the name of one that was there for a moment only may be unknown."""
+        """True if it made a node; the name of a node that existed only for a moment may be unknown."""
         return any(part.had_node for part in self._evidence)
 
     @property
     def words(self) -> list[str]:
-        """Its words, without those of ``ros2`` about a program that it cannot run."""
+        """The program's words, without messages of ``ros2`` about a program that it cannot run."""
         return [word for part in self._evidence for word in _words(part)]
 
     @property
     def says_it(self) -> bool:
-        """True if the line is in its words."""
+        """True if the line is in the program's words."""
         line = self.line
         return bool(line) and any(_says(said, line) for part in self._evidence for said in part.said())
 
     @property
     def nearest(self) -> str:
-        """The line of its words that is most like the expected one; empty where it said nothing."""
+        """The program's line that is most similar to the expected one; empty if it said nothing."""
         if self.says_it:
             return self.line
         words = self.words
@@ -76,7 +76,7 @@ class Ran:
 
     @property
     def first_difference(self) -> str:
-        """The place where that differs from the expected line, in a sentence."""
+        """The place where that line begins to differ from the expected one, as a sentence."""
         return first_difference(self.nearest, self.line)
 
 
@@ -85,7 +85,7 @@ _LETTER = re2.compile(r"[A-Za-z0-9]")
 
 
 def _says(said: str, line: str) -> bool:
-    """True if a line is in what was said, and no letter or digit directly beside it."""
+    """True if a text contains a line, with no letter or digit directly next to it."""
     before, found, after = _COLOUR.sub(" ", said).partition(line)
     return bool(found) and not _LETTER.match(before[-1:]) and not _LETTER.match(after)
 
@@ -102,8 +102,8 @@ class Program:
     """The recipe for a program of a package.
 
     Args:
-        package: What the task calls the package.
-        program: And the program: ``ros2 run PACKAGE PROGRAM``.
+        package: The package's name in the task.
+        program: The program's name in the task: ``ros2 run PACKAGE PROGRAM``.
         part: The name of its run in the reference output.
     """
 
@@ -118,7 +118,7 @@ class Program:
         return Ran(evidence)
 
     def expected(self, evidence: Evidence) -> Ran:
-        """The same: it knows the line, which is all that is taken from the reference output."""
+        """The same: only the line is taken from the reference output, and it knows that."""
         return Ran(evidence)
 
     def scenario(self, bench: Bench) -> None:
@@ -147,18 +147,18 @@ class Program:
         if programs.entry_point(evidence, self._entry):
             return Finding(False, expected, "built; its entry point leads nowhere")
         seen = Ran(evidence)
-        # A program that raises an exception was started, too; what it does not do, the other criteria say.
+        # A program that raises an exception was started; the other criteria judge what it did not do.
         ran = seen.has_node or bool(seen.words) or any(part.traceback for part in evidence)
         return Finding(ran, expected, "built and started" if ran else "the program did nothing")
 
     def is_a_node(self, evidence: Evidence) -> Finding:
-        """A node of the program's is on the graph."""
+        """A node of the program is on the graph."""
         ran = Ran(evidence)
         unnamed = "a node, for a moment" if ran.has_node else "no node"
         return Finding(ran.has_node, "a node on the graph", ", ".join(ran.nodes) or unnamed)
 
     def says_the_line(self, evidence: Evidence) -> Finding:
-        """The reference's line is in its log (or printed)."""
+        """The reference's line is in the program's log (or printed)."""
         seen = Ran(evidence)
         near, recording = seen.nearest, not evidence.reference.parts
         return Finding(seen.says_it or recording, f"“{seen.line}”", f"“{near}”" if near else "nothing")

@@ -1,4 +1,4 @@
-"""The programs of a package: each is run as in a terminal of its own, judged as its node is, and ended with Ctrl-C."""
+"""The programs of a package: each is run as in a terminal of its own, judged like its node, and ended with Ctrl-C."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
 ENDING = {Pace.FAST: 3.0, Pace.REAL_TIME: 10.0}
-"""Seconds of wall time in which a program must have ended after Ctrl-C; it takes a tenth of one."""
+"""Seconds of wall time within which a program must have ended after Ctrl-C; it takes a tenth of one."""
 
 _ROLES = ("publisher", "subscription", "client", "service", "action_client", "action_server")
 
@@ -31,12 +31,12 @@ class Program:
     """A program of the package.
 
     Attributes:
-        name: As ``ros2 run`` knows it.
-        node: The exercise about its node alone. The program has to do all that is asked for there.
-        title: Of its criterion, one line for a person.
-        points: Of its criterion.
-        file: The name of its file without ``.py``; the program's own where it is empty.
-        ends_by_itself: It comes to its own end, as a client that has its answer does. Ctrl-C ends it where it goes on.
+        name: The name for ``ros2 run``.
+        node: The exercise about its node alone. The program must fulfill everything in it.
+        title: The title of the program's criterion, one line for people.
+        points: The points for that criterion.
+        file: The name of its file without ``.py``; empty if it is the program's name.
+        ends_by_itself: True if it ends by itself, as a client with its answer does. Ctrl-C ends it if it goes on.
     """
 
     name: str
@@ -52,12 +52,12 @@ class Program:
         return f"{self.name}: "
 
     def parts(self, every: Iterable[Part]) -> list[Part]:
-        """Its runs, under the names that the exercise of its node knows, from their start to their very end."""
+        """Return its runs, from start to end, under the names that the exercise of its node uses."""
         own = [part for part in every if part.name.startswith(self.prefix)]
         return [replace(part, name=part.name.removeprefix(self.prefix)) for part in own]
 
     def view(self, evidence: Evidence) -> Evidence:
-        """The evidence for the exercise of its node: its own runs, up to Ctrl-C."""
+        """Return the evidence for the exercise of its node: its own runs, up to Ctrl-C."""
         expected = evidence.reference
         ends = {role: expected.interface.get(role, {}) for role in self.node.roles}
         return Evidence(
@@ -72,7 +72,7 @@ class Program:
         return self.node.judge_as_one(self.view(evidence), "all that is asked of its node")
 
     def ending(self, evidence: Evidence) -> str:
-        """The reaction to Ctrl-C, in a few words; empty where it ended by that."""
+        """Return its reaction to Ctrl-C, in a few words; empty if Ctrl-C ended it."""
         parts = self.parts(evidence)
         if self.ends_by_itself and parts:
             return _its_own_end(parts)
@@ -86,7 +86,7 @@ class Program:
 
 
 class _OneProgram:
-    """A bench for the scenario of one program's node: all words are the bench's, but for these."""
+    """A bench for the scenario of one program's node: it passes on all calls except the methods below."""
 
     def __init__(self, bench: Bench, program: Program) -> None:
         self._bench, self._program = bench, program
@@ -129,13 +129,13 @@ def _before_ctrl_c(part: Part) -> Part:
 
 
 def _its_own_end(parts: Sequence[Part]) -> str:
-    """The fault in the end of a program that is to end by itself; empty where it did so."""
+    """Return the fault in the end of a program that should end by itself; empty if it did."""
     if any(part.ending is None and part.first("subject", INTERRUPTED) for part in parts):
         return "went on"
-    # Where the judge asked it where it hangs, it had fallen silent, whatever has ended it afterwards.
+    # If the judge asked for its stacks, it had fallen silent, however it ended afterwards.
     if any(part.ending is None or part.of("stack") for part in parts):
         return "did not come to its end"
-    # One that waits in vain may say so with an exception; one that never got further has not come to an end.
+    # A program that waits in vain may report it by an exception; one that never got further has not finished.
     return "failed each time" if all(_before_ctrl_c(part).traceback for part in parts) else ""
 
 
@@ -148,15 +148,15 @@ class Programs:
 
     Args:
         name: The package.
-        programs: Its programs, in the order of the task.
-        keeps: Programs of an earlier lab, whose entry points must not be lost where their modules are there.
+        programs: The programs, in the order of the task.
+        keeps: Programs of an earlier lab; if their modules exist, their entry points must exist, too.
     """
 
     def __init__(self, name: str, *programs: Program, keeps: Sequence[str] = ()) -> None:
         self._name, self._programs, self._keeps = name, programs, keeps
 
     def exercise(self, exercise_id: str, title: str, task: str, **more: Any) -> Exercise:
-        """The exercise: entry points and how programs end for two points each, and the criteria of the programs.
+        """Return the exercise: two points each for entry points and for ending, and the criteria of the programs.
 
         Args:
             exercise_id: Such as ``"lab_1_2.programs"``.
@@ -241,7 +241,7 @@ class Programs:
         return "did not start" if nowhere else ending
 
     def _ends(self, all_on_ctrl_c: str) -> str:
-        """The expected ends of the programs, in words; ``all_on_ctrl_c`` where none comes to its own end."""
+        """Return the expected ends of the programs, in words; ``all_on_ctrl_c`` if none ends by itself."""
         alone = [program.name for program in self._programs if program.ends_by_itself]
         others = [program.name for program in self._programs if not program.ends_by_itself]
         return f"{_and(others)} ends on Ctrl-C, {_and(alone)} by itself" if alone else all_on_ctrl_c
@@ -279,7 +279,7 @@ class Programs:
             yield Mistake("ignores_ctrl_c", partial(_ignores_ctrl_c, program))
 
     def _another_program(self, evidence: Evidence) -> Advice | None:
-        """A program shows nothing of its own node, and all that another one of them should."""
+        """A program shows nothing of its own node, but everything of another program's node."""
         for program in self._programs:
             shown = {role for part in program.view(evidence) for role in _ROLES if part.endpoints(role)}
             for other in self._programs:
@@ -305,9 +305,9 @@ class Programs:
 
 
 class _Wrong:
-    """A program that is not right, in which one mistake after the other is looked for.
+    """A wrong program, in which one mistake after the other is looked for.
 
-    Whether it is right is decided once for each evidence: there are about a hundred mistakes, and each decision may
+    Whether it is wrong is decided once for each evidence: there are about a hundred mistakes, and each decision may
     take a tenth of a second of the few that the judge has for all of them.
     """
 
@@ -322,7 +322,7 @@ class _Wrong:
         return self._known[1]
 
     def recognise(self, mistake: Mistake, evidence: Evidence) -> Advice | None:
-        """A common mistake, where this program is not right."""
+        """Return the advice of a common mistake, if this program is wrong."""
         view = self._view(evidence)
         advice = mistake.recognise(view) if view else None
         return replace(advice, text=f"{self._program.name}: {advice.text}") if advice else None
@@ -334,7 +334,7 @@ _MADE_OF_NOTHING = re2.compile(
 
 
 def _class_not_in_its_file(program: Program, evidence: Evidence) -> Advice | None:
-    """It makes a node of a class that its file does not have."""
+    """The program uses a class that its file does not contain."""
     traceback = traceback_of(evidence)
     found = _MADE_OF_NOTHING.search(traceback)
     if found is None or found["made"] != found["unknown"]:

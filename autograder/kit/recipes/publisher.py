@@ -1,4 +1,4 @@
-"""A publisher: it is listened to, in simulated time where it follows that, and longer where it stumbles."""
+"""A publisher: the judge listens in simulated time if the publisher follows it, and longer if something looks wrong."""
 
 from __future__ import annotations
 
@@ -22,27 +22,33 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Reference
 
 USUAL_PERIOD = 0.5
-"""Seconds; stands in for the reference's period while that is being recorded."""
+"""Seconds that replace the reference's period while the reference is being recorded."""
 LONG_STEP = 2 * STEP
-"""Simulated seconds a step while more of a publisher is listened to. A timer that is shorter than a step is called once
-in it: what is counted by such a timer seems uneven in steps of two lengths, and is looked at in real time."""
+"""Simulated seconds in one step while the judge listens for more.
+
+A timer that is shorter than a step is called once a step, so its messages seem uneven over steps of two lengths, and
+are checked again in real time.
+"""
 SILENCE = {Pace.FAST: 3.0, Pace.REAL_TIME: 4.5}
-"""Seconds without any event after which nothing more is waited for. A message that was lost while the two ends met
-holds up all that follow it until its writer's next heartbeat, 3 s later (Fast DDS, ``heartbeatPeriod``)."""
+"""Seconds without any event after which the judge stops waiting.
+
+A message that was lost during discovery delays all later ones until its writer's next heartbeat, 3 s later (Fast
+DDS, ``heartbeatPeriod``).
+"""
 PERSISTENT = 13
-"""Messages after which a publisher in real time is taken to go on: more than the ten that many a loop is made for."""
+"""Messages after which a publisher in real time is taken to go on: more than the ten of many loops."""
 LOST = 1
-"""Messages that a program may have sent before anybody can hear it, on a machine that is not busy."""
+"""Messages that a program may have sent before the judge can receive them, on a machine that is not busy."""
 PERSISTS = 1.0
-"""Seconds in which a program must not end by itself once it was heard: simulated time may have gone by in a moment."""
+"""Seconds in which a program must not end by itself once it was heard: simulated time may have passed in a moment."""
 
 
 class Hears:
     """The recipe for a publisher.
 
     Args:
-        messages: That are listened to, in simulated time and where nothing else is known.
-        long_run: That are listened to where they cost little, or where it stumbled: it may go wrong late.
+        messages: The number of messages to wait for, in simulated time and if nothing else is known.
+        long_run: The number of messages if they cost little, or if something looks wrong: some faults come late.
     """
 
     roles = ("publisher",)
@@ -55,19 +61,19 @@ class Hears:
         self._variable = "self.count"
 
     def each_text(self, judge: Judge[Publisher]) -> Judge[Publisher]:
-        """Mark the criterion on each single message: a wrong rate is told only where that one holds."""
+        """Mark the criterion on each single message: a wrong rate is reported only if this criterion holds."""
         self._text = judge
         return judge
 
     def whole_course(self, judge: Judge[Publisher]) -> Judge[Publisher]:
-        """Mark the criterion on all messages together: where it does not hold, more of them are listened to."""
+        """Mark the criterion on all messages together: if it does not hold, the judge listens for more of them."""
         self._course = judge
         return judge
 
     # --- the bench -------------------------------------------------------------------------------------------
 
     def scenario(self, bench: Bench) -> None:
-        """Listen to what it publishes until enough was heard or it has had twice the time it needs."""
+        """Listen until enough messages were received, or twice the needed time has passed."""
         topic, type_name = bench.reference.only("publisher")
         bench.part("talking")
         bench.listen(topic, type_name)
@@ -81,14 +87,14 @@ class Hears:
         enough = self._enough(bench.before) if bench.pace is Pace.REAL_TIME else self._messages
         _listen(bench, topic, enough, period)
         if bench.wait_until(lambda evidence: _lost(evidence, topic) > LOST, 0.0):
-            bench.doubt()  # a burst is told from a slow start by times that a simulated clock leaves in doubt
+            bench.doubt()  # only real times distinguish a burst from a slow start
         if bench.pace is Pace.FAST and bench.wait_until(self._is_simulated, 0.0):
             enough = self._long_run
             _listen(bench, topic, enough, period, LONG_STEP)
             if not bench.in_a_cell:
                 bench.await_end(PERSISTS)
         elif bench.pace is Pace.REAL_TIME and bench.heard(topic) >= enough:
-            # A row of messages in which none was late has twice the time to come.
+            # A row of messages without a late one has twice its time to come.
             bench.wait_until(
                 lambda evidence: self.keeps_rate(evidence).passed, self._row(bench.before) * period
             )
@@ -96,16 +102,16 @@ class Hears:
             bench.note_whether_it_spins()
 
     def _is_simulated(self, evidence: Evidence) -> bool:
-        """True if its messages follow the simulated clock: the first ones may have come before it."""
+        """True if its messages follow the simulated clock; the first ones may be earlier."""
         topic, _ = evidence.reference.only("publisher")
         return len(simulated(evidence.main.of("message", topic))) >= self._messages // 2
 
     def _enough(self, before: Evidence | None) -> int:
-        """Messages to listen to in real time: a row where more of them were heard in simulated time before."""
+        """Return the messages to wait for in real time: a row if more than that came in simulated time."""
         return self._row(before) if before is not None and self._is_simulated(before) else PERSISTENT
 
     def _row(self, before: Evidence | None) -> int:
-        """Messages in a row that must keep to the rate in real time: many where it stumbled in simulated time."""
+        """Return how many messages in a row must keep the rate in real time: many after a fault in simulated time."""
         if before is None or not self._is_simulated(before):
             return ROW
         rate = self._simulated_rate(before)
@@ -125,7 +131,7 @@ class Hears:
         else:
             enough = self._long_run if self._is_simulated(evidence) else self._messages
         heard = evidence.main.of("message", topic)
-        # Who has ended by itself will never have published enough: the task has no end.
+        # A program that has ended by itself never publishes enough, because the task has no end.
         return Publisher(
             topic, evidence.main, max(enough, len(heard) + 1) if evidence.main.ending else enough
         )
@@ -158,7 +164,7 @@ class Hears:
         return lambda evidence: judge(self.seen(evidence), self.expected(evidence))
 
     def on_topic(self, evidence: Evidence) -> Finding:
-        """A publisher of the subject's is on the topic."""
+        """A publisher of the subject is on the topic."""
         topic, _ = evidence.reference.only("publisher")
         heard = self.seen(evidence)
         published = heard.endpoints
@@ -175,13 +181,13 @@ class Hears:
         return Finding(seen == type_name, type_name, seen or nothing)
 
     def keeps_rate(self, evidence: Evidence) -> Finding:
-        """The intervals are the reference's."""
+        """The intervals are those of the reference."""
         topic, _ = evidence.reference.only("publisher")
         wanted = reference_period(evidence.reference)
         messages = evidence.main.of("message", topic)
         before = self._simulated_rate(evidence.before)
-        # Exact in simulated time; in real time, a busy machine may make it look like another one.
-        # Of a program that ends by itself, chance decides how much was seen in simulated time.
+        # Exact in simulated time; in real time a busy machine may distort it.
+        # If a program ends by itself, chance decides how much was seen in simulated time.
         exact = (
             evidence.before
             and before
@@ -203,7 +209,7 @@ class Hears:
         return Finding(rate.kept, expected, seen)
 
     def _burst(self, evidence: Evidence) -> str:
-        """The burst in which it began to count, heard or not, in words; empty for none."""
+        """Return the burst in which it began to count, heard or not, in words; empty for none."""
         seen, expected = self.seen(evidence), self.expected(evidence)
         if not seen.counters or not expected.counters:
             return ""
@@ -212,7 +218,7 @@ class Hears:
         return burst_at_the_start(counting, unheard, reference_period(evidence.reference))
 
     def _simulated_rate(self, evidence: Evidence | None) -> Rate | None:
-        """The rate by the simulated clock; None where the messages do not follow that, or are too few."""
+        """Return the rate by the simulated clock; None if the messages do not follow that clock, or are too few."""
         if evidence is None or not self._is_simulated(evidence):
             return None
         topic, _ = evidence.reference.only("publisher")
@@ -257,7 +263,7 @@ class Hears:
         return Mistake(key, lambda evidence: told(self.seen(evidence), self.expected(evidence)), certain)
 
     def _published_before_discovery(self, evidence: Evidence) -> Advice | None:
-        """It says that it published, and ended before anybody could hear it."""
+        """It says that it published, but ended before the judge could receive it."""
         seen = self.seen(evidence)
         ended = seen.part.ending is not None and not seen.part.traceback
         if not ended or not seen.claims(self.expected(evidence)):
@@ -271,7 +277,7 @@ class Hears:
         )
 
     def _never_published(self, evidence: Evidence) -> Advice | None:
-        """The node works, or goes on talking about its texts in a loop, and nothing is published."""
+        """The node works, or keeps talking about its texts in a loop, but publishes nothing."""
         seen = self.seen(evidence)
         part = seen.part
         if seen.topic not in part.endpoints("publisher") or seen.messages or part.ending is not None:
@@ -291,7 +297,7 @@ class Hears:
         )
 
     def _wrong_rate(self, evidence: Evidence) -> Advice | None:
-        """Each message is right, and the rate is not."""
+        """Each message is right, but the rate is not."""
         finding = self.keeps_rate(evidence)
         if finding.passed or not self._holds(self._text, evidence) or "every" not in finding.seen:
             return None
@@ -306,7 +312,7 @@ class Hears:
         )
 
     def _stopped_publishing(self, evidence: Evidence) -> Advice | None:
-        """It goes on and is spun, but publishes no more."""
+        """It goes on and is spun, but no longer publishes."""
         seen = self.seen(evidence)
         came, part = len(seen.messages), seen.part
         if not 0 < came < seen.enough or part.ending is not None or part.of("unanswered"):
@@ -318,7 +324,7 @@ class Hears:
 
 
 def reference_period(reference: Reference) -> float:
-    """Seconds between two messages of the reference solution."""
+    """Return the seconds between two messages of the reference solution."""
     if not reference.parts:
         return USUAL_PERIOD
     topic, _ = reference.only("publisher")
@@ -327,9 +333,9 @@ def reference_period(reference: Reference) -> float:
 
 
 def _was_faster(messages: Sequence[Event], wanted: float) -> bool:
-    """Return whether simulated time went by faster than real time, so that no callback can have slept for a period.
+    """True if simulated time passed faster than real time, so that no callback can have slept for a period.
 
-    On a crowded machine the judge waits for such a one, and sees an exact rate.
+    On a busy machine the judge waits for such a callback, and sees an exact rate.
     """
     times = [message.t for message in messages]
     return median(after - before for before, after in pairwise(times)) < wanted
@@ -346,7 +352,7 @@ def _listen(bench: Bench, topic: str, enough: int, period: float, step: float = 
 
 
 def _lost(evidence: Evidence, topic: str) -> int:
-    """The number of messages that were sent before the first that was heard."""
+    """Return the number of messages that were sent before the first one that was heard."""
     first = evidence.main.first("message", topic)
     return int(first.data.get("number", 1)) - 1 if first is not None else 0
 

@@ -1,4 +1,4 @@
-"""Texts that a listener is sent: nobody can guess them, and some are of kinds that a careless program changes."""
+"""The texts for a listener: a student cannot guess them, and some are of kinds that a careless program changes."""
 
 from __future__ import annotations
 
@@ -8,29 +8,29 @@ if TYPE_CHECKING:
     from random import Random
 
 SINGLY = 12
-"""Texts that are sent each once the one before was said."""
+"""The number of texts that are each sent after the one before was said."""
 AT_PACE = 8
-"""Texts that are sent one after the other at the pace, in real time."""
+"""The number of texts that are sent one after the other at the pace, in real time."""
 TRIES = 3
-"""Times that this is tried: a busy machine may be slower than the pace for a moment."""
+"""The number of tries: a busy machine may be slower than the pace for a moment."""
 GREETING = "Hello, world!"
-"""The beginning of what many talkers say: some of the texts have it in them."""
+"""The beginning of many talkers' messages; some of the texts contain it."""
 KINDS = 6
-"""Kinds of texts in each row that are something else than two words and a number; one more text comes twice."""
+"""The number of kinds of unusual texts in each row; in addition, one text comes twice."""
 
 _WORDS = (
     "amber", "birch", "cedar", "delta", "ember", "fjord", "grove", "harbour", "islet", "juniper", "kelp", "lagoon",
     "meadow", "north", "orchard", "pebble", "quarry", "river", "summit", "tundra",
 )  # fmt: skip
 _ELSEWHERE = ("mgła", "łąka", "řeka", "erdő", "tűz")
-"""Words of other languages. Their letters have one number that JSON, YAML and Python write in the same way."""
+"""Words of other languages. JSON, YAML and Python write the codes of their letters in the same way."""
 
 
 def random_texts(random: Random) -> list[str]:
-    """Texts of words and a number; none is part of another, and in each row one comes twice, one after the other.
+    """Return texts of words and a number; none contains another one, and in each row one comes twice in succession.
 
-    In each row some are of other kinds: with the greeting of many talkers before or behind, long and in capitals, with
-    braces and a percent sign, with letters beyond ASCII and two blanks, without any blank.
+    Some in each row are unusual: with the greeting of many talkers before or after, long and in capitals, with braces
+    and a percent sign, with letters beyond ASCII and two blanks, or without any blank.
     """
     count = 1 + TRIES * AT_PACE + SINGLY
     words = [f"{random.choice(_WORDS)} {random.choice(_WORDS)}" for _ in range(count)]

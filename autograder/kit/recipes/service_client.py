@@ -1,11 +1,12 @@
-"""A service client: the judge serves, in each run in another way.
+"""A service client: the judge is the server, and behaves differently in each run.
 
-In one run the service comes late, in one it answers with a hidden bias, so that what the client reports shows whether
-it used the answer, in one the numbers fill 64 bits, and in one there is no service. Among the answers are always a 0,
-which is easily taken for none, and negative ones. In two runs one of the answers is held back for a while.
+In one run the service comes late; in one it adds a hidden number to each sum, so that the client's report shows
+whether it used the answer; in one the numbers fill 64 bits; and in one there is no service. The answers always
+include a 0, which is easily mistaken for no answer, and negative numbers. In two runs one answer is held back for a
+while.
 
-Which run is the one without a service nobody can tell from outside: after the run with the late service the others come
-in an order that is drawn, and their numbers and their patience are of the same kinds.
+The subject cannot tell in advance which run has no service: after the run with the late service the others come in
+random order, with the same kinds of numbers and patience.
 """
 
 from __future__ import annotations
@@ -55,14 +56,15 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
 
 CALL_LIMIT = 15.0
-"""Seconds of wall time in which a client that has its service must be done."""
+"""Seconds of wall time within which a client with its service must finish."""
 AFTERMATH = 1.0
 """Seconds in which a client that has reported its sum may end, or go on and show what else it does."""
 SAYS_MORE = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
-"""Seconds in which a client that has said something of its last answer, and not the sum, may still say it."""
+"""Seconds for a client that has said something about its last answer, but not the sum, to say the sum."""
 HELD = 0.7
-"""Seconds for which an answer is held back: longer than anybody takes who does not really wait for it, and not as long
-as a limit that programs are given, such as half a second."""
+"""Seconds for which an answer is held back: longer than a client takes that does not really wait, and shorter than
+the usual limits in programs, such as half a second.
+"""
 
 
 @dataclass(frozen=True)
@@ -71,9 +73,9 @@ class Run:
 
     Attributes:
         name: The part's name.
-        numbers: What the subject is to add.
-        answers: What the service answers to one call after the other; to any further one, the sum.
-        held: Which of the answers is held back, from 1 on; 0 for none.
+        numbers: The numbers that the subject must add.
+        answers: The service's answers to successive calls; to any further call it answers the sum.
+        held: The number, from 1, of the answer that is held back; 0 for none.
     """
 
     name: str
@@ -86,10 +88,10 @@ def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls:
     """All runs with a service, and one without.
 
     Args:
-        bench: Where it happens.
-        runs: The one with the late service first.
-        nobody: What the subject is to add where there is no service.
-        calls: How many calls a subject that has done its work has made.
+        bench: The bench of the scenario.
+        runs: The runs with a service; the one with the late service comes first.
+        nobody: The numbers in the run without a service.
+        calls: The number of calls of a subject that has finished its work.
     """
     late, *others = runs
     if not called(bench, late, calls) or called_before_server(bench.seen()):
@@ -106,7 +108,7 @@ def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls:
 
 
 def called(bench: Bench, run: Run, calls: int, *, known: bool = False) -> bool:
-    """One run with a service; whether the subject came to an end of its work. One that is ``known`` has called it."""
+    """Make one run with a service. Return True if the subject finished its work. ``known``: it has called before."""
     patience = drawn_patience(bench)
     bench.part(run.name, numbers=list(run.numbers), patience_sec=patience)
     meet = partial(meets_service, bench, run, calls, patience)
@@ -125,20 +127,20 @@ def called(bench: Bench, run: Run, calls: int, *, known: bool = False) -> bool:
 
 
 def meets_service(bench: Bench, run: Run, calls: int, patience: float, *, lateness: float = 0.0) -> bool:
-    """Start the subject and serve it; whether it came to an end of its work.
+    """Start the subject and serve it. Return True if the subject finished its work.
 
     Args:
-        bench: Where it happens.
-        run: What is asked and answered.
-        calls: How many calls a subject that has done its work has made.
+        bench: The bench of the scenario.
+        run: The requests and answers.
+        calls: The number of calls of a subject that has finished its work.
         patience: Seconds that a function is told to wait.
-        lateness: Seconds after its client at which the service comes.
+        lateness: Seconds by which the service comes after its client.
     """
     service, type_name = bench.reference.only("client")
     bench.start(*run.numbers, patience_sec=patience)
-    # The service comes when the judge has met its client. Where it was there before, the client may know it first, and
-    # a call of one that ends at once would reach the judge or not, as it happens.
-    # Where it has another client it waits for something else. One that has none may be slow to show it.
+    # The service starts when the judge has discovered the client. If it existed before, the client might discover it
+    # first, and chance would decide whether the call of a client that ends at once reaches the judge.
+    # A subject with another client waits for something else. One without a client may only be slow to show it.
     if not bench.await_endpoint("client", service) and (
         bench.await_end(0.0) or bench.seen().endpoints("client")
     ):
@@ -162,21 +164,21 @@ def meets_service(bench: Bench, run: Run, calls: int, patience: float, *, latene
 
 
 def is_done(evidence: Evidence, calls: int) -> bool:
-    """True if the subject has ended or, as a program may, has reported the sum and goes on spinning.
+    """True if the subject has ended or, as a program may, has reported the sum and keeps spinning.
 
-    Who is done stays so, also where one more call is on its way in that moment.
+    A subject that has finished stays finished, even if one more call is on its way.
     """
     return evidence.main.ending is not None or has_reported(evidence.main, calls)
 
 
 def has_spoken(evidence: Evidence, calls: int) -> bool:
-    """True if the subject is done, or has at least said something of its last answer."""
+    """True if the subject has finished, or has at least said something about its last answer."""
     enough = evidence.main.of("response")[calls - 1 :]
     return is_done(evidence, calls) or (bool(enough) and bool(new_words(evidence.main, enough[0])))
 
 
 def unserved(bench: Bench, numbers: Sequence[int]) -> None:
-    """One run without the service."""
+    """Make one run without the service."""
     if bench.keep(ABSENT):
         return
     patience = drawn_patience(bench, giving_up.PATIENCES_WITHOUT_A_SERVER[bench.pace])
@@ -189,26 +191,26 @@ def unserved(bench: Bench, numbers: Sequence[int]) -> None:
 
 
 def hidden(random: Random) -> int:
-    """A number of so many that nobody can say them all."""
+    """Return a number from a range so large that a program cannot say all of it."""
     return random.randint(10**9, 10**12)
 
 
 def answering(scripted: Sequence[int]) -> Callable[[Mapping[str, Any]], Mapping[str, Any]]:
-    """A service that gives these answers, one after the other, and after them the sum of the two numbers."""
+    """Return a service that gives these answers in order, and after them the sum of the two numbers."""
     left = list(scripted)
     return lambda request: {"sum": left.pop(0) if left else _as_int64(request["a"] + request["b"])}
 
 
 def _as_int64(number: int) -> int:
-    # A client that adds in another order may leave the range; C++ servers wrap around, rclpy's would die of it.
+    # A client that adds in another order may exceed the range; C++ servers wrap around, rclpy's would crash.
     return (number + 2**63) % 2**64 - 2**63
 
 
 class AnotherSum(NamedTuple):
-    """What a client said of an answer, in place of its number.
+    """A client's number in the place of an answer.
 
     Attributes:
-        answer: The number.
+        answer: The right number.
         line: The last line with another number.
     """
 
@@ -220,11 +222,11 @@ class Calls:
     """The recipe for a client that has a service add numbers.
 
     Args:
-        calls: How many calls a client that has done its work has made.
-        runs: Draws the runs with a service: the late one, the surprising one, the one with large numbers.
-        kinds: Each draws numbers of a kind that the runs have; those of the run without a service are of one of them.
-        too_many: What one is told who calls ``{count}`` times, and what to do then.
-        right: The numbers of each right call, from a run with as many calls as there should be.
+        calls: The number of calls of a client that has finished its work.
+        runs: Draws the runs with a service: the late one, the one with hidden changes, the one with large numbers.
+        kinds: Each draws numbers of one kind; the run without a service uses one of these kinds, too.
+        too_many: What a student is told whose client calls ``{count}`` times, and the advice.
+        right: Returns the numbers of each right call, for a run with the right number of calls.
     """
 
     roles = ("client",)
@@ -242,7 +244,7 @@ class Calls:
         self._right = right
 
     def scenario(self, bench: Bench) -> None:
-        """Four runs: a late service, a surprising one, large numbers, and none at all."""
+        """Four runs: a late service, one with hidden changes, large numbers, and no service."""
         runs = self._runs(bench.random)
         nobody = bench.random.choice(self._kinds)(bench.random)
         scenario(bench, runs, nobody, calls=self._calls)
@@ -256,17 +258,17 @@ class Calls:
         return Client(evidence.reference)
 
     def is_right(self, part: Part) -> bool:
-        """True if a run has as many calls as it should have, each with the right numbers."""
+        """True if a run has the right number of calls, each with the right numbers."""
         made = requests(part)
         return len(made) == self._calls and list(map(pair, made)) == list(map(sorted, self._right(part)))
 
     def right_calls(self, wanted: str, *, given: str = " and ", asked: str = ", ") -> Judge[Client]:
-        """A criterion: each run has the right calls.
+        """Return a criterion: each run has the right calls.
 
         Args:
             wanted: What is expected, in words.
-            given: What stands between the numbers that a run was given.
-            asked: What stands between two calls.
+            given: The separator of the numbers that a run was given.
+            asked: The separator of two calls.
         """
 
         def judge(seen: Client, _: Client) -> Finding:
@@ -284,7 +286,7 @@ class Calls:
         return judge
 
     def waits(self, evidence: Evidence) -> Finding:
-        """With a service that comes late it calls all the same; what comes of that is another criterion."""
+        """If the service comes late, the client calls anyway; another criterion judges the result."""
         late = self.seen(evidence).late
         called = bool(requests(late))
         return Finding(called, "waits, then calls", "it did" if called else how_it_went(late))
@@ -313,7 +315,7 @@ class Calls:
         return None if line is None else AnotherSum(answer, line)
 
     def _too_many_calls(self, evidence: Evidence) -> Advice | None:
-        """More calls than the reference solution makes."""
+        """The client makes more calls than the reference solution."""
         wanted = self.expected(evidence).calls
         counts = (len(requests(part)) for part in self.seen(evidence).served)
         many = next((count for count in counts if count > wanted), None)

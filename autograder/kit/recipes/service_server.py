@@ -1,4 +1,4 @@
-"""A service's server: it is called one by one, then several times at once, then once more to see that it is alive."""
+"""A service's server: the judge calls it one by one, then several times at once, then once more."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
 
 CALLS = "calls"
 AT_ONCE = 6
-"""Calls that are in flight together. A service's queue keeps 10, and 12 lose some even at a right server (measured)."""
+"""The number of calls at once. A service's queue holds 10; with 12 even a right server loses some (measured)."""
 SERVER_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
-"""Seconds in which a server that is on the graph must be matched with the judge's client."""
+"""Seconds within which a server on the graph must be matched with the judge's client."""
 QUIET = {Pace.FAST: 2.0, Pace.REAL_TIME: 6.0}
-"""Seconds without any event after which an answer is taken not to come."""
+"""Seconds without any event after which an answer is no longer expected."""
 SURE = 2
-"""Answers after which a server that has ended by itself had surely served."""
+"""The number of answers after which a server that ended by itself had certainly served."""
 
 Fields = Mapping[str, Any]
 """The fields of a request or of a response."""
 Objection = Callable[[Fields, Fields | None], str]
-"""Returns the fault of an answer to a request (None for no answer), in words; empty where it is right."""
+"""Returns the fault of an answer to a request (None for no answer), in words; empty if it is right."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Server:
 
     Attributes:
         part: The run in which it was called.
-        calls: How many calls there are where each of them is answered.
+        calls: The number of calls if each of them is answered.
     """
 
     part: Part
@@ -73,24 +73,24 @@ class Server:
 
     @property
     def count(self) -> int:
-        """The largest number of servers of the name that were there at once."""
+        """The largest number of servers of the name that existed at the same time."""
         return common.servers(self.part)
 
     def objections(self, calls: Sequence[Event], objection: Objection) -> list[str]:
-        """The faults of the answers to these calls, in words."""
+        """Return the faults of the answers to these calls, in words."""
         found = (objection(e.data["fields"], self.answers.get(int(e.data["call"]))) for e in calls)
         return [words for words in found if words]
 
     def all_right(self, calls: Sequence[Event], objection: Objection, expected: str) -> Finding:
-        """True if these calls were made and each was answered as it should be.
+        """Judge that these calls were made and each was answered correctly.
 
-        Where two servers share the name, chance decides which of them answers a call. So one wrong answer counts
-        against all calls: each of them could have had it.
+        If two servers share the name, chance decides which of them answers a call. So one wrong answer counts against
+        all calls: any of them could have received it.
 
         Args:
             calls: Some of :attr:`asked`.
-            objection: What is wrong about one answer.
-            expected: What is expected of all of them, in words.
+            objection: Returns the fault of one answer.
+            expected: The expectation for all of them, in words.
         """
         wrong = self.objections(self.asked if self.count > 1 else calls, objection)
         many = "1 more call answered" if len(calls) == 1 else f"{len(calls)} calls answered"
@@ -127,7 +127,7 @@ class Asks:
         bench.stop()
 
     def _all_answered(self, bench: Bench, caller: Caller) -> bool:
-        """Make all calls; False at the first that is not answered."""
+        """Make all calls; return False at the first unanswered one."""
         for request in self._singly(bench.random):
             caller.ask(request)
             if not caller.await_answers(QUIET[bench.pace]):
@@ -148,7 +148,7 @@ class Asks:
         return Server(part, len(part.of("asked")))
 
     def serves(self, evidence: Evidence) -> Finding:
-        """One server of the right name and type, and it answers."""
+        """There is one server of the right name and type, and it answers."""
         name, type_name = evidence.reference.only("service")
         seen, expected = self.seen(evidence), f"one server of {name} ({type_name}) that answers"
         made = seen.part.endpoints("service")
@@ -158,7 +158,7 @@ class Asks:
             return Finding(False, expected, f"{name} is a {made[name]}")
         if seen.count > 1:
             return Finding(False, expected, f"{seen.count} servers of {name}")
-        # The answer of a program that exits with it may or may not get out of it; one that crashes has not given it.
+        # The answer of a program that exits with it may or may not arrive; one that crashes has not sent it.
         enough = SURE if seen.part.traceback else max(SURE, len(seen.asked))
         if seen.part.ending is not None and len(seen.answers) < enough:
             return Finding(False, expected, "it ended by itself while it was called")
@@ -173,7 +173,7 @@ class Asks:
                 "Each call reaches both, and whichever is quicker answers.",
                 "Call create_service once, and make one node only.",
             ),
-            # Before any crash: a wrong answer may not fit into its field, and rclpy's server dies of that.
+            # Before any crash: a wrong answer may not fit into its field, and rclpy's server crashes then.
             OWN,
             *common.CRASHES,
             common.endpoint_name("service"),

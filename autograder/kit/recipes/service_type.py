@@ -1,4 +1,4 @@
-"""A package of one's own that generates a service type: its file is read, the package built, and the type compared."""
+"""A student's package that generates a service type: its file is read, the package built, and the type compared."""
 
 from __future__ import annotations
 
@@ -19,28 +19,29 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence
 
 GROUP = "rosidl_interface_packages"
-"""The group of packages that define interfaces; a package.xml says with it that its package is one."""
+"""The group of packages that define interfaces; with it a package.xml marks its package as one of them."""
 NEEDED = {
     "rosidl_default_generators": ("buildtool_depend", "building the package needs the generators"),
     "rosidl_default_runtime": ("exec_depend", "a program that uses its types needs this library"),
 }
-"""The dependencies of such a package, each with the tag that the ROS documentation gives it ("Creating custom msg and
-srv files", section 5) and the reason. Any tag of a dependency is right."""
+"""The dependencies of such a package, each with the tag from the ROS documentation ("Creating custom msg and srv
+files", section 5) and the reason. Any dependency tag is accepted.
+"""
 SERVICE = "/interface_of_the_workspace"
-"""The service that a program of the judge's serves with the built interface, so that its type is on the wire."""
+"""The service that the judge's program serves with the built interface, so that its type is on the wire."""
 BEGINNING = 15.0
-"""Seconds of wall time in which the packages must have been looked at."""
+"""Seconds of wall time within which the packages must have been read."""
 PART = "building"
 Fields = list[tuple[str, str]]
-"""The type and the name of each field, in their order."""
+"""The type and the name of each field, in order."""
 
 
 class ServiceType(SeenAsItIs):
-    """The recipe for a package that generates a service type. Its views are all that was seen.
+    """The recipe for a package that generates a service type. Its views are all evidence.
 
     Args:
-        file: What the task calls the file, such as ``"AddTwoInts.srv"``.
-        package: A good name for the package; the judge takes any.
+        file: The file's name in the task, such as ``"AddTwoInts.srv"``.
+        package: A good name for the package; the judge accepts any name.
     """
 
     roles = ("service",)
@@ -50,7 +51,7 @@ class ServiceType(SeenAsItIs):
         self.runner = ServesInterface(file, SERVICE)
 
     def scenario(self, bench: Bench) -> None:
-        """Look at the file, build the package, and compare what it generated on the wire."""
+        """Read the file, build the package, and compare on the wire what it generated."""
         bench.part(PART)
         bench.start()
         bench.wait_until(lambda e: report_of(e.main, "found") is not None, BEGINNING)
@@ -66,7 +67,7 @@ class ServiceType(SeenAsItIs):
         return [(p, i) for p in packages for i in p.interfaces if i.file.rpartition("/")[2] == self._file]
 
     def _texts(self, evidence: Evidence) -> list[tuple[str, str]]:
-        """The path and the text of each file of that name, as far as it is reported."""
+        """Return the path and the text of each file of that name, if the text is reported."""
         return [(file.file, file.text) for _, file in self._holders(evidence) if file.text is not None]
 
     def has_the_fields(self, evidence: Evidence) -> Finding:
@@ -74,14 +75,14 @@ class ServiceType(SeenAsItIs):
         expected, texts = _expected(evidence), self._texts(evidence)
         right = any(fields(text) == expected for _, text in texts) or (bool(texts) and not expected)
         if not right and not self._is_read(evidence):
-            # What a file says that was not reported shows in the type that is generated from it.
+            # The generated type shows what a file contains whose text was not reported.
             wire = self.is_on_the_wire(evidence)
             return Finding(wire.passed, _shown(expected), wire.seen)
         seen = _shown(fields(texts[0][1])) if texts else f"no file {self._file}"
         return Finding(right, _shown(expected), seen or "an empty file")
 
     def declares(self, evidence: Evidence) -> Finding:
-        """Its package.xml names what the package needs, so that it can be built and used elsewhere, too."""
+        """The package.xml names what the package needs, so that it can be built and used elsewhere, too."""
         expected = f"package.xml names {' and '.join(NEEDED)}"
         package = self._most_thorough(evidence)
         if package is None:
@@ -90,12 +91,12 @@ class ServiceType(SeenAsItIs):
         return Finding(not names, expected, f"it does not name {names}" if names else "it does")
 
     def _most_thorough(self, evidence: Evidence) -> PackageReport | None:
-        """Of the packages with such a file, the one that declares most of what it needs."""
+        """Of the packages with such a file, return the one that declares most of what it needs."""
         packages = (package for package, _ in self._holders(evidence))
         return min(packages, key=lambda package: len(_undeclared(package)), default=None)
 
     def _is_read(self, evidence: Evidence) -> bool:
-        """True if no file of that name was left out of the report, nor what it says."""
+        """True if no file of that name, and no text of one, was left out of the report."""
         if files := [file for _, file in self._holders(evidence)]:
             return all(file.text is not None for file in files)
         report = workspace.build_report(evidence.main)
@@ -113,7 +114,7 @@ class ServiceType(SeenAsItIs):
             return Finding(False, expected, workspace.seen_of_build(report))
         if report.missing:
             return Finding(False, expected, f"built; no {report.missing}")
-        # A file of the right name is soon made; what a program can serve was generated.
+        # A file of the right name is easily made; a program can serve only what was generated.
         served = evidence.main.first("type", SERVICE) is not None
         return Finding(
             served, expected, "built" if served else "built, but no program can use what came of it"
@@ -129,7 +130,7 @@ class ServiceType(SeenAsItIs):
         return Finding(right, expected, str(seen.data["type"]) + ("" if right else ", with other fields"))
 
     def _three_dashes(self, evidence: Evidence) -> Advice | None:
-        """Request and response are not kept apart by exactly one line of dashes."""
+        """Request and response are not separated by exactly one line of dashes."""
         for file, text in self._texts(evidence):
             number = len(fields(text))
             if number == 2:
@@ -149,7 +150,7 @@ class ServiceType(SeenAsItIs):
         return None
 
     def _interface_fields(self, evidence: Evidence) -> Advice | None:
-        """The fields are others."""
+        """The fields differ from the reference's."""
         finding = self.has_the_fields(evidence)
         texts = self._texts(evidence)
         if finding.passed or not texts or not self._is_read(evidence) or len(fields(texts[0][1])) != 2:
@@ -161,7 +162,7 @@ class ServiceType(SeenAsItIs):
         )
 
     def _interface_in_python_package(self, evidence: Evidence) -> Advice | None:
-        """The file is in an ament_python package, where nothing is generated from it."""
+        """The file is in an ament_python package, which does not generate interfaces."""
         holders = self._holders(evidence)
         if (
             self.builds(evidence).passed
@@ -176,7 +177,7 @@ class ServiceType(SeenAsItIs):
         )
 
     def _member_of_group(self, evidence: Evidence) -> Advice | None:
-        """The one line of package.xml that marks an interface package is missing, or is inside a comment."""
+        """The line of package.xml that marks an interface package is missing, or is inside a comment."""
         holders = self._holders(evidence)
         if self.builds(evidence).passed or not holders:
             return None
@@ -198,7 +199,7 @@ class ServiceType(SeenAsItIs):
         )
 
     def _interface_not_listed(self, evidence: Evidence) -> Advice | None:
-        """The package builds, and the file is not among what it generates."""
+        """The package builds, but the file is not among those that it generates."""
         report = report_of(evidence.main)
         holders = self._holders(evidence)
         if report is None or not report.built or report.missing in ("", AMENT_PACKAGE) or not holders:
@@ -212,7 +213,7 @@ class ServiceType(SeenAsItIs):
         )
 
     def _dependency_missing(self, evidence: Evidence) -> Advice | None:
-        """Everything works here, and package.xml does not name what that needs."""
+        """Everything works here, but package.xml does not name what that needs."""
         holder = self._most_thorough(evidence)
         undeclared = _undeclared(holder) if holder is not None else []
         if holder is None or not undeclared:
@@ -249,7 +250,7 @@ class ServiceType(SeenAsItIs):
 
 
 def fields(text: str) -> list[Fields]:
-    """The fields of each section of an interface file; comments, constants and default values left out.
+    """Return the fields of each section of an interface file, without comments, constants and default values.
 
     Only a line of exactly ``---`` begins a new section, as in ``rosidl_adapter/parser.py``.
     """
@@ -271,12 +272,12 @@ def _nearly_dashes(line: str) -> bool:
 
 
 def _undeclared(package: PackageReport) -> list[str]:
-    """What a package needs and is not seen to declare."""
+    """Return what a package needs and does not declare."""
     return [name for name in NEEDED if name not in package.dependencies]
 
 
 def _expected(evidence: Evidence) -> list[Fields]:
-    """The reference's fields; empty while they are being recorded."""
+    """Return the reference's fields; empty while they are being recorded."""
     if not evidence.reference.parts:
         return []
     seen = evidence.reference.part(PART).first("type")

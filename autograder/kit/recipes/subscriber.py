@@ -1,4 +1,4 @@
-"""A subscriber that says each text it hears: it is sent texts that nobody can guess, at a pace and one by one."""
+"""A subscriber that says each text it hears: the judge sends texts that cannot be guessed, in two ways."""
 
 from __future__ import annotations
 
@@ -24,23 +24,23 @@ if TYPE_CHECKING:
 STEPS = 2
 """Steps of simulated time from one text to the next: in each of them a listener takes what it was sent."""
 SIMULATED = 20
-"""Texts in all that are sent where the listener follows simulated time, all at the pace."""
+"""The number of texts for a listener that follows simulated time, all sent at the pace."""
 PATIENCE = {Pace.FAST: 1.0, Pace.REAL_TIME: 3.0}
-"""Seconds of wall time in which a text that was sent must have been said."""
+"""Seconds of wall time within which a text that was sent must have been said."""
 BEFORE = 1.0
-"""Seconds (simulated where it follows the clock) before the first text, in which nothing can have been heard."""
+"""Seconds (simulated if it follows the clock) before the first text, in which nothing can have been heard."""
 REPLACED = 2
-"""Subscriptions that were replaced by another one which show that it is made again for each text."""
+"""The number of replaced subscriptions which shows that a new one is made for each text."""
 AFTERMATH = 2.5
-"""Seconds (likewise) after the last text, in which nothing may be made up or said again."""
+"""Seconds (likewise) after the last text, in which nothing may be made up or repeated."""
 
 
 class Speaks:
-    """The recipe for a subscriber that says each text it hears, in whatever words of its own beside it.
+    """The recipe for a subscriber that says each text it hears, in any words of its own around it.
 
     Args:
-        pace: Seconds between two texts that follow each other at a pace, as from another node.
-        paced_by: Whose pace that is, in words for a student.
+        pace: Seconds between two texts that follow each other, as from another node.
+        paced_by: The node that has this pace, in words for a student.
     """
 
     roles = ("subscription",)
@@ -50,7 +50,7 @@ class Speaks:
         self._step = pace / STEPS
 
     def scenario(self, bench: Bench) -> None:
-        """Send texts that nobody can guess, at the pace and each once the one before was said."""
+        """Send texts that no program can guess, some at the pace, some each after the one before was said."""
         topic, type_name = bench.reference.only("subscription")
         texts = random_texts(bench.random)
         bench.part("listening", texts=texts)
@@ -70,7 +70,7 @@ class Speaks:
         speaker.send(data=texts[0])
         simulated = bench.wait_until(_is_simulated, 0.0)
         if simulated:
-            # As long as between any two: when the next text is sent must not depend on how soon this one is said.
+            # As long as between any two: the time of the next text must not depend on how soon this one is said.
             bench.run_time(self._pace, step=self._step)
         if not self._are_said(bench, texts[:1]):
             self._ask_once_more(bench, speaker, texts[1])
@@ -78,11 +78,11 @@ class Speaks:
         if simulated:
             return self._are_said_at_pace(bench, speaker, texts[1:SIMULATED])
         kept = any(self._are_said_at_pace(bench, speaker, row) for row in _rows(texts))
-        # Where it missed some at that pace, two more tell whether it says what it is given time for.
+        # If it missed some at that pace, two more tell whether it says texts for which it gets enough time.
         return all(self._is_answered(bench, speaker, text) for text in texts[-SINGLY:][: None if kept else 2])
 
     def _ask_once_more(self, bench: Bench, speaker: Speaker, text: str) -> None:
-        """Send one more text to who has said nothing: it may say the one before."""
+        """Send one more text to a listener that has said nothing: it may say the one before."""
         first = bench.seen().first("sent")
         if not bench.seen().said(after=first):
             speaker.send(data=text)
@@ -105,7 +105,7 @@ class Speaks:
             return True
         if not bench.wait_until(_is_simulated, 0.0):
             return False
-        # A listener may say by a timer of its own what it has heard.
+        # A listener may use a timer of its own to say what it has heard.
         bench.run_time(PATIENCE[bench.pace], until=lambda: bench.wait_until(said, 0.0), step=self._step)
         return bench.wait_until(said, PATIENCE[bench.pace])
 
@@ -114,7 +114,7 @@ class Speaks:
         return evidence.main
 
     def expected(self, evidence: Evidence) -> Part:
-        """The same: what is expected are the texts, which are drawn anew each time."""
+        """The same: the expected texts are drawn again each time."""
         return evidence.main
 
     @property
@@ -143,7 +143,7 @@ class Speaks:
         )
 
     def _too_slow(self, evidence: Evidence) -> Advice | None:
-        """It says what it is given time for, and misses texts that come at the pace."""
+        """The listener says a text if it gets enough time, but misses texts that come at the pace."""
         texts, missing = list(evidence.main.inputs.get("texts", ())), _missing(evidence)
         singly = [event for event in _sent(evidence) if _text(event) in texts[-SINGLY:]]
         if _is_simulated(evidence) or not singly or not missing or any(event in singly for event in missing):
@@ -162,7 +162,7 @@ class Speaks:
 
 
 def _rows(texts: Sequence[str]) -> list[Sequence[str]]:
-    """The texts of each time that the lab's pace is tried in real time."""
+    """Return the texts of each try of the lab's pace in real time."""
     return [texts[1 + AT_PACE * i : 1 + AT_PACE * (i + 1)] for i in range(TRIES)]
 
 
@@ -173,7 +173,7 @@ def _is_simulated(evidence: Evidence) -> bool:
 
 
 def _says(texts: Sequence[str], evidence: Evidence) -> bool:
-    """True if each of these texts was said after it was sent, and after it was sent once more."""
+    """True if each of these texts was said after it was sent, and again after it was sent again."""
     awaited = [event for event in _sent(evidence) if _text(event) in texts]
     return all(is_said(_text(event), evidence.main, after=event) for event in awaited)
 
@@ -192,7 +192,7 @@ def _text(event: Event) -> str:
 
 
 def subscribes(evidence: Evidence) -> Finding:
-    """A subscription of the subject's is on the topic with the right type."""
+    """A subscription of the subject is on the topic with the right type."""
     topic, type_name = evidence.reference.only("subscription")
     made = _subscriptions(evidence.main, topic)
     nothing = "it ended too soon to tell" if evidence.main.ending else "no subscription"
@@ -201,10 +201,10 @@ def subscribes(evidence: Evidence) -> Finding:
 
 
 def _subscriptions(part: Part, topic: str) -> dict[str, str]:
-    """Topic -> type; none of a program that ended before it was sent anything.
+    """Return topic -> type; empty for a program that ended before it was sent anything.
 
-    Whether the graph showed those before they were gone is a matter of chance. A notebook's class is held until they
-    are known.
+    Chance decides whether the graph showed those before they were gone. A notebook's class is held until they are
+    known.
     """
     ending, sent = part.ending, part.first("sent", topic)
     met = ending is None or part.first("subject", "constructed") or (sent and _is_before(part, sent, ending))
@@ -216,7 +216,7 @@ def _is_before(part: Part, event: Event, other: Event) -> bool:
 
 
 def _missing(evidence: Evidence) -> list[Event]:
-    """Texts that were sent and not said, those aside that were missed at a pace which it kept at another time."""
+    """Return the texts that were sent and not said, except those missed at a pace that it kept at another time."""
     part, sent = evidence.main, _sent(evidence)
     silent = [event for event in sent if not is_said(_text(event), part, after=event)]
     if _is_simulated(evidence):
@@ -231,18 +231,18 @@ def _missing(evidence: Evidence) -> list[Event]:
 
 
 def _replaced(evidence: Evidence) -> int:
-    """The number of its subscriptions that another one has replaced since the first text was sent."""
+    """Return the number of its subscriptions that were replaced by another one since the first text was sent."""
     sent, part = _sent(evidence), evidence.main
     if not sent:
         return 0
     met = [event.data for event in part.of("matched", sent[0].name) if _is_before(part, sent[0], event)]
     gone = [data["count"] - data.get("now", data["count"]) for data in met]
-    # One that went away at the end of the program is followed by none.
+    # One that disappeared at the end of the program has no successor.
     return max((gone[i] for i in range(len(met) - 1) if met[-1]["count"] > met[i]["count"]), default=0)
 
 
 def _expected_texts(evidence: Evidence) -> int:
-    """Texts that are sent to a listener that says all of them."""
+    """Return the number of texts that are sent to a listener that says all of them."""
     return SIMULATED if _is_simulated(evidence) else 1 + AT_PACE + SINGLY
 
 
@@ -265,7 +265,7 @@ def says_every_text(evidence: Evidence) -> Finding:
 
 
 def says_nothing_else(evidence: Evidence) -> Finding:
-    """It claims no text that was never sent, and none again."""
+    """The listener says no text that was never sent, and none repeatedly."""
     sent = _sent_texts(evidence)
     heard_any = any(is_said(text, evidence.main) for text in sent)
     made_up, again = invented(evidence.main, sent), repeated(evidence.main, sent)
@@ -286,7 +286,7 @@ def _most_often(again: Mapping[str, int]) -> tuple[str, int]:
 
 
 def _said_again(evidence: Evidence) -> Advice | None:
-    """It says texts more often than they were sent."""
+    """The listener says texts more often than they were sent."""
     sent = _sent_texts(evidence)
     again = repeated(evidence.main, sent)
     if not again and retold(evidence.main, sent):
@@ -322,7 +322,7 @@ _BRACES = re2.compile(r"\{[^{}]*\}?")
 
 
 def _changed_text(evidence: Evidence) -> Advice | None:
-    """It says some texts in other words than they came in."""
+    """The listener says some texts with changes."""
     part, sent = evidence.main, _sent(evidence)
     for event in _missing(evidence):
         later = sent[sent.index(event) + 1 :][:1]
@@ -338,7 +338,7 @@ def _changed_text(evidence: Evidence) -> Advice | None:
 
 
 def _subscribes_again(evidence: Evidence) -> Advice | None:
-    """It makes a new subscription for each text: what is sent between two of them is lost."""
+    """The listener makes a new subscription for each text: messages sent in between are lost."""
     if not _replaced(evidence):
         return None
     return Advice(
@@ -350,7 +350,7 @@ def _subscribes_again(evidence: Evidence) -> Advice | None:
 
 
 def _not_logged(evidence: Evidence) -> Advice | None:
-    """It is subscribed, was sent texts and says none of them."""
+    """The listener is subscribed and was sent texts, but says none of them."""
     topic, _ = evidence.reference.only("subscription")
     part, sent = evidence.main, _sent(evidence)
     silent = next(iter(_missing(evidence)), None)
@@ -400,12 +400,12 @@ def _not_logged(evidence: Evidence) -> Advice | None:
 
 
 def _put_it_there(line: str) -> str:
-    """The next step after a line without the string, in which there may be braces that Python did not fill in."""
+    """Return the next step after a line without the string, which may contain braces that Python did not fill in."""
     return _write_f(line) or "Put the field data of the message into the line that you log."
 
 
 def _write_f(line: str) -> str:
-    """The next step where a line has braces with a name in them, which Python did not fill in; else empty."""
+    """Return the next step if a line has a name in braces, which Python did not fill in; else empty."""
     braces = re2.search(r"\{[\w.]+\}", line)
     if braces is None:
         return ""
@@ -413,7 +413,7 @@ def _write_f(line: str) -> str:
 
 
 def _invented_text(evidence: Evidence) -> Advice | None:
-    """It says what nobody sent."""
+    """The listener says texts that were never sent."""
     made_up = invented(evidence.main, _sent_texts(evidence))
     if not made_up:
         return None
