@@ -1,1 +1,1 @@
-"""What authors use: new exercises, their answers and recordings, the words of the judge, all notebooks executed."""
+"""Commands for authors: new exercises, their answers, recordings and messages, and executing all notebooks."""

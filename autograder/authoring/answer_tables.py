@@ -1,4 +1,4 @@
-"""The tables of the bank: what is said of each answer, and those answers that are stored as edits of a right one.
+"""The tables of the bank: the description of each answer, and the answers that are stored as edits of a right one.
 
 A folder of answers has two folders, ``right`` and ``wrong``, with programs and tables (``*.toml``). An entry of a
 table is named after the file of its answer::
@@ -23,8 +23,8 @@ table is named after the file of its answer::
     -        self.get_logger().info("Hello, ROS 2! From SimpleNode.")
     '''
 
-``shows`` is the first line of its program (it can be left out where that is ``Wrong: `` and ``why``), ``change`` has
-the form of ``autograder.authoring.edits``.
+``shows`` is the first line of its program (by default ``Wrong: `` and ``why``), and ``change`` has the format of
+``autograder.authoring.edits``.
 """
 
 from __future__ import annotations
@@ -53,19 +53,19 @@ class BadTable(ValueError):
 
 
 class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A table's entry on one answer.
+    """A table's entry about one answer.
 
     Attributes:
-        why: Why it is right, or what is seen of the mistake.
+        why: Why it is right, or how the mistake shows.
         diagnosis: The most useful key of ``docs/mistakes.md``; empty for a right answer.
-        also: Keys that are right, too.
-        says: Words that its card must say, where the key alone does not name what to mend.
-        command: What runs it, where it is not what runs all of the folder.
-        base: The right answer that it changes, a file of the folder ``right``; empty for a whole program and for a
-            workspace, which changes that of the folder.
-        shows: The first line of its program, without the signs that make it a docstring or a comment; ``Wrong: `` (or
-            ``Right: ``) and ``why`` where it is empty.
-        change: What it changes in its base.
+        also: Other keys that are right.
+        says: Words that its card must contain, if the key alone does not name the fault.
+        command: The command that runs it, if it differs from that of the folder.
+        base: The right answer that it changes, a file of the folder ``right``; empty for a whole program, and for a
+            workspace, which changes the folder's workspace.
+        shows: The first line of its program, without the characters that make it a docstring or a comment; empty for
+            ``Wrong: `` (or ``Right: ``) and ``why``.
+        change: The changes to its base.
     """
 
     why: str
@@ -79,10 +79,10 @@ class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The settings for all answers of a folder: its file ``settings.toml``, where there is one.
+    """The settings for all answers of a folder, from its file ``settings.toml``, if it exists.
 
     Attributes:
-        command: What runs an answer, with places for ``{file}`` and ``{workspace}``.
+        command: The command that runs an answer, with placeholders ``{file}`` and ``{workspace}``.
         base: The workspace that answers in ``*.workspace`` change, as a path from the folder.
     """
 
@@ -92,11 +92,11 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True)
 class Listed:
-    """An answer as its table has it.
+    """An answer and its entry in a table.
 
     Attributes:
-        file: Its program; where it is stored as an edit, the path that it would have.
-        entry: What the table says.
+        file: Its program; for one stored as an edit, the path that the program would have.
+        entry: The entry.
         table: The table.
     """
 
@@ -110,10 +110,10 @@ class Listed:
         return self.file.parents[1] / KINDS[0] / self.entry.base if self.entry.base else None
 
     def text(self) -> str:
-        """Its program; for a workspace, the text that says what it changes in one.
+        """The program; for a workspace, the text with its changes.
 
         Raises:
-            BadTable: It is an edit that does not fit its base.
+            BadTable: The edit does not fit its base.
         """
         if not self.entry.change:
             return self.file.read_text(encoding="utf-8")
@@ -141,18 +141,18 @@ class Listed:
 
 
 def usual_first_line(kind: str, why: str) -> str:
-    """The first line of a program whose entry names none."""
+    """Return the first line of a program whose entry has none."""
     return f"{kind.capitalize()}: {why}"
 
 
 def listed(folder: Path) -> Iterator[Listed]:
-    """Every answer of a folder, in the order of its tables.
+    """Yield every answer of a folder, in the order of its tables.
 
     Args:
-        folder: One with the folders ``right`` and ``wrong``.
+        folder: A folder with the folders ``right`` and ``wrong``.
 
     Raises:
-        BadTable: A table cannot be read, or an entry says too little, too much, or the same as another one.
+        BadTable: A table cannot be read, or an entry has too little, too much, or the same as another one.
     """
     names = set()
     for kind in KINDS:
@@ -165,7 +165,7 @@ def listed(folder: Path) -> Iterator[Listed]:
 
 
 def _look_at(answer: Listed, *, twice: bool) -> None:
-    """Refuse an entry that is no answer."""
+    """Raise an error for an invalid entry."""
     file, entry = answer.file, answer.entry
     workspace = file.suffix == WORKSPACE
     needed = (entry.change,) if workspace else (entry.base, entry.change)
@@ -186,10 +186,10 @@ def _look_at(answer: Listed, *, twice: bool) -> None:
 
 
 def settings(folder: Path) -> Settings:
-    """The settings for all answers of a folder.
+    """Return the settings for all answers of a folder.
 
     Raises:
-        BadTable: Its file cannot be used.
+        BadTable: The file cannot be used.
     """
     file = folder / "settings.toml"
     return _read(file, Settings) if file.exists() else Settings()

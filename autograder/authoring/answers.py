@@ -1,4 +1,4 @@
-"""The right and wrong answers to the exercises, and what the judge must find for each: the bank."""
+"""The bank: right and wrong answers to the exercises, and the verdict that the judge must reach for each."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 _PROGRAMS = {name: str(installed_program(name)) for name in ("python3", "ros2")}
-"""The programs that answers are run with, those of this environment."""
+"""The programs of this environment with which answers are run."""
 
 
 @dataclass(frozen=True)
 class Answer:
-    """One program of the bank and what the judge must find.
+    """One program of the bank, and the verdict that the judge must reach.
 
     Attributes:
         exercise: The exercise's id.
-        file: The program; where it is stored as an edit, the path that it would have.
-        command: What runs it, with places for ``{file}`` and ``{workspace}``.
+        file: The program; for one stored as an edit, the path that the program would have.
+        command: The command that runs it, with placeholders ``{file}`` and ``{workspace}``.
         diagnoses: The keys that are right; empty for a correct answer.
         base: The workspace that the answer changes; None for a program.
-        edit: Its entry in a table, where the program is stored there.
-        says: Words that the diagnosis must say.
+        edit: Its entry in a table, if the program is stored there.
+        says: Words that the diagnosis must contain.
     """
 
     exercise: str
@@ -57,24 +57,24 @@ class Answer:
 
     @property
     def text(self) -> str:
-        """The program; for a workspace, the text that says what it changes.
+        """The program; for a workspace, the text with its changes.
 
         Raises:
-            BadTable: It is an edit that does not fit its base.
+            BadTable: The edit does not fit its base.
         """
         return self.edit.text() if self.edit else self.file.read_text(encoding="utf-8")
 
     def unpack(self, folder: Path) -> list[str]:
-        """Put into a folder what is not ready to be run where it is stored.
+        """Write the files that are not ready to run where they are stored into a folder.
 
         Args:
-            folder: An empty one.
+            folder: An empty folder.
 
         Returns:
             The command that runs the answer.
 
         Raises:
-            BadTable: It is an edit that does not fit its base.
+            BadTable: The edit does not fit its base.
         """
         file, workspace = self.file, folder / "ros2_ws"
         if self.base is not None:
@@ -85,7 +85,7 @@ class Answer:
         return [part.format(file=file, workspace=workspace) for part in self.command]
 
     def checked(self, seed: str) -> tuple[Verdict, Checked | None]:
-        """Judge it in this very process; the evidence, too, where the judge itself had no trouble."""
+        """Judge it in this process. Return also the evidence, unless the judge itself failed."""
         from autograder.judge.subjects.command import checked_here
 
         exercise = exercises.get(self.exercise)
@@ -93,11 +93,11 @@ class Answer:
             return checked_here(exercise, self.unpack(folder.path), seed, None)
 
     def verdict(self, seed: str) -> bytes:
-        """Judge it in this very process; the verdict as JSON."""
+        """Judge it in this process. Return the verdict as JSON."""
         return to_json(self.checked(seed)[0])
 
     def objection(self, verdict: Verdict) -> str:
-        """The difference from the expected verdict, or an empty string."""
+        """Return the difference from the expected verdict, or an empty string."""
         if verdict.state == State.NOT_CHECKED:
             why = verdict.diagnosis.text if verdict.diagnosis and not verdict.detail else verdict.detail
             return f"could not be checked: {why}"
@@ -116,13 +116,13 @@ class Answer:
 
 
 def answers(of: Sequence[str] = ()) -> Iterator[Answer]:
-    """The answers to some exercises, in the order of their tables.
+    """Yield the answers to some exercises, in the order of their tables.
 
     Args:
-        of: Ids of exercises; all of them where empty.
+        of: Ids of exercises; all exercises if empty.
 
     Raises:
-        UnknownExercise: There is no such exercise.
+        UnknownExercise: An exercise does not exist.
         BadTable: A table cannot be used.
     """
     for exercise_id in of or exercises.all_ids():
@@ -138,19 +138,19 @@ def answers(of: Sequence[str] = ()) -> Iterator[Answer]:
 
 
 def named(name: str) -> Answer:
-    """The answer of that name, such as ``lab_1_2.talker/wrong/topic_name.py``.
+    """Return the answer of that name, such as ``lab_1_2.talker/wrong/topic_name.py``.
 
     Raises:
-        StopIteration: There is none.
+        StopIteration: There is no such answer.
     """
     return next(answer for answer in answers() if answer.name == name)
 
 
 def folder_of(exercise_id: str) -> Path:
-    """The folder with the answers to an exercise."""
+    """Return the folder with the answers to an exercise."""
     return exercises.path(exercise_id).with_suffix(".answers")
 
 
 def longest_first(wanted: Iterable[Answer]) -> list[Answer]:
-    """Those that may take long come first, so that none of them is waited for alone at the end."""
+    """Sort slow answers to the front, so that none of them runs alone at the end."""
     return sorted(wanted, key=lambda answer: -exercises.get(answer.exercise).limit)

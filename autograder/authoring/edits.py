@@ -1,6 +1,6 @@
-"""A text that is stored as what it changes in another one, its base.
+"""A text that is stored as its changes to another one, its base.
 
-The form is that of a diff without line numbers::
+The format is that of a diff without line numbers::
 
          self.publisher = self.create_publisher(String, 'chatter', 10)
     -        self.i = 0
@@ -9,12 +9,12 @@ The form is that of a diff without line numbers::
     -        self.i += 1
     +        self.i += 2
 
-A line with ``-`` in front is in the base and goes, one with ``+`` comes, and one with a space is in the base
-and stays: it says which place is meant where the other lines are in the base more than once. An empty line is an
-empty line that stays. ``...`` is between two places.
+A line that begins with ``-`` is removed from the base, one with ``+`` is added, and one with a space is in the base
+and stays: it identifies the place if the other lines occur several times. An empty line is an empty line that stays.
+``...`` separates two places.
 
-A workspace is stored as what it changes in a base that all of an exercise share. The first line says what the answer
-shows. Then come sections:
+A workspace is stored as its changes to a base that all answers to an exercise share. The first line says what the
+answer shows. Then come sections:
 
     === src/my_robot_pkg/setup.py              the whole file, up to the next section
     === src/my_robot_pkg/setup.py (changed)    what is changed in it, in the form above
@@ -37,14 +37,14 @@ class CannotEdit(ValueError):
 
 
 def edited(base: str, change: str) -> str:
-    """Change a text.
+    """Apply a change to a text.
 
     Args:
         base: The text.
-        change: What is different, in the form above.
+        change: The changes, in the format above.
 
     Raises:
-        CannotEdit: Lines of the change stand nowhere in the base, or more than once; or it is no change.
+        CannotEdit: Lines of the change are not in the base, or several times; or it is not a change.
     """
     lines = base.split("\n")
     places = []
@@ -62,7 +62,7 @@ def edited(base: str, change: str) -> str:
 
 
 def _sides(block: str) -> tuple[list[str], list[str]]:
-    """The lines of one place as they are in the base, and as they are to be."""
+    """Return the lines of one place before and after the change."""
     old, new = [], []
     for line in block.split("\n"):
         if line[:1] not in ("", " ", "-", "+"):
@@ -83,7 +83,7 @@ def _sides(block: str) -> tuple[list[str], list[str]]:
 
 
 def _place(lines: list[str], old: list[str]) -> int:
-    """The index of the only place where these lines stand."""
+    """Return the index of the only place with these lines."""
     found = [at for at in range(len(lines) - len(old) + 1) if lines[at : at + len(old)] == old]
     if len(found) == 1:
         return found[0]
@@ -109,7 +109,7 @@ def unpack(answer: str, base: Path, folder: Path) -> None:
     Args:
         answer: The text.
         base: The workspace that it changes.
-        folder: The workspace's folder, made here.
+        folder: The folder of the new workspace.
 
     Raises:
         CannotEdit: A section does not fit the base.

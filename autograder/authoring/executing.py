@@ -1,4 +1,4 @@
-"""``autograder execute``: run every notebook of the course and say what is wrong with any of them."""
+"""``autograder execute``: run every notebook of the course and report what is wrong."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ class Executed:
     """A notebook that was executed.
 
     Attributes:
-        planned: What was to be executed.
-        execution: What came of it.
-        found: What is wrong; empty where all is well.
-        report: The page that was kept, where something is wrong.
+        planned: The notebook and its expected result.
+        execution: The result.
+        found: What is wrong; empty if nothing is.
+        report: The page that was kept, if something is wrong.
     """
 
     planned: Planned
@@ -55,13 +55,13 @@ def execute_command(
 
     Args:
         root: The folder with ``solutions`` and ``chapters``.
-        only: Names such as ``"lab_1_2"``; all notebooks where empty.
-        jobs: Notebooks at once; as many as processors and memory allow by default.
-        reports: Where the page about a notebook that failed is kept; pages of an earlier run are removed.
-        console: Where progress and result are shown; standard error by default.
+        only: Names such as ``"lab_1_2"``; all notebooks if empty.
+        jobs: The number of notebooks at once; as many as processors and memory allow by default.
+        reports: The folder for pages about failed notebooks; pages of an earlier run are removed.
+        console: The console for progress and result; standard error by default.
 
     Returns:
-        0 where all is well, 1 where a notebook failed.
+        0 if all is well, 1 if a notebook failed.
 
     Raises:
         NothingToExecuteError: A name in ``only`` is unknown, or a chapter was not built.
@@ -95,16 +95,16 @@ def execute_all(
 
     Args:
         planned: What to execute.
-        reports: Where the page about a notebook that failed is kept.
-        jobs: Notebooks at once; as many as processors and memory allow by default.
-        console: Where progress is shown.
+        reports: The folder for pages about failed notebooks.
+        jobs: The number of notebooks at once; as many as processors and memory allow by default.
+        console: The console for progress.
 
     Returns:
-        One for each notebook, in the order in which they were given.
+        A result for each notebook, in the given order.
     """
     of_task = {id(item.task): item for item in planned}
     results: dict[int, Executed] = {}
-    # Short, because the names of Unix sockets will be in it.
+    # Short, because the paths of Unix sockets begin with it.
     with (
         HeldFolder("autograder-run-") as scratch,
         BatchProgress(console, len(planned), doing="executing", did="executed") as progress,
@@ -127,12 +127,12 @@ def execute_all(
 
 
 def _longest_first(planned: Sequence[Planned]) -> list[Planned]:
-    """The notebooks with most to do begin, so that no core waits long for the last one."""
+    """Sort the longest notebooks to the front, so that no core waits long for the last one."""
     return sorted(planned, key=lambda item: -sum(_weight(cell) for cell in item.task.cells))
 
 
 def _weight(cell: Cell) -> float:
-    """About how many seconds a cell takes: a build some, a terminal one, a check one, other code little."""
+    """Estimate the seconds that a cell takes: a build some, a terminal one, a check one, other code little."""
     if cell.kind is not CellType.CODE:
         return 0.0
     if "colcon build" in cell.source:

@@ -1,4 +1,4 @@
-"""The notebooks that are executed, and what each has to show: a master full marks, a chapter no error."""
+"""The notebooks to execute and their expected results: full marks for a master, no error for a chapter."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 LIMITS = Limits(cell_seconds=180.0, notebook_seconds=900.0)
-"""Wider than for a submission: a cell may build a workspace, and several notebooks share the machine."""
+"""More generous than for a submission: a cell may build a workspace, and several notebooks share the machine."""
 
 
 class NotebookKind(StrEnum):
-    """The kind of a notebook, and what it has to show."""
+    """The kind of a notebook, which decides its expected result."""
 
     MASTER = "master"
     """Full marks."""
@@ -38,9 +38,9 @@ class Planned:
     """A notebook that will be executed.
 
     Attributes:
-        kind: What it has to show.
+        kind: The kind of notebook.
         notebook: nbformat 4.5, without outputs.
-        task: The same for the engine.
+        task: The same for execution.
     """
 
     kind: NotebookKind
@@ -49,25 +49,25 @@ class Planned:
 
     @property
     def label(self) -> str:
-        """Its name in messages, such as ``"master lab_1_2"``."""
+        """The name in messages, such as ``"master lab_1_2"``."""
         return f"{self.kind} {self.task.notebook}"
 
 
 class NothingToExecuteError(LookupError):
-    """There is no such notebook, or a chapter was not built or is damaged; the message says what to do."""
+    """The notebook does not exist, or a chapter was not built or is damaged; the message says what to do."""
 
 
 def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
-    """The notebooks of a course, each as a master and as a chapter.
+    """Return the notebooks of a course, each as a master and as a chapter.
 
-    The chapter is the file that students open, not one derived anew.
+    The chapter is the file that students open, not a newly built one.
 
     Args:
         root: The folder with ``solutions`` and ``chapters``.
-        only: Names such as ``"lab_1_2"``; all where empty.
+        only: Names such as ``"lab_1_2"``; all notebooks if empty.
 
     Raises:
-        NothingToExecuteError: A name is not there, or a chapter is missing or no notebook.
+        NothingToExecuteError: A name does not exist, or a chapter is missing or not a notebook.
         autograder.masters.master_errors.MasterError: A master cannot be used.
     """
     found = masters(root)
@@ -84,7 +84,7 @@ def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
             raise NothingToExecuteError(f"{chapter.relative_to(root)} is not there: run `{COMMAND} build`.")
         try:
             built = nodes.read(chapter.read_text(encoding="utf-8"))
-        except Exception as error:  # nbformat's libraries raise anything
+        except Exception as error:  # nbformat's libraries may raise any error
             raise NothingToExecuteError(
                 f"{chapter.relative_to(root)} is no notebook: run `{COMMAND} build`."
             ) from error
@@ -102,7 +102,7 @@ def _planned(kind: NotebookKind, name: str, notebook: NotebookNode) -> Planned:
         seed=f"execute {name}",
         course="",
         limits=LIMITS,
-        # The course's own, on the machine of whoever runs them: nobody is to be shut off from anything.
+        # The course's own notebooks, on the machine of the author: they need no isolation.
         boxed=False,
     )
     return Planned(kind, notebook, task)

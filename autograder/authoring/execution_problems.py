@@ -1,4 +1,4 @@
-"""Problems of an executed notebook of the course, and the page on which they stand above all of its cells."""
+"""The problems of an executed notebook, and the page that shows them above all cells."""
 
 from __future__ import annotations
 
@@ -25,7 +25,10 @@ if TYPE_CHECKING:
 
 TRACEBACK = "Traceback (most recent call last)"
 _SHELL = re.compile(r"^\s*(%%|!)", re.MULTILINE)
-"""Marks a cell that runs programs. Their standard error may hold more than errors, as that of colcon and ros2 does."""
+"""Marks a cell that runs programs.
+
+Their standard error may contain more than errors, as that of colcon and ros2 does.
+"""
 
 _HOW_IT_ENDED = {
     Ended.TIMED_OUT: "was stopped at its time limit",
@@ -40,7 +43,7 @@ _HOW_IT_ENDED = {
 
 @dataclass(frozen=True)
 class Problem:
-    """One thing that is wrong.
+    """One problem.
 
     Attributes:
         cell: Index of the cell, or None for the notebook as a whole.
@@ -52,7 +55,7 @@ class Problem:
 
 
 def problems_of(planned: Planned, execution: Execution) -> list[Problem]:
-    """All that is wrong with a notebook, in the order of its cells; empty where all is well."""
+    """Return all problems of a notebook, in the order of its cells; empty if there are none."""
     if execution.trouble:
         return [Problem(None, f"the grader had trouble: {execution.trouble}")]
     return [
@@ -115,10 +118,10 @@ def write_report(folder: Path, planned: Planned, execution: Execution, found: Se
     """Write the page.
 
     Args:
-        folder: Made where it is not there.
+        folder: The folder; made if it does not exist.
         planned: The notebook.
-        execution: What came of it.
-        found: What is wrong with it.
+        execution: The result of the execution.
+        found: The problems.
 
     Returns:
         The page's path.

@@ -1,4 +1,4 @@
-"""The house rules: what each master of the course keeps, and a new one is measured by."""
+"""The house rules for each master of the course, also for new ones."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from autograder.masters.source import NamedCell
 
 HEAD, BEFORE_A_TASK, SOLUTION = 150, 400, 8
-"""Words before the first cell of code, words before the first task, and lines of the student's in one cell, at most."""
+"""Limits: words before the first code cell, words before the first task, and a student's lines in one cell."""
 _MINUTES = re.compile(r"^\*\d+ minutes · for ", re.MULTILINE)
 _PICTURE = re.compile(r"!\[[^\]]*\]\([^)]*\)")
-"""The text alternative of a figure is for those who do not see it."""
+"""The text alternative of a figure is for readers who cannot see it."""
 PREDICTION = "**Before you run it:**"
 """The beginning of the question that students answer before they run commands that show something."""
 _PARAGRAPH = re.compile(r"\n\s*\n|\n(?=\d+\. |- )")
@@ -36,13 +36,13 @@ _REPLY = re.compile(r"</summary>\s*(\S)")
 
 
 def broken_rules(master: Path) -> list[str]:
-    """The house rules that a master breaks, each with its name and what to write.
+    """Return the house rules that a master breaks, each with its name and what to write.
 
     Args:
         master: A file ``lab.md``.
 
     Raises:
-        autograder.masters.master_errors.MasterError: It is no master.
+        autograder.masters.master_errors.MasterError: The file is not a valid master.
     """
     copying = {cell.line for cell in parse_master(master) if COPY.search(cell.source)}
     cells = [

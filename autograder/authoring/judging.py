@@ -1,4 +1,4 @@
-"""Answers judged many at a time, in forks of a process that has imported what each of them needs."""
+"""Judges many answers in parallel, in forks of a process that has done their common imports."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
 LIMIT = 240.0
-"""Seconds of wall time in which an answer must have been judged."""
+"""Seconds of wall time within which an answer must be judged."""
 
 
 class Judged(Protocol):
-    """Something that can be judged: an answer, a mutant of one."""
+    """Something that can be judged: an answer, or a mutant of one."""
 
     @property
     def name(self) -> str:
-        """The name by which a person finds it."""
+        """The name for people."""
         ...
 
     def verdict(self, seed: str) -> bytes:
-        """Judge it in this very process, a fork made for it; the verdict as JSON."""
+        """Judge it in this process, a fork made for it. Return the verdict as JSON."""
         ...
 
 
@@ -38,8 +38,8 @@ class Turn(Generic[T]):
     """One judging of one thing.
 
     Attributes:
-        subject: What is judged.
-        seed: What random inputs are drawn from.
+        subject: The thing to judge.
+        seed: The seed of random inputs.
     """
 
     subject: T
@@ -55,13 +55,13 @@ def judge_all(
 ) -> None:
     """Judge, in this order, in forks of this process, which must have no other threads.
 
-    What comes to no verdict is judged once more at the end, with none of the others beside it.
+    A subject without a verdict is judged once more at the end, alone.
 
     Args:
         turns: What to judge, and with which inputs.
-        jobs: How many at once.
+        jobs: The number of subjects at once.
         done: Called with each verdict as it comes.
-        failed: Called with what has no verdict, and why.
+        failed: Called with each subject without a verdict, and the reason.
     """
     again: list[Turn[T]] = []
     for turn, verdict, _ in _judged(turns, jobs):
@@ -77,7 +77,7 @@ def judge_all(
 
 
 def _judged(turns: Iterable[Turn[T]], jobs: int) -> Iterator[tuple[Turn[T], Verdict | None, str]]:
-    """Judge so many at once: each with its verdict as it comes, or with why there is none."""
+    """Judge several at once. Yield each with its verdict as it comes, or with the reason why there is none."""
     from autograder.judge.serving.fork import Child
 
     waiting = deque(turns)

@@ -1,4 +1,4 @@
-"""``new-exercise``: a lab's folder that works, copied from the example of its recipe, for its author to change."""
+"""``new-exercise``: makes a working lab folder, copied from the example of a recipe, for its author to change."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 EXAMPLES = Path(__file__).with_name("examples")
-"""A course of examples: each of its labs is the example of the recipe that it is named after."""
+"""A course of examples: each of its labs is the example of the recipe with its name."""
 LEFT_OUT = shutil.ignore_patterns("__pycache__", f"*{exercises.REFERENCE}")
-"""Files that are made anew for the copy."""
+"""Files that are made again for the copy."""
 
 DEFINITIONS = {"msg": 0, "srv": 1, "action": 2}
-"""The kinds of interfaces, and the lines ``---`` between the parts of each."""
+"""The kinds of interfaces, and the number of lines ``---`` between the parts of each."""
 
 _INTERFACE = re.compile(
     r"(?P<package>[a-z][a-z0-9_]*)/(?P<kind>msg|srv|action)/(?P<name>[A-Z][A-Za-z0-9]*)", re.ASCII
@@ -39,7 +39,7 @@ class CannotMake(ValueError):
 
 
 def recipes() -> dict[str, Path]:
-    """The folders of the examples, by the names of their recipes."""
+    """Return the folders of the examples, by the names of their recipes."""
     return {lab.name: lab for chapter in course.chapters(EXAMPLES) for lab in chapter.labs}
 
 
@@ -52,15 +52,15 @@ def new_exercise(
         root: The top folder of the course.
         exercise_id: Such as ``"lab_8_1.battery"``: the lab, a dot, the exercise.
         recipe: The kind of subject, one of :func:`recipes`.
-        chapter: The folder of its chapter in ``solutions/``, made where it is not there; the last chapter where None.
-        interfaces: Types of the chapter's own that its nodes need, such as ``"power_interfaces/srv/SetLevel"``.
+        chapter: The folder of its chapter in ``solutions/``, made if it does not exist; None for the last chapter.
+        interfaces: The chapter's own interface types that its nodes need, such as ``"power_interfaces/srv/SetLevel"``.
 
     Returns:
-        The files, in order.
+        The new files, in order.
 
     Raises:
-        CannotMake: The id, the chapter or an interface is no good name, the lab is there already, or there is no such
-            recipe.
+        CannotMake: The id, the chapter or an interface is not a valid name, the lab exists already, or the recipe
+            does not exist.
     """
     lab = _lab_of(exercise_id)
     example = _example(recipe)
@@ -80,7 +80,7 @@ def new_exercise(
 
 
 def _described(chapter: Path) -> list[Path]:
-    """Make the folder of a new chapter, with a description for its author to complete; what was written."""
+    """Make the folder of a new chapter, with a description for its author to complete. Return the new files."""
     if chapter.is_dir():
         return []
     chapter.mkdir(parents=True)
@@ -107,7 +107,7 @@ def _interface_of(root: Path, chapter: Path, interface: str) -> re.Match[str]:
         for one in course.chapters(root)
         if package in one.interfaces and one.folder != chapter
     ]
-    own = (chapter / course.INTERFACES / package).is_dir()  # once it is built it is a module
+    own = (chapter / course.INTERFACES / package).is_dir()  # once built, it can be imported
     taken = not own and (_is_a_module(package) or package in _listed(chapter))
     if elsewhere or taken:
         place = f"chapter {elsewhere[0]}" if elsewhere else "installation of ROS or of the course"
@@ -118,7 +118,7 @@ def _interface_of(root: Path, chapter: Path, interface: str) -> re.Match[str]:
 
 
 def _listed(chapter: Path) -> list[str]:
-    """The packages of interfaces that a chapter's description names."""
+    """Return the packages of interfaces in a chapter's description."""
     description = chapter / course.CHAPTER
     if not description.is_file():
         return []
@@ -126,7 +126,7 @@ def _listed(chapter: Path) -> list[str]:
 
 
 def _defined(chapter: Path, interface: re.Match[str]) -> list[Path]:
-    """Write the definition of a type for its author to complete, where there is none, and name its package."""
+    """Write a definition of a type, unless it exists, for its author to complete, and list its package."""
     package, kind, name = interface.group("package", "kind", "name")
     definition = chapter / course.INTERFACES / package / kind / f"{name}.{kind}"
     if definition.exists():
@@ -214,7 +214,7 @@ def _rename(made: Path, old: str, new: str) -> None:
 
 
 def _lab_title(exercise_id: str) -> str:
-    """The name of a lab in its heading: ``Lab 9.1`` for ``lab_9_1``."""
+    """Return the name of a lab in its heading: ``Lab 9.1`` for ``lab_9_1``."""
     lab = exercise_id.partition(".")[0]
     number = _NUMBER.search(lab)
     words = (lab[: number.start()] if number else lab).replace("_", " ").strip().capitalize()

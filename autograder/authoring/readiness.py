@@ -1,4 +1,4 @@
-"""Objections of the tests and the linters to a new exercise, told while its author still works on it."""
+"""What tests and linters would object to in a new exercise, for its author while working on it."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ if TYPE_CHECKING:
     from autograder.kit.model import Exercise
 
 ENOUGH = {"right": 5, "wrong": 8}
-"""As many answers as tell something of an exercise. It works with fewer; how fair it is, is then not known."""
+"""The number of answers that say something about an exercise. With fewer it works, but its fairness is unknown."""
 MISTAKES = "docs/mistakes.md"
-"""The page on which students read of each diagnosis, below a heading with its key."""
+"""The page on which students read about each diagnosis, below a heading with its key."""
 _PACKAGE = Path(course.__file__).resolve().parents[1]
 _SETTINGS = _PACKAGE / "pyproject.toml"
 
 
 def still_to_do(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
-    """The things that an exercise still lacks before it is committed, a line for each.
+    """Yield a line for each thing that an exercise still lacks before it can be committed.
 
     Args:
         exercise_id: Such as ``"lab_1_2.talker"``.
         listed: All answers to it.
 
     Raises:
-        autograder.exercises.UnknownExercise: There is no such exercise.
-        autograder.exercises.BrokenExercise: Its file is none.
+        autograder.exercises.UnknownExercise: The exercise does not exist.
+        autograder.exercises.BrokenExercise: Its file is not a valid exercise.
         autograder.masters.master_errors.MasterError: Its master cannot be used.
     """
     yield from _of_answers(listed)
@@ -72,7 +72,7 @@ def _of_mistakes(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
 
 
 def _of_text(exercise_id: str, master: Path) -> Iterator[str]:
-    """A line for each fault of the exercise's table of sentences and criteria."""
+    """Yield a line for each fault in the exercise's table of sentences and criteria."""
     exercise = exercises.get(exercise_id)
     if not exercise.text:
         yield "text: the exercise does not say which words of the task are behind which criterion"
@@ -82,7 +82,7 @@ def _of_text(exercise_id: str, master: Path) -> Iterator[str]:
 
 
 def faults_of_text(exercise: Exercise, said: str) -> Iterator[str]:
-    """The sentences of ``Exercise.text`` that a lab does not say, and what its criteria lack or have too much.
+    """Yield sentences of ``Exercise.text`` that are not in the lab, and criteria that are missing or unknown.
 
     Args:
         exercise: The exercise.
@@ -97,7 +97,7 @@ def faults_of_text(exercise: Exercise, said: str) -> Iterator[str]:
 
 
 def _of_linters(lab: Path) -> Iterator[str]:
-    """The lines of ruff and mypy about the files of a lab, or that it is not installed; none without settings."""
+    """Return the lines of ruff and mypy about the files of a lab, or that a linter is not installed."""
     if not _SETTINGS.is_file():
         return
     programs = {name: installed_program(name) for name in ("ruff", "mypy")}

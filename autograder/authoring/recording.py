@@ -1,7 +1,7 @@
-"""Record reference outputs: each master's own solution, seen by the same judge as everybody's.
+"""Records reference outputs: each master's own solution, observed by the same judge as any answer.
 
-A reference output follows from the master alone, so nothing that is expected is written a second time: change the
-solution, record, and the grader expects the new behaviour.
+A reference output is made from the master alone, so expected behavior is never written a second time: change the
+solution, record, and the grader expects the new behavior.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 RUN_LIMIT = 600.0
-"""Seconds of wall time in which one reference solution must have been seen; one may build a workspace twice."""
+"""Seconds of wall time for one reference solution; it may build a workspace twice."""
 
 _CALL = """
 
@@ -38,14 +38,14 @@ check({exercise!r}, {subject})
 
 
 class CannotRecord(RuntimeError):
-    """A reference solution could not be run or is not right by its own measure."""
+    """A reference solution could not be run, or fails its own criteria."""
 
 
 def record(wanted: Sequence[str], *, only_check: bool, tell: Callable[[str], object]) -> list[str]:
     """Record reference outputs.
 
     Args:
-        wanted: Exercise ids; all exercises where empty.
+        wanted: Exercise ids; all exercises if empty.
         only_check: Write nothing.
         tell: Called with one line for each exercise.
 
@@ -53,7 +53,7 @@ def record(wanted: Sequence[str], *, only_check: bool, tell: Callable[[str], obj
         The ids whose reference output is new or differs from the stored one.
 
     Raises:
-        CannotRecord: A solution could not be recorded; those before it are.
+        CannotRecord: A solution could not be recorded; earlier ones are.
     """
     changed = []
     for exercise_id in wanted or exercises.all_ids():
@@ -72,10 +72,10 @@ def record(wanted: Sequence[str], *, only_check: bool, tell: Callable[[str], obj
 
 
 def recording(exercise_id: str) -> str:
-    """The reference output of an exercise, as text.
+    """Return the reference output of an exercise, as text.
 
     Raises:
-        CannotRecord: There is no master for it, or its solution is not right by its own measure.
+        CannotRecord: No master has the exercise, or its solution fails its own criteria.
     """
     try:
         exercise = exercises.get(exercise_id)
@@ -137,10 +137,10 @@ def program(exercise_id: str, *, solved: bool = True) -> str:
 
 
 def _run(file: Path, socket: Path) -> str:
-    """Run the program; what it printed, for the case that it fails."""
+    """Run the program. Return its output, for the case that it fails."""
     done = subprocess.run(
         [str(installed_program("python3")), str(file)],
-        # A solution about files writes them where it runs.
+        # A solution about files writes them into its working folder.
         cwd=file.parent,
         env=os.environ | {SOCKET_VARIABLE: str(socket)},
         stdin=subprocess.DEVNULL,

@@ -1,4 +1,4 @@
-"""``try-exercise``: does the judge say of each right and wrong answer to an exercise what its author expects?"""
+"""``try-exercise``: compares the judge's verdict on each right and wrong answer with its author's expectation."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 JOBS = 4
-"""Answers that are judged at once: most of the time of each is waiting."""
+"""The number of answers judged at once: each mostly waits."""
 
 
 class NothingToTry(LookupError):
-    """There is no such answer. The message names those that there are, or says where to write one."""
+    """The answer does not exist. The message lists those that do, or says where to write one."""
 
 
 @dataclass(frozen=True)
 class Surprise:
-    """An answer of which the judge says something else than its author expects.
+    """An answer whose verdict differs from its author's expectation.
 
     Attributes:
         name: Such as ``"wrong/counter_stuck.py"``.
-        objection: What is not as expected.
+        objection: The difference.
         card: The card that a student would see.
     """
 
@@ -50,16 +50,17 @@ class Surprise:
 
 @dataclass(frozen=True)
 class Transcribed(Answer):
-    """An answer of which all that was seen is written into a file.
+    """An answer whose evidence is written into a file.
 
     Attributes:
-        folder: Gets a file for each answer, such as ``wrong/topic_name.py.txt``, with a line for each event.
+        folder: The folder for a file about each answer, such as ``wrong/topic_name.py.txt``, with a line for each
+            event.
     """
 
     folder: Path = Path()
 
     def verdict(self, seed: str) -> bytes:
-        """Judge it in this very process; the verdict as JSON."""
+        """Judge it in this process. Return the verdict as JSON."""
         verdict, found = self.checked(seed)
         if found is not None:
             file = self.folder / f"{self.short_name}.txt"
@@ -88,7 +89,7 @@ def try_exercise(
     transcript: Path | None = None,
     tell: Callable[[str], object],
 ) -> bool:
-    """Record or compare the reference output, judge the answers and tell what does not fit, and what is still to do.
+    """Record or compare the reference output, judge the answers, and print what does not fit and what is still to do.
 
     Edits that fit no line are told before anything runs. The notebook as students get it must earn no points. A
     reference output that is not there is recorded. One that differs from what the solution does now is left as it is,
@@ -103,14 +104,14 @@ def try_exercise(
         tell: Called with each line, or card, for the author.
 
     Returns:
-        Whether everything is as expected.
+        True if everything is as expected.
 
     Raises:
-        autograder.exercises.UnknownExercise: There is no such exercise.
-        autograder.exercises.BrokenExercise: Its file is none.
+        autograder.exercises.UnknownExercise: The exercise does not exist.
+        autograder.exercises.BrokenExercise: Its file is not a valid exercise.
         autograder.authoring.answer_tables.BadTable: A table of its answers cannot be used.
         autograder.authoring.recording.CannotRecord: The solution of its master cannot be recorded.
-        NothingToTry: There is no such answer.
+        NothingToTry: The answer does not exist.
     """
     exercises.get(exercise_id)
     wanted: Sequence[Answer] = chosen(exercise_id, only)
@@ -135,14 +136,14 @@ def try_exercise(
 
 
 def chosen(exercise_id: str, only: Sequence[str] = ()) -> list[Answer]:
-    """The answers to an exercise, in the order of their tables.
+    """Return the answers to an exercise, in the order of their tables.
 
     Args:
         exercise_id: Such as ``"lab_1_2.talker"``.
-        only: Parts of their names; all where empty.
+        only: Parts of their names; all answers if empty.
 
     Raises:
-        NothingToTry: There is none.
+        NothingToTry: No answer has such a name.
     """
     found = list(answers([exercise_id]))
     if not found:
@@ -162,16 +163,16 @@ def chosen(exercise_id: str, only: Sequence[str] = ()) -> list[Answer]:
 def judged(
     wanted: Sequence[Answer], *, jobs: int = JOBS, repeat: int = 1, tell: Callable[[str], object]
 ) -> list[Surprise]:
-    """Judge answers and tell of each as it comes.
+    """Judge answers and print each result.
 
     Args:
-        wanted: What to judge.
-        jobs: How many at once.
-        repeat: How many times each, each time with other random inputs.
-        tell: Called with a line for each.
+        wanted: The answers.
+        jobs: The number of answers at once.
+        repeat: The number of times for each, with different random inputs.
+        tell: Called with a line for each result.
 
     Returns:
-        What is not as expected, in the order of the answers: of each answer the first time that it was not.
+        The differences, in the order of the answers: for each answer the first one.
     """
     turns = [Turn(answer, f"try {lap}" if lap else "try") for lap in range(repeat) for answer in wanted]
     surprises: dict[str, Surprise] = {}
@@ -228,7 +229,7 @@ def _given(exercise_id: str) -> Iterator[str]:
 
 
 def _is_in_step(exercise_id: str, tell: Callable[[str], object]) -> bool:
-    """True if the reference output is what the solution does; one that is not there is recorded."""
+    """True if the reference output is the solution's present behavior; a missing one is recorded."""
     there = exercises.reference_path(exercise_id).exists()
     changed = recording.record([exercise_id], only_check=there, tell=tell)
     if not (there and changed):

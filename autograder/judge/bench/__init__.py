@@ -1,1 +1,1 @@
-"""The bench that a scenario works with: the judge's node with its endpoints, its clock, its record."""
+"""The bench for scenarios: the judge's node with its endpoints, its clock and its record."""

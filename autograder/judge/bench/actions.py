@@ -1,9 +1,9 @@
-"""Actions: a server that does only what the scenario tells it to, and a client that sends goals; all is written down.
+"""Actions: a server that does only what the scenario tells it to, and a client that sends goals, both recorded.
 
-Both are made of the three services and two topics that an action consists of (design.ros2.org, "Actions"), not of
-rclpy's ActionServer and ActionClient. The server would not call back for a second cancel of one goal and decides by
-itself when to answer, and here each cancel request counts. The client sees each answer as it was sent, a refused cancel
-request among them.
+Both are made of the three services and two topics of an action (design.ros2.org, "Actions"), not of rclpy's
+ActionServer and ActionClient. rclpy's server would not call back for a second cancel of one goal and decides by
+itself when to answer, but here each cancel request counts. The client sees each answer as it was sent, including
+refused cancel requests.
 """
 
 from __future__ import annotations
@@ -39,14 +39,14 @@ STATUS = {
 
 _SERVICES = ("send_goal", "cancel_goal", "get_result")
 FEEDBACK_MATCH = 3.0
-"""Seconds in which the subscription to feedback must have been met; without one there is none to send."""
+"""Seconds within which the subscription to feedback must be discovered; without a subscription no feedback is sent."""
 
 
 class ScriptedActionServer:
-    """One action; goals are accepted as they come (or all refused), the newest is the current one.
+    """The server of one action; it accepts all goals as they come (or refuses all), and the newest is the current one.
 
     Attributes:
-        services: The full names of the services that it is made of.
+        services: The full names of the action's services.
     """
 
     def __init__(
@@ -94,7 +94,7 @@ class ScriptedActionServer:
                 strict=True,
             )
         ]
-        # rclpy answers a request when its callback returns; these answers come when it is time for them.
+        # rclpy answers a request when its callback returns; these answers are sent at their own time.
         self._late = [
             LateAnswers(goals, goal_answer_takes, sending=self._note_goal_answer),
             LateAnswers(cancels, cancel_answer_takes, sending=self._note_cancel_answer),
@@ -104,10 +104,10 @@ class ScriptedActionServer:
         made.set()
 
     def await_goal(self, within: float) -> bool:
-        """Wait until a goal arrived and was answered; False where none came in ``within`` seconds.
+        """Wait until a goal has arrived and been answered; False if none came in ``within`` seconds.
 
-        Feedback that is sent before its sender's subscription was met would be lost, so that is waited for,
-        too.
+        Feedback that is sent before the client's subscription is discovered would be lost, so this also waits for the
+        subscription.
         """
         if not self._await("goal", within):
             return False
@@ -120,11 +120,11 @@ class ScriptedActionServer:
         return True
 
     def await_cancel(self, within: float) -> bool:
-        """Wait until somebody asked to cancel; False where nobody did in ``within`` seconds of the wall."""
+        """Wait for a request to cancel; False if none came in ``within`` seconds of wall time."""
         return self._await("cancel", within, wall=True)
 
     def await_result_request(self, within: float) -> bool:
-        """Wait until somebody asked for the result; False where nobody did in ``within`` seconds."""
+        """Wait for a request for the result; False if none came in ``within`` seconds."""
         return self._await("result_request", within)
 
     def send_feedback(self, **fields: Any) -> None:
@@ -149,7 +149,7 @@ class ScriptedActionServer:
             self._answer(response, header)
 
     def close(self) -> None:
-        """Take the action away."""
+        """Remove the action."""
         for late in self._late:
             late.close()
         for service in self._services:
@@ -218,18 +218,18 @@ class ScriptedActionServer:
         self.say_status()
 
     def say_status(self) -> None:
-        """Say the goal's status on its topic: when it changes, and when its client asks for the result.
+        """Publish the goal's status on its topic: when it changes, and when its client requests the result.
 
-        By itself not together with the answer to the goal, nor with the feedback right behind that. The status in a
-        handle that has just come is UNKNOWN, which is 0, and a client that reads it to learn whether its goal was
-        accepted must not be right by chance. A scenario says it when that time is over.
+        It is not published automatically with the answer to the goal, nor with the feedback right after that. The
+        status in a new handle is UNKNOWN, which is 0, and a client that reads it to learn whether its goal was
+        accepted must not be right by chance. A scenario publishes it after that time.
         """
         line = GoalStatus(goal_info=GoalInfo(goal_id=self._goal_id), status=self._status)
         self._statuses.publish(GoalStatusArray(status_list=[line]))
 
 
 def goal_text(goal_id: Any) -> str:
-    """A goal's id (``unique_identifier_msgs/msg/UUID``) as text."""
+    """Return a goal's id (``unique_identifier_msgs/msg/UUID``) as text."""
     return str(uuid.UUID(bytes=bytes(bytearray(int(b) & 0xFF for b in goal_id.uuid))))
 
 
@@ -250,7 +250,7 @@ class RecordedActionClient(Client):
         super().__init__(wire, recorder, action, f"{self._parts_of}/send_goal", server_is_gone)
         self._goals: list[UUID] = []
         node, self._parts = wire.node, interface(type_name).Impl
-        # Made first: endpoints are announced in order, so a server that can answer the services knows this one, too,
+        # Made first: endpoints are announced in order, so a server that can answer the services also knows this one,
         # and no first feedback is lost.
         self._feedback = node.create_subscription(
             self._parts.FeedbackMessage,
@@ -263,7 +263,7 @@ class RecordedActionClient(Client):
         self._result = node.create_client(self._parts.GetResultService, f"{self._parts_of}/get_result")
 
     def send_goal(self, **fields: Any) -> int:
-        """Send a goal; its number."""
+        """Send a goal. Return its number."""
         number = len(self._goals)
         self._goals.append(UUID(uuid=list(uuid.uuid4().bytes)))
         request = self._parts.SendGoalService.Request(goal_id=self._goals[number])
@@ -274,14 +274,14 @@ class RecordedActionClient(Client):
         return number
 
     def cancel(self, goal: int) -> None:
-        """Ask to cancel a goal."""
+        """Request to cancel a goal."""
         self._recorder.record("cancel_sent", self._name, goal=goal)
         request = CancelGoal.Request(goal_info=GoalInfo(goal_id=self._goals[goal]))
         future = self._cancel.call_async(request)
         future.add_done_callback(lambda done: self._take_cancel_answer(goal, done.result()))
 
     def close(self) -> None:
-        """Take the client away."""
+        """Remove the client."""
         for client in (self._send, self._cancel, self._result):
             self._wire.node.destroy_client(client)
         self._wire.node.destroy_subscription(self._feedback)
@@ -310,14 +310,14 @@ class RecordedActionClient(Client):
         self._note("cancel_answer", number, accepted=accepted, return_code=code)
 
     def _note(self, kind: str, goal: int, **data: Any) -> None:
-        """Write down what the server answered; what has a later time of sending was surely sent after it."""
+        """Record the server's answer; an event with a later time of sending was certainly sent after it."""
         self._recorder.record(kind, self._name, goal=goal, arrived=time.time(), **data)
 
     def _hear(self, message: Any, info: Any) -> None:
         known = [goal_text(goal) for goal in self._goals]
         heard = goal_text(message.goal_id)
         number = known.index(heard) if heard in known else -1
-        # When it was sent is not blurred by how busy this process is (rmw_message_info_t).
+        # The time of sending does not depend on how busy this process is (rmw_message_info_t).
         sent = info["source_timestamp"] / 1e9
         self._recorder.record(
             "feedback_heard", self._name, goal=number, fields=to_data(message.feedback), sent=sent

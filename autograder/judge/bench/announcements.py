@@ -1,11 +1,11 @@
-"""The processes that have made a node, heard also of a program that is gone before the graph tells of it.
+"""Detects processes that have made a node, even if a program ends before the graph shows it.
 
-A participant of DDS announces itself when it is made, and rmw_fastrtps makes it with the first node of a process. What
-the graph shows needs several messages to and fro after that, for which a program that ends at once may not live long
-enough. The announcement has left it in any case, and waits in the sockets that are opened here.
+A DDS participant announces itself when it is made, and rmw_fastrtps makes it with the first node of a process. The
+graph needs several more messages in both directions, for which a program that ends at once may not live long enough.
+But the announcement has left it in any case, and waits in the sockets that are opened here.
 
-It goes to a multicast group or, where discovery keeps to this machine, to the ports of the first participants on it
-(DDSI-RTPS 2.5, 9.6.1).
+The announcement is sent to a multicast group or, if discovery is limited to this machine, to the ports of the first
+participants on it (DDSI-RTPS 2.5, 9.6.1).
 """
 
 from __future__ import annotations
@@ -31,20 +31,23 @@ _JOINED = (
     socket.inet_aton(_GROUP) + socket.inet_aton(_LOOPBACK),
 )
 _PLACE = 31
-"""The place of a participant that is taken here: Fast DDS announces to those from 0 to 31 (rmw_fastrtps,
-participant.cpp), and who makes a participant takes the lowest that is free."""
+"""The participant index that is used here: Fast DDS announces to indexes 0 to 31 (rmw_fastrtps, participant.cpp),
+and a new participant takes the lowest free index.
+"""
 _RTPS = b"RTPS"
 _PREFIX = slice(8, 16)
-"""The part of a message's header that names the process that it comes from (DDSI-RTPS 2.5, 8.3.3.1; the rest of the
-identifier counts the participants of a process)."""
+"""The part of a message's header that identifies the sending process (DDSI-RTPS 2.5, 8.3.3.1; the rest of the
+identifier counts the participants of a process).
+"""
 _LARGEST = 65_536
 MOST = 1_000
-"""Processes that are told apart, and messages that are taken at once: a flood must neither fill the memory nor keep the
-judge from anything else."""
+"""The most processes that are remembered, and messages that are read at once: a flood must neither fill the memory
+nor keep the judge from other work.
+"""
 
 
 class Announcements:
-    """Listens on a domain until it is closed. Where a socket cannot be had, nothing is heard by it.
+    """Listens on a domain until it is closed. If a socket cannot be opened, nothing is heard on it.
 
     Args:
         domain_id: The domain.
@@ -65,13 +68,13 @@ class Announcements:
         self._thread.start()
 
     def heard(self) -> frozenset[bytes]:
-        """The processes that have announced a participant by now."""
+        """The processes that have announced a participant so far."""
         with self._lock:
             self._take()
             return frozenset(self._heard)
 
     def close(self) -> None:
-        """Hear nothing more."""
+        """Stop listening."""
         self._end.close()
         self._thread.join()
         self._selector.close()
@@ -79,7 +82,7 @@ class Announcements:
             opened.close()
 
     def _listen(self) -> None:
-        """Take what comes before the sockets are full, whether or not anybody asks."""
+        """Read messages before the sockets are full, even if the result is never used."""
         while not any(key.fileobj is self._ended for key, _ in self._selector.select()):
             with self._lock:
                 self._take()
@@ -92,7 +95,7 @@ class Announcements:
 
 
 def process_of(node: Node) -> bytes:
-    """The process of a node, as in :class:`Announcements`; empty where the node does not listen to ``/rosout``."""
+    """Return the process of a node as in :class:`Announcements`; empty if it does not subscribe to ``/rosout``."""
     infos = node.get_subscriptions_info_by_topic("/rosout")
     own = (bytes(info.endpoint_gid) for info in infos if info.node_name == node.get_name())
     return next((identifier[: _PREFIX.stop - _PREFIX.start] for identifier in own), b"")
@@ -105,7 +108,7 @@ def _waiting(listening: socket.socket) -> Iterator[bytes]:
 
 
 def _listening(address: str, udp_port: int, *options: tuple[int, int, int | bytes]) -> socket.socket | None:
-    """A socket that listens there; None where it cannot be had."""
+    """Return a socket that listens there; None if it cannot be opened."""
     listening = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         for option in options:

@@ -1,4 +1,4 @@
-"""Answers that arrive, in their time: a service of the judge's waits until its client can hear it."""
+"""Makes answers arrive, and at the right time: a service of the judge waits until its client can receive."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ ATTEMPTS = 30
 def patiently(service: Service, wanted: Callable[[], bool] = lambda: True) -> Callable[[Any, Any], None]:
     """Return a function that sends answers of this service; the service uses it as long as answers are wanted.
 
-    A client whose request came at once may not be able to hear yet. The middleware waits 0.1 s for it, drops the
-    answer and warns ("client will not receive response", rmw_fastrtps_shared_cpp/rmw_response.cpp): on a busy machine
-    a right client would then wait for ever.
+    A client that sends its request at once may not be able to receive yet. The middleware waits 0.1 s for it, drops
+    the answer and warns ("client will not receive response", rmw_fastrtps_shared_cpp/rmw_response.cpp): on a busy
+    machine a right client would then wait for ever.
     """
     usual = service.send_response
 
@@ -31,7 +31,7 @@ def patiently(service: Service, wanted: Callable[[], bool] = lambda: True) -> Ca
         for _ in range(ATTEMPTS):
             if not wanted():
                 return
-            # Taken down and not made an error: an error that a warning makes in compiled code comes out as another one.
+            # The warning is recorded, not made an error: compiled code would turn it into a different error.
             with _warnings_belong_to_all_threads, warnings.catch_warnings(record=True) as complaints:
                 warnings.simplefilter("always", RuntimeWarning)
                 usual(response, header)
@@ -46,10 +46,10 @@ _warnings_belong_to_all_threads = threading.Lock()
 
 
 def once_it_is_set(made: threading.Event, take: Take) -> Take:
-    """A callback of a service of which nothing is taken before the event is set.
+    """Return a callback for a service that takes no request before the event is set.
 
-    A service is served from the moment of its creation. Who has waited for it may ask before its maker has said how its
-    answers are to be sent, and would be answered behind the judge's back.
+    A service works from the moment of its creation. A client that waits for it may send a request before the service
+    knows how to send answers, and the answer would bypass the judge.
     """
 
     def wait_and_take(request: Any, response: Any) -> Any:
@@ -60,11 +60,11 @@ def once_it_is_set(made: threading.Event, take: Take) -> Take:
 
 
 class LateAnswers:
-    """Lets the answers of a service be sent some time after their requests; others are served meanwhile.
+    """Sends the answers of a service some time after their requests; other requests are served meanwhile.
 
     Args:
-        service: Whose answers.
-        seconds: Of wall time from the request to its answer.
+        service: The service.
+        seconds: Wall time from a request to its answer.
         sending: Called with each answer just before it is sent.
     """
 
@@ -83,9 +83,9 @@ class LateAnswers:
         service.send_response = self._send  # type: ignore[method-assign]
 
     def close(self) -> None:
-        """Send nothing more. To be called before the service is destroyed."""
+        """Send nothing more. Call it before the service is destroyed."""
         self._closed = True
-        with self._delivering:  # what is on its way just now needs the service
+        with self._delivering:  # an answer being sent now needs the service
             pass
 
     def _send(self, response: Any, header: Any) -> None:

@@ -1,4 +1,4 @@
-"""The bench: what a scenario's words do. One bench serves one look at one subject."""
+"""The bench: what the methods of a scenario do. One bench serves one look at one subject."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ if TYPE_CHECKING:
     from autograder.judge.subjects.subject import Subject
 
 SETTLED = {Pace.FAST: 1.0, Pace.REAL_TIME: 3.0}
-"""Seconds without a change of the graph after which a command is taken to have made all that it makes."""
+"""Seconds without a change of the graph after which a command counts as having made everything."""
 GRAPH_LOOK = 0.02
-"""Seconds between two queries of the graph that are written down."""
+"""Seconds between two queries of the graph that are recorded."""
 T = TypeVar("T")
 
 
 def _of_a_part(made: T | None) -> T:
-    """Something that every part has, once one has begun.
+    """Return something that every part has, once a part has begun.
 
     Raises:
-        RuntimeError: None has.
+        RuntimeError: No part has begun.
     """
     if made is None:
         raise RuntimeError("a scenario begins with bench.part(...)")
@@ -49,10 +49,10 @@ class TestBench:
     """Implements :class:`autograder.kit.model.Bench` on real ROS.
 
     Attributes:
-        in_a_cell: The subject runs in a notebook's kernel.
+        in_a_cell: True if the subject runs in a notebook's kernel.
         parts: The finished parts.
-        doubtful: Something in a fast look must be confirmed in real time.
-        unmet: A run began although its participant had not said that it had met what the judge put up.
+        doubtful: True if something in a fast look must be confirmed in real time.
+        unmet: True if a run began although its participant had not reported that it discovered the judge's endpoints.
     """
 
     __test__ = False  # not a pytest class
@@ -69,7 +69,7 @@ class TestBench:
         misnamed: Mapping[str, Mapping[str, str]] | None = None,
     ) -> None:
         self._misnamed = misnamed or {}
-        """Data of endpoints by their names in the task: the judge meets each under the subject's name, ``real``."""
+        """Data about endpoints by their names in the task: the judge uses the subject's name for each, ``real``."""
         self.pace = pace
         self.random = random
         self.reference = reference
@@ -83,7 +83,7 @@ class TestBench:
         self._recorder = Recorder(hurry)
         self._wire: Wire | None = None
         self._decoys: DecoyNodes | None = None
-        # Nobody can tell one run from the next by its process where all are in the notebook's.
+        # If all runs are in the notebook's process, the process does not tell one run from the next.
         self._announcements = None if subject.shares_participant else Announcements(domain_id)
         self._older_processes: set[bytes] = set()
         self._open = contextlib.ExitStack()
@@ -106,7 +106,7 @@ class TestBench:
         if self._wire is None or not (self._subject.shares_participant and self._clean):
             self._close_wire()
             self._wire, self._decoys = Wire(self._domain_id), DecoyNodes(self._domain_id)
-            # One reader for all parts of a participant: a new one would be told the log of the parts before.
+            # One reader for all parts of a participant: a new one would receive the log of earlier parts.
             self._log = LogReader(self._wire, self._recorder)
             self._subject.renew()
             self._recorder.take_in = partial(self._wire.take_in, lambda: self._recorder.count)
@@ -118,13 +118,13 @@ class TestBench:
         )
 
     def again(self) -> None:
-        """Begin the last part anew: what was seen of it does not count."""
+        """Begin the last part again: its record so far does not count."""
         self.stop()
         dropped = self.parts.pop()
         self.part(dropped.name, **dropped.inputs)
 
     def keep(self, name: str) -> bool:
-        """In a second look, take over what the first one saw in a part, if the subject came to its own end there."""
+        """In a second look, reuse the first look's record of a part, if the subject ended by itself there."""
         known = self.before.part(name) if self.before else Part(name)
         if known.ending is None or patience(known) is not None:
             return False
@@ -133,7 +133,7 @@ class TestBench:
         return True
 
     def stop(self) -> None:
-        """End the subject, keep what was seen and take away what the judge put up for this part."""
+        """End the subject, keep the record, and remove what the judge made for this part."""
         if not self._in_part:
             return
         self._in_part = False
@@ -141,7 +141,7 @@ class TestBench:
         self._presence.note_how_it_leaves()
         self._presence.note_whom_it_met()
         self._presence.note_short_life()
-        # What Ctrl-C has ended may be on the graph for a while; a new participant never hears of it.
+        # What Ctrl-C has ended may stay on the graph for a while; a new participant never sees it.
         self._clean = self._subject.ended and not self._recorder.part().of("subject", INTERRUPTED)
         self.parts.append(self._recorder.part())
         self._subject.stop()
@@ -166,7 +166,7 @@ class TestBench:
             self._decoys.close()
             self._wire.close()
             self._wire = self._decoys = None
-            self._gone = set()  # with its participant; nobody who comes later will meet that
+            self._gone = set()  # removed with its participant; no later subject discovers it
 
     @property
     def wire(self) -> Wire:
@@ -186,7 +186,7 @@ class TestBench:
     # --- the subject ---------------------------------------------------------------------------------------
 
     def start(self, *arguments: Any, **options: Any) -> None:
-        """Start the subject, once it knows what the judge has put on the graph and what is gone from it."""
+        """Start the subject, once it knows which endpoints the judge has added to the graph and removed from it."""
         if (self._there or self._gone) and not self._subject.knows(there=self._there, gone=self._gone):
             self.unmet = True
         if self._announcements is not None:
@@ -194,7 +194,7 @@ class TestBench:
         self._subject.start(self._recorder, arguments, options)
 
     def _has_announced_itself(self) -> bool:
-        """True if a process that was not there before the subject's start has made a node."""
+        """True if a process that did not exist before the subject's start has made a node."""
         return self._announcements is not None and bool(self._announcements.heard() - self._older_processes)
 
     def release(self) -> None:
@@ -202,7 +202,7 @@ class TestBench:
         self._subject.release()
 
     def press_ctrl_c(self, within: float) -> bool:
-        """Interrupt the subject and wait until it has ended; what the graph tells is written down before."""
+        """Interrupt the subject and wait until it has ended; the state of the graph is recorded before."""
         if self._subject.ended:
             return False
         self._presence.note_interface()
@@ -219,7 +219,7 @@ class TestBench:
         return self._recorder.wait(lambda: self._subject.ended, within)
 
     def await_endpoint(self, role: str, name: str) -> bool:
-        """Wait until the subject's endpoint is there and matched; who makes it once it is spun is let spin for that."""
+        """Wait until the subject's endpoint exists and is matched; release the subject if it makes it once spun."""
         at = self._real(name)
         there = self._presence.await_endpoint(role, at)
         if there or not self._subject.may_make_more:
@@ -228,11 +228,11 @@ class TestBench:
         return self._presence.await_endpoint(role, at)
 
     def _real(self, name: str) -> str:
-        """Return the name under which the subject has an endpoint that the task calls ``name``."""
+        """Return the subject's name for the endpoint that the task calls ``name``."""
         return self._misnamed[name]["real"] if name in self._misnamed else name
 
     def await_node(self) -> bool:
-        """Wait until a node of the subject's is on the graph; a subject that ends may have had one before."""
+        """Wait for a node of the subject on the graph; a subject that ends may have had one before."""
         return self._presence.await_node()
 
     def await_sign_of_life(self, within: float) -> bool:
@@ -240,11 +240,11 @@ class TestBench:
         return self._presence.await_sign_of_life(within)
 
     def await_any_endpoint(self, roles: tuple[str, ...]) -> graph.Interface:
-        """Wait until the subject has an endpoint of one of these roles; the whole interface as it is then."""
+        """Wait until the subject has an endpoint of one of these roles. Return its whole interface at that time."""
         return self._presence.await_interface(lambda interface: any(interface[role] for role in roles))
 
     def watch_graph(self, condition: Callable[[Evidence], bool], within: float) -> bool:
-        """The same for what the graph tells of; each change of it is written down."""
+        """Wait likewise for something on the graph; each change of the graph is recorded."""
 
         def look() -> Evidence:
             self._presence.note_interface()
@@ -258,7 +258,7 @@ class TestBench:
     # --- counterparts --------------------------------------------------------------------------------------
 
     def listen(self, topic: str, type_name: str, *, latched: bool = False) -> None:
-        """Subscribe as the course's listener does, or as one that asks for what was published before it came."""
+        """Subscribe as the course's listener does, or as a late listener that requests earlier messages."""
         at = self._real(topic)
         subscription = RecordedSubscription(
             self.wire, self._recorder, topic, type_name, at=at, latched=latched
@@ -267,11 +267,11 @@ class TestBench:
         self._open.callback(self.wire.node.destroy_subscription, subscription.subscription)
 
     def seen(self) -> Part:
-        """The events of this part so far."""
+        """Return the events of this part so far."""
         return self._recorder.part()
 
     def heard(self, topic: str) -> int:
-        """The number of messages that arrived on a topic so far in this part."""
+        """Return the number of messages that arrived on a topic so far in this part."""
         return len(self._recorder.part().of("message", topic))
 
     def speak(self, topic: str, type_name: str) -> RecordedPublisher:
@@ -283,12 +283,12 @@ class TestBench:
         return publisher
 
     def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> None:
-        """Put a node on the graph, until the next part has planted others; a run begins once the subject knows it."""
+        """Put a node on the graph, until the next part plants others; a run begins once the subject knows the node."""
         assert self._decoys is not None
         self._there |= self._decoys.plant(name, publishes=publishes, subscribes=subscribes)
 
     def serve(self, service: str, type_name: str, answer: Answer, *, hold: int = 0) -> RecordedServer:
-        """Serve until the part ends; the answer to the request of the number ``hold`` waits for its release."""
+        """Serve until the part ends; the answer to request number ``hold`` waits for its release."""
         self._get_ready_to_serve(service)
         at = self._real(service)
         server = RecordedServer(self.wire, self._recorder, service, type_name, answer, at=at, hold=hold)
@@ -297,7 +297,7 @@ class TestBench:
         return server
 
     def call(self, service: str, type_name: str) -> RecordedCaller:
-        """Be a client of the subject's service until the part ends."""
+        """Make a client for the subject's service, until the part ends."""
         caller = RecordedCaller(
             self.wire,
             self._recorder,
@@ -310,7 +310,7 @@ class TestBench:
         return caller
 
     def call_action(self, action: str, type_name: str) -> RecordedActionClient:
-        """Be a client of the subject's action until the part ends."""
+        """Make a client for the subject's action, until the part ends."""
         caller = RecordedActionClient(
             self.wire,
             self._recorder,
@@ -339,12 +339,12 @@ class TestBench:
         return server
 
     def _get_ready_to_serve(self, name: str) -> None:
-        """Learn of the clients that exist, since a request of an unknown client would be dropped; record the moment."""
+        """Discover existing clients, because a request of an unknown client would be dropped; record the moment."""
         self._recorder.take_in()
         self._recorder.record("serving", name)
 
     def _announce(self, services: Iterable[str]) -> None:
-        # The judge's own participant, too, may still see what was taken away.
+        # The judge's own participant may also still see removed endpoints.
         self._there |= graph.server_endpoints(self.wire.node, services) - self._gone
 
     # --- time ----------------------------------------------------------------------------------------------
@@ -357,34 +357,34 @@ class TestBench:
         quiet: float | None = None,
         step: float = STEP,
     ) -> bool:
-        """Let ``seconds`` of the subject's time pass, or fewer where ``until`` holds or nothing happens."""
+        """Let ``seconds`` of the subject's time pass, or fewer if ``until`` holds or nothing happens."""
         return self._time.run(seconds, until=until, quiet=quiet, step=step)
 
     def pass_time(self, seconds: float, role: str, name: str) -> None:
-        """Let simulated seconds pass for a subject that lives in real time, real ones where it does not follow."""
+        """Let simulated seconds pass for a subject in real time; real ones if it does not follow."""
         self._time.lend(seconds, role, self._real(name))
 
     def let_wait(self, seconds: float) -> None:
-        """Let the subject wait ``seconds`` of wall time for a server that comes late."""
+        """Let the subject wait ``seconds`` of wall time for a late server."""
         self._recorder.wait(lambda: self._subject.ended, seconds, wall=True)
 
     def settle(self) -> None:
-        """Ask each node of the subject's twice; a node that did not answer once is not asked again in this part."""
+        """Send each node of the subject two requests, except nodes that did not answer earlier in this part."""
         self._time.settle()
 
     def await_attention(self) -> None:
-        """Ask each node that the judge is matched with, by a client that is announced after the judge's publishers."""
+        """Query each node that the judge is matched with, by a client announced after the judge's publishers."""
         self._time.await_attention()
 
     def doubt(self) -> None:
-        """Have this look confirmed in real time."""
+        """Require that this look is confirmed in real time."""
         self.doubtful = True
 
     def note_whether_it_spins(self) -> None:
-        """Ask each node of the subject's for a parameter; write down which one does not answer."""
+        """Request a parameter from each node of the subject; record which node does not answer."""
         nodes = self._presence.counterparts()
         if not nodes:
-            # A program that has destroyed its nodes is on its way out: how it ends says more than their silence.
+            # A program that has destroyed its nodes is ending: its end tells more than their silence.
             self.await_end(MATCH)
         for node in nodes:
             if not self._subject.ended and not answers(self.wire, self._recorder, node):
@@ -392,7 +392,7 @@ class TestBench:
                 self.note_where_it_hangs()
 
     def note_where_it_hangs(self) -> None:
-        """Write down the subject's stacks; a command ends by that. To be asked last in a part."""
+        """Record the subject's stacks, which ends a command; do it last in a part."""
         if not self._subject.ended:
             self._presence.note_interface()
             self._recorder.record("stack", "subject", text=self._subject.stack())
@@ -406,12 +406,14 @@ class TestBench:
     def _wait_for(
         self, condition: Callable[[Evidence], bool], look: Callable[[], Evidence], within: float, **how: Any
     ) -> bool:
-        """True if a condition held when it was asked last; it is not asked again, as it need not hold for ever."""
+        """True if a condition held at its last check; it is not checked again, because it need not hold for ever."""
         held = False
 
         def over() -> bool:
             nonlocal held
-            ended = self._subject.ended  # before the evidence, so that this has all that came before the end
+            ended = (
+                self._subject.ended
+            )  # before the evidence, so that the evidence has everything before the end
             held = condition(look())
             return held or ended
 
@@ -419,7 +421,7 @@ class TestBench:
         return held
 
     def compare_type(self, service: str, like: str) -> None:
-        """Write down whether a service's type has the fields of the type ``like``, by its hashes on the graph."""
+        """Record whether a service's type has the fields of the type ``like``, by its hashes on the graph."""
         at = self._real(service)
         made = graph.survey(self.wire.node)["service"].get(at, "")
         expected = expected_hashes(like, made.partition("/")[0])
@@ -433,6 +435,6 @@ class TestBench:
         self._recorder.record("type", service, type=made, same=seen == expected, fields=service_fields(like))
 
     def note_its_log(self) -> None:
-        """Write down each text of its log once, for the reference output."""
+        """Record each different text of its log once, for the reference output."""
         for text in dict.fromkeys(event.data["text"] for event in self._recorder.part().of("log")):
             self._recorder.record("said", "log", text=text)

@@ -20,11 +20,12 @@ if TYPE_CHECKING:
 
 
 class DecoyNodes:
-    """Participants for planted nodes, one for each node that is there at once.
+    """Participants for planted nodes, one for each node that exists at the same time.
 
-    A node needs a participant of its own, as in one participant Fast DDS takes only one type for a topic. The
-    participants stay from part to part, as a subject that stays needs a fifth of a second and more to meet a new one.
-    A participant lives as long as it has a node (rmw_fastrtps), so a node leaves only when the next one is there.
+    Each node needs its own participant, because in one participant Fast DDS accepts only one type for a topic. The
+    participants stay from part to part, because a persistent subject needs a fifth of a second or more to discover a
+    new one. A participant lives as long as it has a node (rmw_fastrtps), so a node is removed only when the next one
+    exists.
     """
 
     def __init__(self, domain_id: int) -> None:
@@ -35,10 +36,10 @@ class DecoyNodes:
     def plant(
         self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]
     ) -> set[Endpoint]:
-        """Put a node with these topics on the graph, as any node of the course has them; nothing spins it.
+        """Put a node with these topics on the graph, with the usual QoS; nothing spins it.
 
         Returns:
-            Its endpoints on these topics.
+            The node's endpoints on these topics.
         """
         if self._planted == len(self._decoys):
             self._decoys.append(_Decoy(self._domain_id))
@@ -47,19 +48,19 @@ class DecoyNodes:
         return decoy.plant(name, publishes, subscribes)
 
     def clear(self) -> None:
-        """Take the endpoints off the graph, and let the nodes be replaced by those that are planted next."""
+        """Remove the endpoints from the graph; the nodes are replaced by the next planted ones."""
         for decoy in self._decoys[: self._planted]:
             decoy.clear()
         self._planted = 0
 
     def close(self) -> None:
-        """Take everything off the graph."""
+        """Remove everything from the graph."""
         while self._decoys:
             self._decoys.pop().close()
 
 
 class _Decoy:
-    """A participant and the node that it has now."""
+    """A participant and its present node."""
 
     def __init__(self, domain_id: int) -> None:
         self._context = Context()

@@ -1,6 +1,6 @@
-"""Nodes and endpoints on the graph, besides the judge's own: the public face of a subject.
+"""Nodes and endpoints on the graph other than the judge's: the public face of a subject.
 
-rclpy has no event for changes of the graph, so these queries are polled; one costs well under a millisecond.
+rclpy has no event for changes of the graph, so these queries are polled; a query takes well under a millisecond.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ RCLError = rclpy_implementation.RCLError
 ROLES = ("publisher", "subscription", "service", "client", "action_server", "action_client")
 
 _FAST_DDS = b"\x01\x0f"
-"""The first bytes of its identifiers (DDSI-RTPS, vendor ids)."""
+"""The first bytes of Fast DDS identifiers (DDSI-RTPS, vendor ids)."""
 _EVERY_NODE_HAS = frozenset({"/rosout", "/parameter_events", "/clock"})
 _EVERY_NODE_SERVES = (
     "/describe_parameters",
@@ -37,28 +37,28 @@ _EVERY_NODE_SERVES = (
 
 @dataclass(frozen=True)
 class NodeName:
-    """A node of the subject's."""
+    """A node of the subject."""
 
     name: str
     namespace: str
 
     @property
     def full(self) -> str:
-        """Its full name, such as ``/robot/talker``."""
+        """The full name, such as ``/robot/talker``."""
         return f"{self.namespace.rstrip('/')}/{self.name}"
 
 
 Interface = dict[str, dict[str, str]]
-"""Role -> {name: type}; where a name has several types they are joined with a comma."""
+"""Role -> {name: type}; if a name has several types they are joined with a comma."""
 
 
 def subject_nodes(judge: Node, keeper: str) -> list[NodeName]:
-    """Every node on the domain but the judge's and one keeper, once each name.
+    """Return every node on the domain except the judge's and one keeper, each name once.
 
     Args:
         judge: The judge's node.
-        keeper: What the node is called that a notebook's check makes; empty where it makes none. One node of that name
-            is nobody's work; a second one is the subject's, whoever has told it the name.
+        keeper: The name of the node that a notebook's check makes; empty if it makes none. One node of that name is
+            ignored; a second one belongs to the subject, however it learned the name.
     """
     own = judge.get_name()
     seen = judge.get_node_names_and_namespaces()
@@ -69,9 +69,9 @@ def subject_nodes(judge: Node, keeper: str) -> list[NodeName]:
 
 
 def survey(judge: Node) -> Interface:
-    """The endpoints of all of the subject's nodes, without those that every node has.
+    """Return the endpoints of all of the subject's nodes, without those that every node has.
 
-    A keeper has no others, so its name hides none.
+    A keeper has no other endpoints, so a node with its name hides none.
     """
     found: Interface = {role: {} for role in ROLES}
     for end in topic_ends(judge):
@@ -86,13 +86,13 @@ def survey(judge: Node) -> Interface:
 
 @dataclass(frozen=True)
 class TopicEnd:
-    """A publisher or a subscription of the subject's.
+    """A publisher or a subscription of the subject.
 
     Attributes:
         role: ``"publisher"`` or ``"subscription"``.
         topic: The topic's full name.
         type_name: Such as ``"std_msgs/msg/String"``.
-        process: The lower 16 bits of the id of the process that it belongs to; 0 where nobody can tell.
+        process: The lower 16 bits of the id of its process; 0 if unknown.
     """
 
     role: str
@@ -102,10 +102,10 @@ class TopicEnd:
 
 
 def topic_ends(judge: Node) -> list[TopicEnd]:
-    """The subject's ends of topics.
+    """Return the subject's publishers and subscriptions.
 
-    They are asked for by topic: of two nodes of one name, a question by the node's name is answered for one of them.
-    An endpoint is also known before the node that it belongs to, as the two are announced separately.
+    The query is by topic: if two nodes have the same name, a query by node is answered for only one of them. An
+    endpoint may also be known before its node, because the two are announced separately.
     """
     own = judge.get_name()
     return [
@@ -122,17 +122,17 @@ def topic_ends(judge: Node) -> list[TopicEnd]:
 
 
 def _process(gid: bytes) -> int:
-    """The process in an endpoint's identifier: Fast DDS writes it into the fifth and sixth byte."""
+    """Return the process in an endpoint's identifier: Fast DDS writes it into the fifth and sixth byte."""
     return int.from_bytes(gid[4:6], "little") if gid[:2] == _FAST_DDS else 0
 
 
 def counterparts(judge: Node, heard: list[str], spoken: list[str]) -> list[NodeName]:
-    """The subject's nodes at the other end of topics, once their real names are known.
+    """Return the subject's nodes at the other end of topics, once their real names are known.
 
     Args:
         judge: The judge's node.
-        heard: Topics that the judge listens to.
-        spoken: Topics that the judge speaks on.
+        heard: The topics that the judge subscribes to.
+        spoken: The topics that the judge publishes on.
     """
     infos = [info for topic in heard for info in judge.get_publishers_info_by_topic(topic)]
     infos += [info for topic in spoken for info in judge.get_subscriptions_info_by_topic(topic)]
@@ -142,7 +142,7 @@ def counterparts(judge: Node, heard: list[str], spoken: list[str]) -> list[NodeN
 
 
 def owners(judge: Node, role: str, name: str) -> list[NodeName]:
-    """The subject's nodes that have an endpoint of this role and name."""
+    """Return the subject's nodes that have an endpoint of this role and name."""
     query = _QUERIES[role]
     return [node for node in subject_nodes(judge, keeper="") if name in dict(_ask(query, judge, node))]
 
@@ -150,7 +150,7 @@ def owners(judge: Node, role: str, name: str) -> list[NodeName]:
 def shows(judge: Node, marker: str) -> bool:
     """True if a node is known to have both a publisher and a subscription of this name.
 
-    Made last, they are known last: each kind of endpoint is announced in order (DDSI-RTPS, 8.5.4).
+    They are made last, so they are discovered last: endpoints of a kind are announced in order (DDSI-RTPS, 8.5.4).
     """
     return any(
         marker in dict(_ask(Node.get_publisher_names_and_types_by_node, judge, node))
@@ -173,7 +173,7 @@ def _ask(query: _Query, judge: Node, node: NodeName) -> list[tuple[str, list[str
     try:
         return query(judge, node.name, node.namespace)
     except (NodeNameNonExistentError, RCLError):
-        return []  # it went away between the two questions
+        return []  # the node disappeared between the two queries
 
 
 def _is_own_work(role: str, name: str) -> bool:
@@ -192,30 +192,30 @@ Endpoint = tuple[str, str]
 
 
 def server_endpoints(node: Node, services: Iterable[str]) -> set[Endpoint]:
-    """The endpoints of a node's servers.
+    """Return the endpoints of a node's servers.
 
     A service is a reader of requests and a writer of replies (rmw_fastrtps_shared_cpp, namespace_prefix.cpp), and a
-    client takes it for ready when it knows both.
+    client considers it ready when it knows both.
 
     Args:
-        node: Whose servers.
-        services: Their full names.
+        node: The node.
+        services: The full names of the services.
     """
     return _endpoints(node, [topic for name in services for topic in (f"rq{name}Request", f"rr{name}Reply")])
 
 
 def topic_endpoints(node: Node, topics: Iterable[str]) -> set[Endpoint]:
-    """The endpoints of a node's publishers and subscriptions on topics, which are given by their full names."""
+    """Return the endpoints of a node's publishers and subscriptions on topics, given by their full names."""
     return _endpoints(node, [f"rt{name}" for name in topics])
 
 
 def _endpoints(node: Node, topics: Iterable[str]) -> set[Endpoint]:
-    """A node's endpoints, by the identifiers under which every participant of the domain knows them.
+    """Return a node's endpoints, as the identifiers that every participant of the domain knows.
 
-    Names do not tell one endpoint from the next: one of an earlier run is taken away, and its name comes again.
+    Names are not enough: an endpoint of an earlier run is removed, and its name is used again.
 
     Args:
-        node: Whose endpoints.
+        node: The node.
         topics: The middleware's names of topics.
     """
     return {

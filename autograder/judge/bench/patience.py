@@ -1,8 +1,8 @@
-"""The time that a student's program has: the seconds that the machine had for it, not those of the wall.
+"""Time limits for a student's program that stretch while the machine is busy.
 
-A limit that is generous on a quiet machine is none where thirty processes wait for a processor: there, a program that
-does all it should is late. So a second counts less while the machine is crowded. It is still a limit: no more than
-``SLOWEST`` times as long is waited.
+A limit that is generous on a quiet machine is too short if thirty processes wait for a processor: then a right
+program is late. So a second counts less while the machine is busy. It is still a limit: a wait lasts at most
+``SLOWEST`` times as long.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 CROWDED = 4.0
-"""Runnable threads for each processor that the limits bear by themselves."""
+"""The number of runnable threads for each processor that needs no longer limits."""
 SLOWEST = 3.0
-"""A second of patience lasts at most so many seconds."""
+"""The most seconds that a second of patience lasts."""
 _LOOK_EVERY = 0.1
 _LOAD = Path("/proc/loadavg")
 
 
 class Patience:
-    """A number of seconds, used up more slowly while the machine is crowded.
+    """A number of seconds that is used up more slowly while the machine is busy.
 
     Args:
-        seconds: On a machine that is not.
-        slowness: How long a second of patience lasts now, in seconds.
+        seconds: The time limit on an idle machine.
+        slowness: Returns how long a second of patience lasts now, in seconds.
         now: A monotonic clock, in seconds.
     """
 
@@ -44,14 +44,14 @@ class Patience:
         self.restart()
 
     def restart(self) -> None:
-        """Begin anew."""
+        """Begin again."""
         self._used = 0.0
         self._at = self._looked = self._now()
         self._factor = 1.0
 
     @property
     def left(self) -> float:
-        """The seconds of patience that are left; not above zero at the end."""
+        """The remaining seconds of patience; zero or less at the end."""
         now = self._now()
         if now - self._looked >= _LOOK_EVERY:
             self._factor = self.slowness()
@@ -62,12 +62,12 @@ class Patience:
 
 
 def machine_slowness() -> float:
-    """The seconds that a second of patience lasts now."""
+    """Return how long a second of patience lasts now, in seconds."""
     return slowness(runnable_threads(), os.cpu_count() or 1)
 
 
 def runnable_threads() -> int:
-    """The threads that run or wait for a processor now; 0 where /proc/loadavg cannot be read (proc(5))."""
+    """Return how many threads run or wait for a processor now; 0 if /proc/loadavg cannot be read (proc(5))."""
     try:
         return int(_LOAD.read_text().split()[3].partition("/")[0])
     except (OSError, ValueError, IndexError):
@@ -75,10 +75,10 @@ def runnable_threads() -> int:
 
 
 def slowness(runnable: float, processors: int) -> float:
-    """The seconds that a second of patience lasts.
+    """Return how long a second of patience lasts, in seconds.
 
     Args:
         runnable: Threads that run or could run if a processor were free.
-        processors: How many there are.
+        processors: The number of processors.
     """
     return min(SLOWEST, max(1.0, runnable / (CROWDED * processors)))

@@ -1,6 +1,6 @@
 """The subject on the graph in one part: its endpoints and nodes, as they come and go.
 
-A program that ends takes its endpoints along, so what was seen is written down at once and never asked for again.
+A program that ends takes its endpoints along, so every observation is recorded at once and never repeated.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
 
 class Settling:
-    """Tells when a command's graph has not changed for a while, once there is anything on it.
+    """Tells when a command's graph has not changed for a while, once it has anything on it.
 
     Args:
-        seconds: As :mod:`autograder.judge.bench.patience` counts them: on a crowded machine a program may have made its
-            node, and wait for a processor before it makes what the node is for.
+        seconds: Seconds of patience (:mod:`autograder.judge.bench.patience`): on a busy machine a program may have
+            made its node, and wait for a processor before it makes the endpoints.
     """
 
     def __init__(self, seconds: float) -> None:
@@ -35,7 +35,7 @@ class Settling:
         self._patience = Patience(seconds)
 
     def unchanged(self, interface: graph.Interface, nodes: int) -> bool:
-        """True if the graph is as it was ``seconds`` ago, and has nodes at all."""
+        """True if the graph is the same as ``seconds`` ago, and has any nodes."""
         state = (nodes, interface)
         if state != self._last:
             self._last = state
@@ -44,17 +44,20 @@ class Settling:
 
 
 APPEAR = 12.0
-"""Seconds of patience in which a subject that runs must show up on the graph at all. Generous: starting slowly is
-not wrong, and a program needs a quarter of a second."""
+"""Seconds of patience within which a running subject must appear on the graph.
+
+Generous: a slow start is not wrong, and a program needs a quarter of a second.
+"""
 AT_WORK = 2
-"""The number of times in one run that a subject gets that patience anew while it goes on starting processes: a
-command may build its package before it runs the program. Limited, because a program may fork without end."""
+"""The number of times in a run that a subject gets that patience again while it keeps starting processes: a command
+may build its package before it runs the program. Limited, because a program may fork without end.
+"""
 MATCH = 5.0
-"""Seconds in which two endpoints that fit must have met."""
+"""Seconds within which two compatible endpoints must be matched."""
 GRAPH_POLL = 0.004
 """Seconds between two queries of the graph, which has no event to wait for."""
 START_POLL = 0.02
-"""The same while a process starts, or a build runs, and nobody has announced a node yet."""
+"""The same while a process starts, or a build runs, and no node has been announced yet."""
 
 
 class Presence:
@@ -65,11 +68,11 @@ class Presence:
         publishers: The judge's publishers by the real names of their topics.
 
     Args:
-        node: The judge's.
-        recorder: Where what is seen is written down.
-        subject: Whose presence it is.
-        settled: Seconds without a change of the graph after which a command is taken to have made all that it makes.
-        announced: Whether a process of the subject's has made a node, as far as anybody can hear that.
+        node: The judge's node.
+        recorder: The recorder of observations.
+        subject: The subject.
+        settled: Seconds without a change of the graph after which a command counts as having made everything.
+        announced: Returns True if a process of the subject has made a node, as far as that can be heard.
     """
 
     def __init__(
@@ -90,11 +93,11 @@ class Presence:
         self._again = AT_WORK
 
     def nodes(self) -> list[graph.NodeName]:
-        """The subject's nodes as they are now."""
+        """The subject's present nodes."""
         return graph.subject_nodes(self._node, self._subject.keeper)
 
     def counterparts(self) -> list[graph.NodeName]:
-        """The subject's nodes, those that the judge is matched with first, once their names are known."""
+        """Return the subject's nodes, first those that the judge is matched with, once their names are known."""
         found: list[graph.NodeName] = []
 
         def named() -> bool:
@@ -109,7 +112,7 @@ class Presence:
     # --- waiting -------------------------------------------------------------------------------------------
 
     def await_endpoint(self, role: str, name: str) -> bool:
-        """Wait until the subject's endpoint is on the graph and matched with the judge's, if it has one."""
+        """Wait until the subject's endpoint is on the graph, and matched with the judge's endpoint, if there is one."""
         self.await_interface(
             lambda interface: name in interface.get(role, {}) or name in self._met().get(role, {})
         )
@@ -122,14 +125,14 @@ class Presence:
         }
         counterpart = counterparts.get(role, {}).get(name)
         if counterpart is None or counterpart.type_name != self._recorder.part().endpoints(role)[name]:
-            return True  # there is nobody to be matched with
+            return True  # the judge has no endpoint to match with
         return self._recorder.wait(
             lambda: counterpart.matched > 0 or self._subject.ended or self._mismatched(counterpart.topic),
             MATCH,
         )
 
     def await_node(self) -> bool:
-        """Wait until a node of the subject's is on the graph; a subject that ends may have had one before."""
+        """Wait for a node of the subject on the graph; a subject that ends may have had one before."""
         nodes: list[graph.NodeName] = []
 
         def there() -> bool:
@@ -154,11 +157,11 @@ class Presence:
         return alive
 
     def await_interface(self, there: Callable[[graph.Interface], bool]) -> graph.Interface:
-        """Wait for something on the graph, until the subject has ended or has surely made all that it makes.
+        """Wait for something on the graph, until the subject has ended or has certainly made everything.
 
         Returns:
-            The interface that was looked at last. It is written down as it was seen, and not asked for again: a subject
-            that ends takes its endpoints along.
+            The interface at the last query. It is recorded as it was seen and not queried again: a subject that ends
+                takes its endpoints along.
         """
         settled = Settling(self._settled)
         interface: graph.Interface = {}
@@ -166,7 +169,7 @@ class Presence:
         def over() -> bool:
             nonlocal interface
             marker = self._subject.marker
-            # Asked before the endpoints: what was made before the marker is announced before it.
+            # Checked before the endpoints: everything made before the marker is announced before it.
             all_made = marker is not None and graph.shows(self._node, marker)
             interface = graph.survey(self._node)
             if there(interface) or self._subject.ended or all_made:
@@ -178,9 +181,9 @@ class Presence:
         return interface
 
     def _await_appearance(self, condition: Callable[[], bool]) -> None:
-        """Wait for what a subject shows when it has started; one that still starts processes is at work until then."""
+        """Wait for the first sign of a started subject; the time begins again while it keeps starting processes."""
         patience = Patience(APPEAR)
-        # What runs a command starts it at once. Whatever begins in the second half tells of work.
+        # A command's runner starts the command at once, so a process that begins in the second half shows work.
         earlier: frozenset[int] | None = None
 
         def overdue() -> bool:
@@ -200,7 +203,7 @@ class Presence:
         self._wait_on_graph(lambda: condition() or overdue(), (AT_WORK + 2) * APPEAR)
 
     def _wait_on_graph(self, condition: Callable[[], bool], within: float) -> None:
-        """Ask again and again, and often only once a process of the subject's has made a node, if that can be heard."""
+        """Poll the graph, and frequently only once a process of the subject has made a node, if that can be heard."""
         patience = Patience(within)
         held = False
 
@@ -218,10 +221,10 @@ class Presence:
     # --- writing down --------------------------------------------------------------------------------------
 
     def note_interface(self, interface: graph.Interface | None = None) -> None:
-        """Write down the subject's endpoints, where they are others than before.
+        """Record the subject's endpoints, if they have changed.
 
         Args:
-            interface: As they were seen a moment ago; without it, as they are now.
+            interface: The endpoints as seen a moment ago; without it, as they are now.
         """
         nodes = [node.full for node in self.nodes()]
         ends = [[e.role, e.topic, e.process] for e in graph.topic_ends(self._node)]
@@ -231,9 +234,9 @@ class Presence:
             self._recorder.record("interface", "graph", **seen)
 
     def note_how_it_leaves(self) -> None:
-        """Wait for the end of a program whose endpoints were on the graph and are gone: it is on its way out.
+        """Wait for the end of a program whose endpoints disappeared from the graph, because it is ending.
 
-        How it ends, and what it says last, must not depend on the moment in which it was looked at.
+        Its exit code and last words must not depend on the moment of the query.
         """
         surveys = self._recorder.part().of("interface", "graph")
         had_endpoints = [any(survey.data[role] for role in graph.ROLES) for survey in surveys]
@@ -241,10 +244,10 @@ class Presence:
             self._recorder.wait(lambda: self._subject.ended, MATCH)
 
     def note_short_life(self) -> bool:
-        """Write down that a subject that has ended had made a node, where the graph never told of it.
+        """Record that a subject that has ended had made a node, if the graph never showed it.
 
         Returns:
-            Whether it had made one. How quick the graph is must not decide about that.
+            True if it had made one. The speed of the graph must not decide that.
         """
         if not self._subject.ended or not self._announced():
             return False
@@ -254,7 +257,7 @@ class Presence:
         return True
 
     def note_whom_it_met(self) -> None:
-        """Write down endpoints that met the judge's: they were there, also if the graph never told of them."""
+        """Record endpoints that were matched with the judge's: they existed, even if the graph never showed them."""
         known = self._recorder.part()
         for role, ends in self._met().items():
             for name, type_name in ends.items():
@@ -262,7 +265,7 @@ class Presence:
                     self._recorder.record("interface", "topic", **{role: {name: type_name}})
 
     def _met(self) -> graph.Interface:
-        """The subject's endpoints that met one of the judge's."""
+        """Return the subject's endpoints that were matched with one of the judge's."""
         part = self._recorder.part()
         sides: tuple[tuple[str, Counterparts, Counterparts], ...] = (
             ("publisher", self.subscriptions, self.publishers),
@@ -272,7 +275,7 @@ class Presence:
             role: {
                 name: end.type_name
                 for name, end in ends.items()
-                # Where the judge listens to what it says itself, it meets itself.
+                # Skip topics on which the judge is at both ends: it would match itself.
                 if name not in others and any(event.data["count"] for event in part.of("matched", end.topic))
             }
             for role, ends, others in sides

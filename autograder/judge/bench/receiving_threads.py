@@ -1,8 +1,8 @@
-"""The middleware's threads: when they have handed over what had arrived.
+"""Waits until the middleware's threads have passed on everything that had arrived.
 
-A program's end comes through a pipe and its messages through the middleware, so the end may be known first, while the
-thread that received a message still waits for a processor. What is sent wakes the receiver at once (futex(7), udp(7)):
-whoever sleeps has nothing left to do, and whoever has gone to sleep since has done it.
+A program's end is known through a pipe and its messages through the middleware, so the end may be known first, while
+the thread that received a message still waits for a processor. A message wakes its receiver at once (futex(7),
+udp(7)): a thread that sleeps has nothing left to do, and one that has slept since has done it.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from autograder.judge.bench.patience import Patience
 
 PAUSE = 0.001
-"""Seconds between two looks at a thread."""
+"""Seconds between two checks of a thread."""
 TURNS = 2
-"""A thread that sleeps may be waiting for another one of them, which is through with its work after its own turn."""
+"""The number of rounds: a sleeping thread may wait for another one, which finishes after its own round."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class _Thread:
     """A thread, as the kernel describes it (proc_pid_status(5)).
 
     Attributes:
-        awake: It runs, or waits for a processor.
+        awake: True if it runs, or waits for a processor.
         slept: How often it has gone to sleep.
     """
 
@@ -37,7 +37,7 @@ class _Thread:
 
 
 def await_turns(patience: Patience) -> bool:
-    """Wait until each thread that is awake has gone to sleep; whether they have, before the patience was used up."""
+    """Wait until each thread that is awake has slept. Return True if all have, before the patience was used up."""
     return all(_await_turn(patience) for _ in range(TURNS))
 
 
@@ -58,7 +58,7 @@ def _await_turn(patience: Patience) -> bool:
 
 
 def _look(tasks: Iterable[int]) -> dict[int, _Thread]:
-    """The threads that are still there."""
+    """Return the threads that still exist."""
     found: dict[int, _Thread] = {}
     for task in tasks:
         try:

@@ -13,18 +13,20 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 MAX_EVENTS = 20_000
-"""Events that one part may hold: a flood is cut here instead of filling the memory."""
+"""The most events of one part, so that a flood does not fill the memory."""
 MAX_SAID = 1_000_000
-"""Characters of output and log that one part holds. Of a subject that says more, the last is kept."""
+"""The most characters of output and log of one part. If a subject says more, the last part is kept."""
 MAX_TEXT = 50_000
-"""Characters of one text, items of one list: no message of the course comes near, and a stack just fits."""
+"""The most characters of a text, and items of a list: far more than any message of the course, and just enough for a
+stack.
+"""
 MAX_TEXTS = 20_000_000
-"""Characters of all texts of a part; of what comes after these only the beginning is kept."""
+"""The most characters of all texts of a part; of later texts only the beginning is kept."""
 BEGINNING = 100
 ITEM = 32
-"""Characters that an item of a list counts as: its place there and a number take as much memory."""
+"""Characters that each item of a list counts: its entry and a number take as much memory."""
 MAX_NAME = 300
-"""Characters of a name; DDS allows 255."""
+"""The most characters of a name; DDS allows 255."""
 _SPEECH = ("output", "log")
 
 
@@ -32,10 +34,10 @@ class Recorder:
     """An append-only list of events with a condition to wait on.
 
     Times are seconds since :meth:`begin`; ``began_at`` is that moment in seconds of Unix time. ``simulated_now`` is
-    asked at each event, so that a message carries the simulated time at which it arrived.
+    called at each event, so that a message has the simulated time at which it arrived.
 
     Attributes:
-        take_in: Waits until all that was sent to the judge by now is written down.
+        take_in: Waits until everything that was sent to the judge so far is recorded.
     """
 
     def __init__(self, hurry: Callable[[], None] = lambda: None) -> None:
@@ -71,9 +73,9 @@ class Recorder:
             self.began_at = time.time()
 
     def in_this_part(self) -> Callable[..., None]:
-        """:meth:`record` for as long as the part lasts that goes on now: what comes later is dropped.
+        """Return :meth:`record` for the present part only: later events are dropped.
 
-        For threads that may still be reading what a run has said when the next one begins.
+        For threads that may still be reading a run's output when the next run begins.
         """
         number = self._number
 
@@ -83,10 +85,10 @@ class Recorder:
         return record
 
     def end_of_this_part(self) -> Callable[..., None]:
-        """Writes down how the subject has just ended, in the part that goes on now, behind all that it sent before.
+        """Return a function that records the subject's end in the present part, after everything that it sent before.
 
-        Its arguments are the kind of end, such as ``"exited"``; what is called when that is written down, before
-        anybody who waits can look; and what is known of the end.
+        Its arguments are the kind of end, such as ``"exited"``; a function that is called when that is recorded,
+        before any waiting thread can see it; and data about the end.
         """
         number = self._number
 
@@ -100,7 +102,7 @@ class Recorder:
         return end
 
     def record(self, kind: str, name: str, **data: Any) -> None:
-        """Write down one event and wake everyone who waits for it."""
+        """Record one event and wake every thread that waits for it."""
         self._record(kind, name, data, None)
 
     def _record(
@@ -122,7 +124,7 @@ class Recorder:
             self._changed.notify_all()
 
     def _forget_old_words(self) -> None:
-        """Drop the older half of what was said, so that who says much keeps nothing else from being seen."""
+        """Drop the older half of the words, so that a talkative subject does not displace other events."""
         words = [event for event in self._events if _is_speech(event)]
         old = {id(event) for event in words[: len(words) // 2 + 1]}
         self._events = [event for event in self._events if id(event) not in old]
@@ -130,11 +132,11 @@ class Recorder:
 
     @property
     def count(self) -> int:
-        """The number of events so far, in all parts."""
+        """Return the number of events so far, in all parts."""
         return self._count
 
     def part(self) -> Part:
-        """The events of this part so far."""
+        """Return the events of this part so far."""
         with self._changed:
             return Part(self._name, self._inputs, tuple(self._events))
 
@@ -147,18 +149,19 @@ class Recorder:
         quiet: float | None = None,
         wall: bool = False,
     ) -> bool:
-        """Wait until ``condition`` holds; it is asked again at every event.
+        """Wait until ``condition`` holds; it is checked again at every event.
 
         Args:
             condition: Called in the waiting thread without the recorder's lock.
-            within: Seconds at most, as :mod:`autograder.judge.bench.patience` counts them.
-            poll: Seconds after which it is asked again without an event. Graph queries have no event to wait
+            within: The limit in seconds of patience (:mod:`autograder.judge.bench.patience`).
+            poll: Seconds after which it is checked again without an event. Queries of the graph have no event to wait
                 for, so their callers give a few milliseconds.
-            quiet: Give up earlier when nothing happened for so many seconds, counted likewise.
-            wall: Count wall time instead: what is waited for sets the judge's own pace and is no limit.
+            quiet: Give up earlier if nothing happened for this many seconds of patience.
+            wall: True to count wall time instead: the wait sets the judge's own pace and is not a limit for the
+                subject.
 
         Returns:
-            Whether the condition held in time.
+            True if the condition held in time.
         """
         slowness = (lambda: 1.0) if wall else None
         patience = Patience(within, slowness=slowness)
@@ -181,17 +184,17 @@ class Recorder:
 
 
 def _is_speech(event: Event) -> bool:
-    """True if it is something that a subject said; what a runner reports of a build or a launch is not."""
+    """True for the subject's own words; not for a runner's report about a build or a launch."""
     return event.kind in _SPEECH and not str(event.data.get("text", "")).startswith(REPORTS)
 
 
 def _kept(data: Any, limit: int) -> tuple[Any, int]:
-    """A copy of what was seen, and how many characters of room it takes.
+    """Return a copy of an observation, and the characters that it counts.
 
-    It is cut to what a verdict can be made of, since a subject may send gigabytes.
+    It is cut to the size that a verdict can use, because a subject may send gigabytes.
     """
     if isinstance(data, str):
-        # A lone surrogate, as JSON may carry one, is no text: a verdict that quotes it could not be written down.
+        # A lone surrogate, which JSON may contain, cannot be encoded: a verdict that quotes it could not be written.
         text = data if data.isascii() else data[:limit].encode("utf-8", "replace").decode() + data[limit:]
         return (text if len(text) <= limit else f"{text[:limit]}…"), min(len(text), limit)
     if isinstance(data, dict):

@@ -1,4 +1,4 @@
-"""Services: the judge serves as the scenario says, and calls what the subject serves; both halves are written down."""
+"""Services: the judge serves as the scenario says, and calls the subject's services; both sides are recorded."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from autograder.judge.bench.wire import Wire
 
 Answer = Callable[[Mapping[str, Any]], Mapping[str, Any]]
-"""From the request's fields to the response's."""
+"""Returns the response's fields for the request's fields."""
 
 
 class RecordedServer:
     """Serves until it is closed; one of its answers may be held back until it is released.
 
     Attributes:
-        services: The full names of what it serves.
+        services: The full names of the services.
     """
 
     def __init__(
@@ -84,7 +84,7 @@ class RecordedServer:
         self._send(response, header)
 
     def release(self) -> None:
-        """Give the answer that was held back; the next one is not held any more."""
+        """Send the answer that was held back; no later one is held back."""
         with self._holding:
             self._hold = 0
             held, self._held = self._held, []
@@ -92,21 +92,23 @@ class RecordedServer:
             self._answer_now(response, header)
 
     def close(self) -> None:
-        """Take the service away."""
+        """Remove the service."""
         self._wire.node.destroy_service(self._service)
 
 
 ROOM_FOR_ALL = qos_profile_parameters
-"""The profile of services with a queue of 1,000 (rclpy, ``qos.py``) instead of 10. Where two servers share a name, more
-than ten answers come at once, and those that find no room would be lost by chance."""
+"""The profile of services with a queue of 1,000 (rclpy, ``qos.py``) instead of 10.
+
+If two servers share a name, more than ten answers come at once, and those that do not fit would be lost by chance.
+"""
 
 
 class Client(ABC):
-    """A client of a service or of an action, in what the two share: they wait for a server, and count the servers.
+    """The common part of clients of services and actions: they wait for a server, and count servers.
 
     Args:
         wire: The judge's participant.
-        recorder: Takes down what is sent and what comes back.
+        recorder: Records requests and answers.
         name: The full name of the service or action in the evidence.
         service: The real name of the service whose servers are counted.
         server_is_gone: Returns True if the server need not be waited for any more.
@@ -179,7 +181,7 @@ class RecordedCaller(Client):
         return True
 
     def close(self) -> None:
-        """Take the client away."""
+        """Remove the client."""
         self._wire.node.destroy_client(self._client)
 
     def _all_answered(self) -> bool:

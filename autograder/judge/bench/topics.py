@@ -1,4 +1,4 @@
-"""Watching and feeding topics."""
+"""The judge's subscriptions and publishers."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from autograder.judge.bench.recorder import Recorder
     from autograder.judge.bench.wire import Wire
 
-# Reliable as the course's own listener, so that what cannot reach that one is seen not to reach this one; deep, so that
-# a slow moment of the judge loses nothing.
+# Reliable like the course's own listener, so that a message that cannot reach a listener does not reach this one;
+# with a large queue, so that a slow moment of the judge loses nothing.
 _AS_THE_LISTENER = QoSProfile(depth=1000)
 _AS_A_LATE_LISTENER = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _LOG_HISTORY = QoSProfile(
@@ -47,7 +47,7 @@ class RecordedEndpoint:
 
     def _match(self, info: Any) -> None:
         self.matched = info.current_count
-        # All that it ever met: who comes and goes at once is told of once, and nobody is there any more.
+        # The total count: an endpoint that comes and goes at once is reported once, when no endpoint is there any more.
         self._recorder.record("matched", self.topic, count=info.total_count, now=info.current_count)
 
     def _mismatch(self, info: Any) -> None:
@@ -56,7 +56,7 @@ class RecordedEndpoint:
 
 
 class RecordedSubscription(RecordedEndpoint):
-    """A subscription that writes every message into the transcript."""
+    """A subscription that records every message."""
 
     def __init__(
         self,
@@ -90,8 +90,8 @@ class RecordedSubscription(RecordedEndpoint):
         )
 
     def _hear(self, message: Any, info: Any) -> None:
-        # The publisher's own count of its messages tells what was sent before anybody could hear it, and its own time
-        # of sending is not blurred by the way here (rmw_message_info_t; given by rmw_fastrtps).
+        # The publisher's own count of its messages tells how many were sent before this one could be received, and its
+        # time of sending does not depend on the transport (rmw_message_info_t; provided by rmw_fastrtps).
         self._recorder.record(
             "message",
             self.topic,
@@ -103,7 +103,7 @@ class RecordedSubscription(RecordedEndpoint):
 
 
 class RecordedPublisher(RecordedEndpoint):
-    """A publisher as the course makes them (reliable, depth 10) that writes down what it sends."""
+    """A publisher with the course's settings (reliable, depth 10) that records what it sends."""
 
     def __init__(self, wire: Wire, recorder: Recorder, topic: str, type_name: str, *, at: str = "") -> None:
         """Create the publisher; the arguments are those of :class:`RecordedSubscription`."""
@@ -125,7 +125,7 @@ class RecordedPublisher(RecordedEndpoint):
 
 
 class LogReader:
-    """Reads ``/rosout``, with what was said before the judge came (it is transient local, REP-2000's rcl)."""
+    """Reads ``/rosout``, including lines from before the judge came (it is transient local, REP-2000's rcl)."""
 
     def __init__(self, wire: Wire, recorder: Recorder) -> None:
         self._recorder = recorder
@@ -136,6 +136,6 @@ class LogReader:
     def _hear(self, line: Any) -> None:
         sent = line.stamp.sec + line.stamp.nanosec / 1e9
         if sent < self._recorder.began_at:
-            return  # said in an earlier part, by a node of the same participant, and slow to arrive
+            return  # from an earlier part, by a node of the same participant, and late to arrive
         text, level = line.msg, int(line.level)
         self._recorder.record("log", line.name, text=text, level=level, sent=sent, arrived=time.time())

@@ -1,4 +1,4 @@
-"""The judge's own node, in a ROS context of its own, spun by a thread of its own."""
+"""The judge's own node, in its own ROS context, spun by its own thread."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ InvalidHandle = rclpy_implementation.InvalidHandle
 
 
 TAKEN_IN = 5.0
-"""Seconds in which the judge has taken in what was sent to it."""
+"""Seconds within which the judge must have taken in what was sent to it."""
 TURN = 0.05
-"""Seconds between two looks whether its thread still runs."""
+"""Seconds between two checks whether its thread still runs."""
 
 
 class JudgeFailed(RuntimeError):
-    """A callback of the judge's raised: the subject could not be checked."""
+    """A callback of the judge raised an exception: the subject could not be checked."""
 
 
 class _QuietNode(Node):
-    """A node whose endpoints have the events that were asked for, and no others.
+    """A node whose endpoints have only the events that were requested.
 
-    rclpy gives each endpoint two that only log a warning. The executor takes all events of its node into each of its
-    turns, and a check in simulated time has some hundred turns.
+    rclpy gives each endpoint two events that only log a warning. The executor checks all events of its node in each
+    of its turns, and a check in simulated time has some hundred turns.
     """
 
     def create_publisher(self, *arguments: Any, **options: Any) -> Any:
@@ -50,13 +50,13 @@ class _QuietNode(Node):
 
 
 class Wire:
-    """One participant on one domain. Made fresh for each part: a fresh participant is met at once.
+    """One participant on one domain. Made anew for each part, because a new participant is discovered at once.
 
     Attributes:
-        node: The judge's node; it has no parameter services and no log topic, so that it adds next to nothing
-            to the graph.
+        node: The judge's node; it has no parameter services and no log topic, so that it adds almost nothing to the
+            graph.
         executor: Spins the node in a thread of its own.
-        failure: What ended that thread, where it was an error of the judge's own.
+        failure: The error of the judge itself that ended that thread; None if there is none.
     """
 
     def __init__(self, domain_id: int) -> None:
@@ -82,20 +82,20 @@ class Wire:
             try:
                 self.executor.spin()
             except InvalidHandle:
-                continue  # a part has ended and taken something away that was just being used
+                continue  # a part has ended and destroyed something that was in use
             except ExternalShutdownException:
                 return
-            except BaseException as error:  # a callback of the judge's own: nothing after it can be trusted
+            except BaseException as error:  # from the judge's own callback: nothing after it can be trusted
                 self.failure = error
             return
 
     def take_in(self, written_down: Callable[[], int]) -> bool:
-        """Wait until all that had been sent to the judge has been written down; whether it was, in time.
+        """Wait until everything that had been sent to the judge is recorded. Return True if it is, in time.
 
-        Not to be called from a callback of the judge's.
+        Must not be called from a callback of the judge.
 
         Args:
-            written_down: How much is written down by now.
+            written_down: Returns how much is recorded so far.
         """
         patience = Patience(TAKEN_IN)
         if not await_turns(patience):
@@ -103,15 +103,15 @@ class Wire:
         before = -1
         while before != written_down():
             before = written_down()
-            # What a subject left behind may go on sending for ever.
+            # A process that a subject left behind may go on sending for ever.
             if patience.left <= 0 or not self._take_one_of_each(patience):
                 return False
         return True
 
     def _take_one_of_each(self, patience: Patience) -> bool:
-        """Let the executor take one message or call of each endpoint that has any; whether it did, in time.
+        """Let the executor take one message or call of each endpoint that has any. Return True if it did, in time.
 
-        An executor begins each of its rounds with its tasks and takes then what there is (rclpy/executors.py,
+        An executor begins each of its rounds with its tasks and then takes what has arrived (rclpy/executors.py,
         _wait_for_ready_callbacks), so a round is between two tasks.
         """
         for _ in range(2):
@@ -127,7 +127,7 @@ class Wire:
 
     def close(self) -> None:
         """Stop spinning, join the thread and leave the domain. An unjoined thread aborts the interpreter."""
-        with self._closing:  # a subject's last messages may be taken in just now
+        with self._closing:  # a subject's last messages may be taken in right now
             self._closed = True
         self.executor.shutdown(timeout_sec=1.0)
         self._thread.join(timeout=2.0)

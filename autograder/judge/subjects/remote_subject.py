@@ -113,7 +113,7 @@ class RemoteSubject:
         if self._is_class and not recorder.wait(
             lambda: self._marker is not None or self.ended, CONSTRUCT_LIMIT
         ):
-            # It is judged like a program: a constructor may do all of the work.
+            # The subject is judged like a program: a constructor may do all of the work.
             recorder.record("subject", "never_constructed")
 
     def interrupt(self) -> None:

@@ -1,4 +1,4 @@
-"""A latched topic: what was published before anybody listened is heard by those who come late."""
+"""A latched topic: late subscribers receive a message that was published before they came."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 LATE = 1.0
 """Seconds of the subject's time after which the judge begins to listen."""
 PATIENCE = 3.0
-"""Seconds in which the message of before must have come."""
+"""Seconds within which the earlier message must have come."""
 
 
 def scenario(bench: Bench) -> None:
@@ -45,7 +45,7 @@ map_server.asks("topic", 2, "Publishes on the right topic and type", subject.has
 
 
 def messages(seen: Part) -> list[str]:
-    """The texts that the late listener heard."""
+    """Return the texts that the late listener heard."""
     return [str(event.data["fields"]["data"]) for event in seen.of("message")]
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from autograder.kit.model import Bench
 
 PATIENCE = 4.0
-"""Seconds of the subject's time in which greetings must have come: eight times their period."""
+"""Seconds of the subject's time within which greetings must have come: eight times their period."""
 
 
 def greeting(met: Met) -> bool:
@@ -46,7 +46,7 @@ greeter = Draft(
 
 
 def text_set(asked: Sequence[Given]) -> str:
-    """The text that the parameter was set to last; its default where nobody has set it."""
+    """Return the text that the parameter was last set to; its default if it was never set."""
     return str(asked[-1].value["parameters"][0]["value"]["string_value"]) if asked else "Hello"
 
 

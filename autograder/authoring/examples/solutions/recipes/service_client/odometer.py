@@ -1,4 +1,4 @@
-"""A service client: has two distances added, and reports what was answered."""
+"""A service client: has a service add two distances, and reports the answer."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def runs(random: Random) -> tuple[Run, ...]:
-    """A late service, a surprising answer that is held back for a moment, and large numbers."""
+    """Draw a late service, an unexpected answer that is held back for a moment, and large numbers."""
     late = Run(LATE, distances(random), (-hidden(random),))
     return late, Run(BIASED, distances(random), (0,), held=1), Run(EXTREME, far(random))
 

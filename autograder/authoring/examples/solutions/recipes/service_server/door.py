@@ -13,19 +13,19 @@ door = Draft(
     "service_server.door",
     "A service server · The door",
     "Serve visit: count who comes.",
-    # What is asked one by one, then each of the other requests: a Trigger has no fields.
+    # The requests one by one, then each of the other requests: a Trigger has no fields.
     asks := Asks(lambda _: [{}] * SINGLE, lambda _: {}),
 )
 door.asks("service", 2, "Serves visit, with the right type", asks.serves)
 
 
 def told(seen: Server) -> list[str]:
-    """The messages of all answers, in the order of the calls."""
+    """Return the messages of all answers, in the order of the calls."""
     return [str(answer["message"]) for _, answer in sorted(seen.answers.items())]
 
 
 def due(number: int) -> list[str]:
-    """What so many visitors are told."""
+    """Return the messages for this many visitors."""
     return [f"visitor {i}" for i in range(1, number + 1)]
 
 
@@ -38,7 +38,7 @@ def counts(seen: Server, _: Server) -> Finding:
 
 @door.criterion("together", 2, "Answers several calls at once, each with a number of its own")
 def together(seen: Server, _: Server) -> Finding:
-    """All calls together have all numbers, the ones at once in whatever order."""
+    """All calls together have all numbers, the simultaneous ones in any order."""
     wanted, rest = due(SINGLE + AT_ONCE + 1), told(seen)[SINGLE:]
     return Finding(
         sorted(told(seen)) == sorted(wanted), f"{wanted[-1]} is the last", ", ".join(rest) or "none"

@@ -1,4 +1,4 @@
-"""A subscriber: warns of what it hears, and of nothing else."""
+"""A subscriber: warns of low charges, and of nothing else."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Part
 
 LIMIT = 20
-"""Percent; the first charge that nobody is to be warned of."""
+"""Percent; the lowest charge without a warning."""
 PATIENCE = {Pace.FAST: 1.5, Pace.REAL_TIME: 5.0}
-"""Seconds of wall time in which the last warning must have come."""
+"""Seconds of wall time within which the last warning must have come."""
 
 
 def listening(met: Met) -> bool:
@@ -46,18 +46,18 @@ guard.asks("topic", 2, "Subscribes to the right topic, with the right type", sub
 
 
 def named(seen: Part) -> list[set[int]]:
-    """For each line that was said, which of the charges are in it."""
+    """Return, for each line that was said, the charges in it."""
     sent = set(SENT(seen))
     return [sent & {int(number) for number in re2.findall(r"\d{1,3}", line)} for line in seen.said()]
 
 
 def missing(seen: Part) -> list[int]:
-    """The low charges of which nobody was warned."""
+    """Return the low charges without a warning."""
     return [c for c in SENT(seen) if c < LIMIT and not any(c in line for line in named(seen))]
 
 
 def needless(seen: Part) -> list[int]:
-    """The other charges of which somebody was warned: a line may name the limit beside a low charge."""
+    """Return the other charges with a warning: a line may name the limit next to a low charge."""
     return [c for line in named(seen) for c in sorted(line) if min(line) >= LIMIT]
 
 
@@ -70,7 +70,7 @@ def warns(seen: Part, _: Part) -> Finding:
 
 @guard.criterion("only", 4, "Says nothing of any other charge")
 def only(seen: Part, _: Part) -> Finding:
-    """No other charge is in what was said, where anything was said at all."""
+    """No other charge is in what was said, if anything was said."""
     told = ", ".join(map(str, needless(seen)))
     return Finding(
         any(named(seen)) and not told, "20 percent and more pass in silence", told or "none of them"
