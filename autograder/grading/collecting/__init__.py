@@ -1,1 +1,1 @@
-"""From what a learning management system lets an instructor download to notebooks in ``submitted``."""
+"""From the download of a learning management system to notebooks in ``submitted``."""

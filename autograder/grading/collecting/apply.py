@@ -1,4 +1,7 @@
-"""Brings ``submitted`` to what was decided. Only what ``collect`` itself wrote there is ever replaced or removed."""
+"""Brings ``submitted`` into the decided state.
+
+Only files that ``collect`` itself wrote are ever replaced or removed.
+"""
 
 from __future__ import annotations
 
@@ -42,7 +45,7 @@ class Submitted:
         return self._directory.path / "submitted" / student / assignment / f"{notebook}{SUFFIX}"
 
     def content(self, place: Place) -> str:
-        """Return the hash of the bytes at a place; empty if there is no file that can be read."""
+        """Return the hash of the bytes at a place; empty if there is no readable file."""
         try:
             data = _existing_file(self.path(place))
         except UnreadableSubmission:
@@ -50,10 +53,10 @@ class Submitted:
         return hashlib.sha256(data).hexdigest() if data is not None else ""
 
     def take_in(self) -> None:
-        """Put into the inbox what a person has put into ``submitted``, and what was collected before there was one.
+        """Put into the inbox what a person has put into ``submitted``, and what was collected before inboxes existed.
 
         Raises:
-            OSError: It could not be written.
+            OSError: A file could not be written.
         """
         known = {(one.form, file) for one in self._inbox.deliveries.values() for file in one.arrivals}
         for submission in self._directory.submissions()[0]:
@@ -88,13 +91,13 @@ class Submitted:
     def bring(
         self, counts: Mapping[Place, Line], decisions: Iterable[Decision]
     ) -> Iterator[tuple[Place, State, str]]:
-        """Put each notebook that counts at its place, and remove what no longer counts.
+        """Put each notebook that counts into its place, and remove those that no longer count.
 
         Returns:
             The places with ``PLACED``, ``UNCHANGED``, ``EARLIER`` (removed) or ``NOT_PLACED``, and the reason.
 
         Raises:
-            OSError: It could not be written.
+            OSError: A file could not be written.
         """
         before: dict[Place, list[Line]] = defaultdict(list)
         refused: dict[Place, set[str]] = defaultdict(set)
@@ -151,7 +154,7 @@ class Submitted:
             if line.content != now[notebook].content
         )
         history = History(now, earlier)
-        # The record goes first: who is killed in between finds files there that `collect` knows as its own.
+        # The record is written first: if this is interrupted, `collect` still recognizes the files as its own.
         passing = {place[2]: content for place, _, content in changes if content}
         if changes:
             self._records.put(assignment, student, replace(history, replaced=passing))
@@ -168,7 +171,7 @@ class Submitted:
             self._stamp(student, assignment, history)
 
     def _stamp(self, student: str, assignment: str, history: History) -> None:
-        """Write the time of handing in as nbgrader reads it."""
+        """Write the time of handing in, in nbgrader's format."""
         stamp = self._directory.path / "submitted" / student / assignment / TIMESTAMP
         text = f"{timestamp_text(history.when)}\n".encode() if history.when else b""
         if text:
@@ -187,7 +190,7 @@ class Submitted:
 
 
 def _record(line: Line) -> Collected:
-    """What is written down of a notebook."""
+    """Return the record of a notebook."""
     return Collected(
         line.notebook,
         line.content,
@@ -203,10 +206,10 @@ def _record(line: Line) -> Collected:
 
 
 def _existing_file(path: Path) -> bytes | None:
-    """The file at a notebook's place; None if there is none.
+    """Return the content of the file at a notebook's place; None if there is none.
 
     Raises:
-        UnreadableSubmission: Something else is there.
+        UnreadableSubmission: The place is occupied by something other than a file.
     """
     for place in (path.parent.parent, path.parent, path):
         if place.is_symlink():

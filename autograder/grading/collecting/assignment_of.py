@@ -1,4 +1,4 @@
-"""The notebook and the assignment that a file is for, as its cells say, or else its name."""
+"""Finds the notebook and the assignment of a file, from its cells or else from its name."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ _UNDER = "under assignment in collected.csv"
 
 
 class NoTarget(ValueError):
-    """It is not clear which notebook a file is, or it is one that was not asked for; the message says what to do.
+    """The notebook of a file is unclear, or was not asked for; the message says what to do.
 
     Args:
         message: The reason, and what to type.
-        assignment: The assignment that its cells are of; empty where they do not say it.
-        is_left_out: Whether it is none that is collected here: the instructor has asked for another assignment, or the
-            class has none with its cells.
+        assignment: The assignment that its cells belong to; empty if they do not show it.
+        is_left_out: True if it is not to be collected: the instructor asked for another assignment, or the class has
+            no assignment with its cells.
     """
 
     def __init__(self, message: str, assignment: str = "", *, is_left_out: bool = False) -> None:
@@ -38,14 +38,14 @@ class NoTarget(ValueError):
 
 
 def is_notebook(name: str, data: bytes) -> bool:
-    """True if a file is a notebook: by its name, or by what it holds, whatever its name is."""
+    """True if a file is a notebook, by its name or by its content."""
     head = data[:1000].lstrip(b"\xef\xbb\xbf \t\r\n")
     held = head[:1] == b"{" and b'"nbformat"' in data and (b'"cells"' in data or b'"worksheets"' in data)
     return held or name.lower().endswith(SUFFIX)
 
 
 def stem_of(name: str) -> tuple[str, int]:
-    """The name of a notebook without what programs put behind it, and the number that they added."""
+    """Return the name of a notebook without what programs add at the end, and the number that they added."""
     end = name.lower().find(SUFFIX)
     return base_and_number(name[:end] if end > 0 else name.rpartition(".")[0] or name)
 
@@ -55,7 +55,7 @@ class AssignmentOf:
 
     Args:
         directory: The class.
-        asked: The assignment that the instructor says all is for; empty where files say it themselves.
+        asked: The assignment that the instructor named for all files; empty to find it from each file.
     """
 
     def __init__(self, directory: ClassDirectory, asked: str = "") -> None:
@@ -64,7 +64,7 @@ class AssignmentOf:
 
     @property
     def notes(self) -> list[str]:
-        """A sentence on each source of the class that cannot be read."""
+        """A sentence about each source of the class that cannot be read."""
         return self._directory.named_cells.notes
 
     def is_notebook(self, file: str) -> bool:
@@ -72,21 +72,21 @@ class AssignmentOf:
         return stem_of(file)[0].casefold() in self._notebooks
 
     def named(self, name: str) -> str:
-        """The assignment that the name of any file speaks of, or the instructor does; empty where neither does."""
+        """Return the assignment in the name of any file, or the one that the instructor named; empty without one."""
         stem = base_and_number(name.partition(".")[0])[0]
         assignments = {assignment for assignment, _ in self._notebooks.get(stem.casefold(), ())}
         return self._asked or (assignments.pop() if len(assignments) == 1 else "")
 
     def target(self, name: str, data: bytes) -> tuple[Target, bool]:
-        """The notebook that a file is, and whether its name says so, too.
+        """Return the notebook of a file, and whether the file's name agrees.
 
         Args:
-            name: The name that the student gave it.
-            data: What it holds.
+            name: The name that the student gave the file.
+            data: The content.
 
         Raises:
-            NoTarget: Nothing says which; or its cells are those of several, or of another one than its name or the
-                instructor says.
+            NoTarget: The notebook is unclear; or the cells belong to several notebooks, or to another one than the
+                name or the instructor says.
         """
         named = self._notebooks.get(stem_of(name)[0].casefold(), [])
         cells = _cells(data)
@@ -114,12 +114,12 @@ class AssignmentOf:
         if self._asked and not here:
             here = [(self._asked, one) for one in self._directory.notebooks(self._asked)]
         if len(here) != 1:
-            # Cells with names, and none of this class: another notebook of the course, such as its summary.
+            # Named cells, but none of this class: another notebook of the course, such as its summary.
             raise NoTarget(self._unclear(meant), is_left_out=not meant and bool(names))
         return here[0], here[0] in named
 
     def _unclear(self, meant: list[Target]) -> str:
-        """The reason why nothing says which notebook a file is: one of these, or of all if there are none."""
+        """Return why the notebook is unclear, given the possible ones (all if empty)."""
         assignments = sorted({self._asked} if self._asked else {assignment for assignment, _ in meant})
         if len(assignments) == 1:
             names = ", ".join(self._directory.notebooks(assignments[0]))
@@ -134,7 +134,7 @@ class AssignmentOf:
 
     @functools.cached_property
     def _notebooks(self) -> dict[str, list[Target]]:
-        """Assignments and notebooks by the notebook's name, which several assignments may have."""
+        """Assignments and notebooks by the notebook's name, which several assignments may share."""
         found: dict[str, list[Target]] = defaultdict(list)
         for assignment in self._directory.assignments():
             for name in self._directory.notebooks(assignment):

@@ -1,4 +1,4 @@
-"""Files in ``submitted`` that are not graded where they are: a browser's number is taken away, the rest is named."""
+"""Files in ``submitted`` that are not graded at their path: a browser's number is removed, others are reported."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 def put_right(directory: ClassDirectory) -> Iterator[str]:
-    """Rename what no person would want to rename, and yield a sentence on each.
+    """Rename what can be renamed without asking, and yield a sentence about each.
 
-    That is the folder of a student whose letters a Mac has stored decomposed, as both names look alike, and the only
-    notebook of a folder, if a browser has put a number behind its name.
+    These are a student's folder whose accents a Mac has stored decomposed, because both names look the same, and the
+    only notebook of a folder, if a browser has added a number to its name.
     """
     for folder in _folders(directory.path / "submitted"):
         composed = folder.with_name(unicodedata.normalize("NFC", folder.name))
@@ -37,7 +37,7 @@ def put_right(directory: ClassDirectory) -> Iterator[str]:
 
 
 def beside_their_place(directory: ClassDirectory) -> tuple[list[Refused], list[str]]:
-    """Return what a person has to move, and sentences that are worth knowing; one for each folder."""
+    """Return what a person has to move, and sentences for the instructor; one for each folder."""
     submitted = directory.path / "submitted"
     refused = _refused(
         submitted, f"put it into {submitted}/STUDENT/ASSIGNMENT, or hand it to `{COMMAND} collect`"
@@ -63,7 +63,7 @@ def beside_their_place(directory: ClassDirectory) -> tuple[list[Refused], list[s
 
 
 def _of_assignments(directory: ClassDirectory) -> Iterator[tuple[Path, list[Path]]]:
-    """The folders of work, with the places of the notebooks in each."""
+    """Yield the folders of submissions, with the paths of the notebooks in each."""
     notebooks = {name: directory.notebooks(name) for name in directory.assignments()}
     for student in _folders(directory.path / "submitted"):
         for folder in _folders(student):
@@ -72,7 +72,7 @@ def _of_assignments(directory: ClassDirectory) -> Iterator[tuple[Path, list[Path
 
 
 def _refused(folder: Path, what_to_do: str, places: Container[Path] = ()) -> list[Refused]:
-    """One line for all notebooks and archives in a folder, except those at their place."""
+    """Return one line for all notebooks and archives in a folder, except those at the right path."""
     others = _work(folder, places)
     more = f", nor are {len(others) - 1} more files here" if others[1:] else ""
     return [Refused(others[0], f"it is not graded where it is{more}: {what_to_do}")] if others else []

@@ -1,4 +1,4 @@
-"""Which file of a student counts. A pure function of the lines: nothing depends on the order in which files came."""
+"""Decides which file of a student counts: a pure function, so the order in which files came does not matter."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _Why = tuple["Line", State, str]
 
 
 class Looks(Protocol):
-    """What is asked of the bytes of a file, and only if more than one file may count."""
+    """Questions about the bytes of a file; asked only if more than one file may count."""
 
     def has_work(self, line: Line) -> bool:
         """Return True if the notebook has more than what was handed out."""
@@ -33,13 +33,13 @@ class Looks(Protocol):
 
 @dataclass(frozen=True)
 class Decision:
-    """What becomes of a file for one student.
+    """The outcome of a file for one student.
 
     Attributes:
         line: The file.
         student: The id of the student; empty if it is not known, or if the file belongs to a group.
         state: ``PLACED`` if it counts.
-        reason: Why, for every other state.
+        reason: The reason, for every other state.
     """
 
     line: Line
@@ -49,7 +49,7 @@ class Decision:
 
 
 def decide(lines: Iterable[Line], looks: Looks) -> tuple[list[Decision], dict[Place, Line]]:
-    """Decide what becomes of each file.
+    """Decide the outcome of each file.
 
     Returns:
         A decision for each file and student, and the file that counts for each notebook.
@@ -89,7 +89,7 @@ def decide(lines: Iterable[Line], looks: Looks) -> tuple[list[Decision], dict[Pl
 
 
 def _beside(line: Line, came: set[tuple[str, str]]) -> Decision:
-    """A file that needs no attention once the notebook of its student has come."""
+    """Return the outcome of a file that needs no attention once its student's notebook has come."""
     student = line.students[0] if len(line.students) == 1 else ""
     if line.lms == "list" or (student and (student, line.assignment) in came):
         return Decision(line, student, State.BESIDE, line.reason)
@@ -106,7 +106,7 @@ def _of_group(place: Place, group: list[Line], looks: Looks) -> Iterator[_Why]:
         best, others = _best(chosen, _time, place, looks)
         yield from others
         if best:
-            # Who corrects a file changes nothing about the time at which its student handed in.
+            # A later correction of a file does not change the time at which its student handed in.
             times = [one.when for one in group if one.when and lying]
             yield replace(best, when=best.when or max(times, default=None)), State.PLACED, ""
         why = "was put there by hand and counts" if lying else "counts, since yes is written under use"
@@ -130,7 +130,7 @@ def _of_group(place: Place, group: list[Line], looks: Looks) -> Iterator[_Why]:
 
 
 def _people(place: Place, pool: Sequence[Line], _: Looks) -> list[tuple[Line, str]]:
-    """The files that only a name gives to a student, if several people or repositories have that name.
+    """Return the files that only a name assigns to a student, if several people or repositories share that name.
 
     In Canvas a person has one number; elsewhere one number in each download.
     """
@@ -156,7 +156,7 @@ def _people(place: Place, pool: Sequence[Line], _: Looks) -> list[tuple[Line, st
 
 
 def _unreadable(place: Place, pool: Sequence[Line], looks: Looks) -> list[tuple[Line, str]]:
-    """The files that cannot be read, if others can: a file that was cut off on its way never replaces work."""
+    """Return the unreadable files, if others are readable: an incomplete file never replaces work."""
     if len({one.content for one in pool}) < 2:
         return []
     reasons = [(one, reason) for one in pool if (reason := looks.why_unreadable(one))]
@@ -165,10 +165,10 @@ def _unreadable(place: Place, pool: Sequence[Line], looks: Looks) -> list[tuple[
 
 
 def _newest(place: Place, pool: list[Line], looks: Looks) -> tuple[Line | None, list[_Why]]:
-    """The file that counts, and why the others do not; None if nothing says which is the newest.
+    """Return the file that counts, and why the others do not; None if the newest one is unclear.
 
-    Of files that were handed in together, one with work goes before one that is as it was handed out, and then the
-    exact name counts. Between attempts the time decides, or else the order that the system gives.
+    Of files that were handed in together, one with work takes precedence over an unchanged one, and then the exact
+    name counts. Between attempts the time decides, or else the system's order.
     """
     is_several = len({one.content for one in pool}) > 1
     work = {one.key: not is_several or looks.has_work(one) for one in pool}
@@ -197,7 +197,7 @@ def _newest(place: Place, pool: list[Line], looks: Looks) -> tuple[Line | None, 
 
 
 def _together(pool: Iterable[Line]) -> list[list[Line]]:
-    """The files that were handed in together: of one person, at one time, in one download."""
+    """Return the groups of files that were handed in together: by one person, at one time, in one download."""
     found: list[list[Line]] = []
     for one in pool:
         mine = [one]
@@ -220,7 +220,7 @@ def _time(one: Line) -> tuple[float, ...]:
 
 
 def _without_time(one: Line, best: Line | None, work: dict[str, bool]) -> tuple[State, str]:
-    """What becomes of a file of unknown time beside one whose time is known."""
+    """Return the outcome of a file of unknown time next to one whose time is known."""
     if best is None:
         return State.NOT_PLACED, "nothing says when it was handed in: write the time under handed_in"
     if one.content == best.content:
@@ -240,9 +240,9 @@ def _best(
     looks: Looks,
     work: dict[str, bool] | None = None,
 ) -> tuple[Line | None, list[_Why]]:
-    """The file of the highest rank, and what becomes of the others.
+    """Return the file of the highest rank, and the outcomes of the others.
 
-    If several different files have it, the one that counted before goes on counting; None if none did.
+    If several different files have that rank, the one that counted before stays; None if none did.
     """
     best = max(files, key=lambda one: (rank(one), one.when is not None, bool(one.lms)), default=None)
     if best is None:

@@ -1,4 +1,4 @@
-"""The names that learning management systems give to downloads, and the facts in such a name."""
+"""The file names in downloads of learning management systems, and the facts in such a name."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     _Who = Callable[[Mapping[str, str]], tuple[Identity, tuple[Identity, ...]]]
-    """Tells from the groups of a pattern the student, and the student of each way to read the name."""
+    """From the groups of a pattern: the student, and the student by each way to read the name."""
     _Reader = Callable[[Sequence[str], int], "Found | None"]
-    """Tells the facts in the name at one place of a path."""
+    """Returns the facts in the name at one index of a path."""
 
 _MOST_MARKS = 10
-"""In a name that can be read in several ways; no real name has more."""
-# What browsers, Canvas and Drive add to a name that is there already, and file managers to a copy.
+"""The most ways to read a name; real names have fewer."""
+# Browsers, Canvas and Drive add this to a name that exists already, and file managers to a copy.
 _COPY_OF = "Copy of "
 _MARK = r" ?\((\d{1,6})\)|-(\d{1,6})| - [Cc]opy"
 _MARKED = re2.compile(rf"^(?P<base>.+?)(?P<marks>(?:{_MARK})+)$")
@@ -38,15 +38,15 @@ class Found:
     """The facts in the path of a file.
 
     Attributes:
-        identity: The student, as the system names them.
-        file: The name that the student gave it.
-        when: The time of handing in, in the LMS's own time; None where the name says none, or none that can be read.
-        order: Grows with later files of one student, where the LMS numbers files.
-        late: Whether the LMS marks it as late.
-        readings: Where the name can be read in several ways, the student of each, the longest name first; the first who
-            is in the class is meant. Empty where there is one way.
-        time: The time as the name has it, also where nobody could read it.
-        assignment: The assignment, if a pattern of the instructor's says it.
+        identity: The student, as named by the system.
+        file: The name that the student gave the file.
+        when: The time of handing in, in the LMS's own time; None if the name has no readable time.
+        order: Increases with later files of one student, if the LMS numbers files.
+        late: True if the LMS marks it as late.
+        readings: If the name can be read in several ways, the student of each, the longest name first; the first one
+            who is in the class is meant. Empty if there is only one way.
+        time: The time as the name has it, even if it is not readable.
+        assignment: The assignment, if the instructor's pattern finds one.
     """
 
     identity: Identity
@@ -60,12 +60,12 @@ class Found:
 
 
 def read_path(parts: Sequence[str], form: str, is_notebook: Callable[[str], bool]) -> Found | None:
-    """The facts in a path of the form of one LMS, by its topmost name of that form; None where it has none.
+    """Return the facts in a path of one LMS, from its topmost name of that form; None if it has none.
 
     Args:
-        parts: The path's folders and the file, of which none leads upwards.
+        parts: The path's folders and the file; none of them leads upwards.
         form: One of :data:`FORMS`.
-        is_notebook: Whether a file of this name is a notebook of the class, for forms that other names resemble.
+        is_notebook: True for the name of a notebook of the class, for forms that resemble other names.
     """
     parts = [unicodedata.normalize("NFC", part) for part in parts]
     ways = (read_at(parts, place, form, is_notebook) for place in range(len(parts)))
@@ -73,7 +73,7 @@ def read_path(parts: Sequence[str], form: str, is_notebook: Callable[[str], bool
 
 
 def read_at(parts: Sequence[str], place: int, form: str, is_notebook: Callable[[str], bool]) -> Found | None:
-    """The same by one name of the path alone; its accents are composed."""
+    """Return the same from one name of the path alone; its accents are composed."""
     is_folder = place < len(parts) - 1
     found = _READERS[form](parts, place)
     if found is None or form not in ("canvas", "google"):
@@ -85,9 +85,9 @@ def read_at(parts: Sequence[str], place: int, form: str, is_notebook: Callable[[
     if found.file != parts[-1] and is_notebook(parts[-1]):
         return None  # lab_1_2_3.ipynb and "lab_1_2 - Copy.ipynb" are a student's own names
     if form == "canvas" and is_folder:
-        return found if found.order >= 100 else None  # lab_1_2_submissions is an instructor's
-    # lab_1_2_ada_attempt_...: Canvas writes names in small letters, and counts the people and files of its whole site:
-    # nobody is both among its first nine people and has sent one of its first nine files.
+        return found if found.order >= 100 else None  # lab_1_2_submissions is an instructor's name
+    # lab_1_2_ada_attempt_...: Canvas writes names in lower case, and counts the users and files of its whole site:
+    # no student is among its first nine users and has also sent one of its first nine files.
     login, number = found.identity.login, found.identity.number
     if form == "canvas" and (login != login.lower() or (len(number) == 1 and found.order < 10)):
         return None if _READERS["blackboard"](parts, place) else found
@@ -95,7 +95,7 @@ def read_at(parts: Sequence[str], place: int, form: str, is_notebook: Callable[[
 
 
 def base_and_number(stem: str) -> tuple[str, int]:
-    """A name without what was added because there was one already, and the number that was added."""
+    """Return a name without what was added because it existed already, and the number that was added."""
     stem, number = name_as_text(stem), 0
     while stem.startswith(_COPY_OF) and stem != _COPY_OF:
         stem, number = stem.removeprefix(_COPY_OF), 1
@@ -106,15 +106,15 @@ def base_and_number(stem: str) -> tuple[str, int]:
 
 
 def plain(name: str, file: str) -> Found:
-    """The facts in a name that is a student's id or name, or ends with a user name of GitHub's.
+    """Return the facts in a name that is a student's id or name, or ends with a user name on GitHub.
 
     Repositories that were downloaded one by one are called ``lab-1-2-adalove-main``; Classroom Assistant makes
     folders with user names.
     """
     bare = without_branch(name)
-    # What gh puts around all repositories is called lab-1-2-submissions, and somebody may call herself 2-submissions.
+    # gh's folder around all repositories is called lab-1-2-submissions; but a user may be named 2-submissions.
     ends = [] if bare.endswith("submissions") else [bare, *_ends(bare, "-")]
-    # Before Ada's repository comes the one of a listed adalove-main.
+    # A listed user adalove-main takes precedence over Ada's repository.
     logins = dict.fromkeys((*(f"{end}{name.removeprefix(bare)}" for end in ends), *ends))
     repository = (Identity("github", number=login) for login in logins)
     return Found(Identity(), file, readings=(Identity(login=name, name=name), *repository))
@@ -126,7 +126,7 @@ def without_branch(repository: str) -> str:
 
 
 def read_time(text: str) -> datetime | None:
-    """A time as a name or a list has it, in whatever zone that is; None if it cannot be read.
+    """Return a time from a name or a list, in whatever zone that is; None if it cannot be read.
 
     Besides ISO 8601, systems write what Blackboard does (``2025-10-03-14-05-06``) and dates in words, as Moodle
     (``Friday, 3 October 2025, 2:05 PM``) and Brightspace (``Oct 3, 2025 205 PM``: a folder's name can have no colon).
@@ -145,10 +145,10 @@ def read_time(text: str) -> datetime | None:
 
 
 def _in_words(text: str) -> datetime:
-    """A date with the month in a word, before or behind the day, then the year and the clock.
+    """Return a date with the month as a word, before or after the day, then the year and the time.
 
     Raises:
-        ValueError: It is none.
+        ValueError: The text is not such a date.
     """
     words = text.split()
     (month,) = (_months()[word] for word in words if word in _months())
@@ -178,20 +178,20 @@ _IN_NUMBERS = ("%Y-%m-%d-%H-%M-%S", "%Y-%m-%d %H:%M:%S %z")
 
 
 def _ends(text: str, mark: str) -> list[str]:
-    """The ends of a text behind each of its last few marks, the longest first."""
+    """Return the ends of a text after each of its last few marks, the longest first."""
     pieces = text.rsplit(mark, _MOST_MARKS)[1:]
     return [end for start in range(len(pieces)) if (end := mark.join(pieces[start:]).strip())]
 
 
 def _moodle(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
-    # Of a group's work, or with a group chosen, the group's name is in front: Group A-Ada Lovelace.
+    # For group work, or if a group is selected, the group's name comes first: Group A-Ada Lovelace.
     names = [found["name"], *_ends(found["name"], "-")]
     readings = tuple(Identity("moodle", found["number"], name=name) for name in names)
     return readings[0], readings
 
 
 def _at_its_end(lms: str) -> _Who:
-    """Tells the student of a user name that may have the mark in it that is in front of it."""
+    """Return a reader for names that end with a user name, which may contain the mark before it."""
 
     def who(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
         whole = f"{found['item']}_{found['login']}"
@@ -223,7 +223,7 @@ def _canvas(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
 
 
 def numbers_in(name: str) -> list[str]:
-    """All numbers that may be the student's in a name of Canvas's: people and files may have numbers in theirs, too."""
+    """Return all numbers in a Canvas name that may be the student's; users' and files' names may have numbers."""
     pieces = name.split("_")[1:-1]
     return [one for one, file in itertools.pairwise(pieces) if f"{one}{file}".isdecimal() and len(file) >= 3]
 
@@ -234,17 +234,17 @@ def _google(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
 
 
 def _gradescope(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
-    """Only the list in the export says who a number is."""
+    """Only the list in the export tells the student of a number."""
     return Identity("gradescope", found["number"]), ()
 
 
 def _in_one_part(pattern: str, who: _Who, *, says_file: bool = False) -> _Reader:
-    """A reader of names in which one folder, or the file, has all facts.
+    """Return a reader of names in which one folder, or the file, has all facts.
 
     Args:
         pattern: The name's pattern; its groups ``file``, ``when``, ``order`` and ``late`` are those of :class:`Found`.
-        who: Tells from the groups the student, and the students of all ways to read the name.
-        says_file: Whether a name without the group ``file`` is a folder's.
+        who: From the groups: the student, and the students by all ways to read the name.
+        says_file: True if a name without the group ``file`` is a folder's.
     """
     expression = re2.compile(f"(?s){pattern}")  # a name may have line breaks
 
@@ -264,7 +264,7 @@ def _in_one_part(pattern: str, who: _Who, *, says_file: bool = False) -> _Reader
 
 
 def _first_of(*readers: _Reader) -> _Reader:
-    """A reader of names in one of several forms."""
+    """Return a reader of names in one of several forms."""
 
     def read(parts: Sequence[str], place: int) -> Found | None:
         return next((found for one in readers if (found := one(parts, place))), None)
@@ -284,7 +284,7 @@ def _github(parts: Sequence[str], place: int) -> Found | None:
     ):
         return None
     login = part.removeprefix(f"{slug}-")
-    # Where somebody had a repository of that name already, GitHub Classroom adds a number.
+    # If the user already had a repository of that name, GitHub Classroom adds a number.
     logins = dict.fromkeys((login, base_and_number(login)[0]))
     readings = tuple(Identity("github", login=one) for one in logins)
     return Found(readings[0], parts[-1], readings=readings)
@@ -323,7 +323,7 @@ _READERS = {
     # lovelaceada_LATE_123_456_lab_1_2-1.ipynb: the student's number, then the file's. Canvas leaves of the name only
     # what is part of a word (github.com/instructure/canvas-lms, content_zipper.rb).
     "canvas": _first_of(
-        # Who is called 🙂 has no name there: 123_456_lab_1_2.ipynb has, as 2025_10_03_lab_1_2.zip has a date.
+        # A user named 🙂 has no name there: 123_456_lab_1_2.ipynb is one, as 2025_10_03_lab_1_2.zip is a date.
         _in_one_part(
             r"^(?P<login>[\pN_]*?)_(?:(?P<late>LATE)_)?(?P<number>\d{3,})_(?P<order>\d{3,})_(?P<file>.+)$",
             _canvas,
@@ -348,6 +348,9 @@ _READERS = {
 }
 FORMS = tuple(_READERS)
 TOLD_APART = tuple(form for form in FORMS if form not in ("google", "ilias"))
-"""The forms that a name shows. Google's is a name that a student may have chosen, and ILIAS's is like many others: they
-are read only if the instructor says so."""
+"""The forms that names show by themselves.
+
+Google's name may have been chosen by a student, and ILIAS's resembles many others: they are used only if the
+instructor names the system.
+"""
 _BRANCHES = ("-main", "-master")

@@ -1,4 +1,4 @@
-"""A notebook as the class hands it out, to tell it from a student's work: who has two files may send both."""
+"""A notebook as the class hands it out, to tell it from a student's work: a student with two files may send both."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class HandedOut:
-    """Knows what of a notebook is the class's, and what is a student's.
+    """Distinguishes the class's parts of a notebook from a student's.
 
     Args:
         directory: The class.
@@ -28,9 +28,9 @@ class HandedOut:
         self._texts = functools.cache(self._read)
 
     def has_work(self, assignment: str, notebook: str, data: bytes) -> bool:
-        """True if a file has an answer, or a cell of the student's own, that was not handed out.
+        """True if a file has an answer, or an added cell, that was not handed out.
 
-        Where the class's notebook cannot be read, every notebook may be work. What cannot be read is none.
+        If the class's notebook cannot be read, every notebook may contain work. An unreadable file contains none.
         """
         try:
             cells, _ = read_notebook(data)
@@ -42,7 +42,7 @@ class HandedOut:
         )
 
     def _read(self, assignment: str, notebook: str) -> tuple[set[str], set[str]]:
-        """The texts of its cells, and the names of the cells that no student changes."""
+        """Return the texts of its cells, and the names of the cells that students do not change."""
         try:
             cells = self._directory.master(assignment, notebook).cells
         except GradingError:
@@ -51,7 +51,7 @@ class HandedOut:
         return given, {grade_id(cell) for cell in cells if not is_answer(cell)} - {""}
 
     def _released(self, assignment: str, notebook: str) -> set[str]:
-        """The texts of the notebook in ``release``, which may be older than its source."""
+        """Return the texts of the notebook in ``release``, which may be older than its source."""
         path = self._directory.path / "release" / assignment / f"{notebook}{SUFFIX}"
         try:
             return {cell.source.strip() for cell in parse(read_bytes(path))[0]}

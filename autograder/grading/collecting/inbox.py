@@ -1,7 +1,7 @@
-"""The inbox of a class: every file that ``collect`` was given, by the hash of its bytes, and where it came from.
+"""The inbox of a class: every file that ``collect`` was given, by the hash of its bytes, with its origin.
 
 One command is one delivery, and one file on the disk: a zip with the new bytes and a list of what came. It is written
-whole or not at all, and nothing in it ever changes. A delivery that comes again is the same file.
+completely or not at all, and never changes. If a delivery comes again, it is the same file.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ FOLDER = "inbox"
 BY_HAND = "by hand"
 """The form of files that a person has put into ``submitted``."""
 BEFORE = "collected before"
-"""The form of files that were collected when there was no inbox."""
+"""The form of files that were collected before inboxes existed."""
 _LIST = "delivery.json"
 _KEY_LENGTH = 10
 
@@ -38,14 +38,14 @@ class Arrival:
 
     Attributes:
         source: The name of the zip that it came in; empty for a folder or a single file.
-        parts: The path in there. For a file in a student's archive, the path of that archive.
-        inner: The path in a student's archive: the student chose it.
+        parts: The path inside the zip. For a file in a student's archive, the path of that archive.
+        inner: The path in a student's archive, which the student chose.
         content: The hash of the bytes; empty if they could not be read.
         refused: Why the bytes could not be read; empty if they were.
-        levels: How many names at the top of the path may name a student.
-        is_own: Whether the instructor named this file or folder as the work of one student.
-        is_list: Whether it is a list of the system's, and no work.
-        is_archive: Whether it is a student's archive; the files in it have arrivals of their own.
+        levels: The number of names at the top of the path that may name a student.
+        is_own: True if the instructor named this file or folder as the work of one student.
+        is_list: True if it is a list of the system, not work.
+        is_archive: True if it is a student's archive; the files in it have arrivals of their own.
     """
 
     source: str
@@ -75,7 +75,7 @@ class Arrival:
 
     @property
     def key(self) -> str:
-        """What identifies the file in the table: the same bytes under the same name, from whatever download."""
+        """The key of the file in the table: the same bytes under the same name, from any download."""
         named = f"{self.content}\0{self.path or self.source}".encode("utf-8", "replace")
         return f"#{hashlib.sha256(named).hexdigest()[:_KEY_LENGTH]}"
 
@@ -91,7 +91,7 @@ class Delivery:
         zone: The time zone of ``--timezone``; empty for that of the class.
         assignment: The assignment of ``--assignment``.
         handed_in: The time of ``--handed-in``.
-        known: What was written down of the only file when there was no inbox.
+        known: The record of the only file, if it was collected before inboxes existed.
     """
 
     arrivals: tuple[Arrival, ...]
@@ -104,7 +104,7 @@ class Delivery:
 
     @property
     def id(self) -> str:
-        """The same for the same files and options, in whatever order they were named."""
+        """The id: equal for the same files and options, in any order."""
         return hashlib.sha256(msgspec.json.encode(self)).hexdigest()[:16]
 
 
@@ -112,7 +112,7 @@ class Inbox:
     """The deliveries of a class.
 
     Args:
-        state: The class's folder of the autograder's own files.
+        state: The class's folder for the autograder's own files.
     """
 
     def __init__(self, state: Path) -> None:
@@ -143,10 +143,10 @@ class Inbox:
 
     @contextlib.contextmanager
     def receiving(self) -> Iterator[Receiving]:
-        """Take in a delivery: nothing is kept of it until the block has ended.
+        """Take in a delivery: nothing of it is kept until the block has ended.
 
         Raises:
-            OSError: It could not be written.
+            OSError: The delivery could not be written.
         """
         self._folder.mkdir(parents=True, exist_ok=True)
         beside = self._folder / f".delivery.{secrets.randbelow(10**12)}.new"

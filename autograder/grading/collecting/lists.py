@@ -1,4 +1,4 @@
-"""Lists that come with a download: they say who a number is, and when work was handed in."""
+"""Lists that come with a download: they map numbers to students, and contain times of handing in."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ if TYPE_CHECKING:
 GRADESCOPE = "submission_metadata.yml"
 """The list that Gradescope puts into its export."""
 LARGEST_OF_GRADESCOPE = 4_000_000
-"""Bytes of it, two thousand of each of two thousand students; read, a byte takes a hundred."""
+"""The limit on its bytes: two thousand for each of two thousand students; parsed, a byte takes a hundred."""
 _NUMBER = re2.compile(r"(\d+)(?:\.\w+)?$")
 _NO_TIME = ("", "-")
 
 
 @dataclass(frozen=True)
 class Entry:
-    """A list's entry on one submission, or on one person.
+    """A list's entry about one submission, or one person.
 
     Attributes:
-        lms: The system that the list is from; empty for an instructor's own.
-        number: The number or login that names of files have; empty where they have none.
-        members: The names of each member of the group that handed in, the surest first.
-        when: The time of handing in, in the LMS's own time where it has no zone; None where the list does not say it.
-        time: The same as the list has it.
-        assignment: The assignment's name; empty where the list does not say it.
+        lms: The system that made the list; empty for an instructor's own.
+        number: The number or login that is also in file names; empty if they have none.
+        members: The names of each member of the group that handed in, the most certain first.
+        when: The time of handing in, in the LMS's own time if it has no zone; None if the list does not have it.
+        time: The same as in the list.
+        assignment: The assignment's name; empty if the list does not have it.
     """
 
     lms: str
@@ -49,15 +49,15 @@ class Entry:
 
 @dataclass(frozen=True)
 class _Form:
-    """A list by the names of its columns, in small letters.
+    """A form of list, by the names of its columns, in lower case.
 
     Attributes:
         lms: The system that writes it.
-        has: Columns by which it is known.
+        has: The columns by which it is recognized.
         number: The column of :attr:`Entry.number`.
         logins: Columns with user names and addresses.
-        names: Columns that make a name together.
-        time: The column that says when.
+        names: The columns that together are the name.
+        time: The column with the time.
     """
 
     lms: str
@@ -127,7 +127,7 @@ _FORMS = (
 
 
 def read_list(name: str, data: bytes) -> list[Entry] | None:
-    """Read a list; None where its form is not known.
+    """Read a list; return None if its form is unknown.
 
     Args:
         name: The file's name.
@@ -166,9 +166,9 @@ def _entries(form: _Form, records: list[dict[str, str]]) -> Iterator[Entry]:
 
 
 def _of_gradescope(text: str) -> list[Entry] | None:
-    """``submission_metadata.yml``: of each submission's folder who handed it in, and when."""
+    """Read ``submission_metadata.yml``, which has for each submission's folder the student and the time."""
     try:
-        # Every word stays a text: no number loses its zeros, and nothing becomes longer than it was typed.
+        # Every value stays text: no number loses its zeros, and no text gets longer than it was typed.
         found = yaml.load(text, Loader=getattr(yaml, "CBaseLoader", yaml.BaseLoader))
     except (yaml.YAMLError, ValueError, RecursionError):
         return None
@@ -193,10 +193,10 @@ def _member(submitter: Mapping[str, Any]) -> tuple[Identity, ...]:
 
 
 def _word(value: object) -> str:
-    """A word of the list; empty for a list in its place, which few bytes can make longer than any memory."""
+    """Return a word of the list; empty for a list in its place, which a few bytes can make longer than any memory."""
     return value.strip() if isinstance(value, str) else ""
 
 
 def is_unread(entry: Entry) -> bool:
-    """True if a list has a time that could not be read."""
+    """True if a list has an unreadable time."""
     return entry.when is None and entry.time not in _NO_TIME

@@ -1,4 +1,4 @@
-"""Names of an instructor's own: ``--names '{id}-{last}_{assignment}'`` says what stands where."""
+"""An instructor's own pattern for names: ``--names '{id}-{last}_{assignment}'`` tells the parts of a name."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 WORDS = ("id", "email", "login", "number", "name", "first", "last", "assignment", "time", "file", "any")
 _MOST_WAYS = 100
-"""Ways to divide a name that are looked at; a name of a system has a few."""
+"""The most ways to divide a name that are tried; a system's name has a few."""
 _WORD = re2.compile(r"\{([^{}]*)\}")
 
 
@@ -27,10 +27,10 @@ def check_names(pattern: str, columns: Collection[str]) -> None:
 
     Args:
         pattern: The pattern.
-        columns: The columns of ``students.csv`` that the pattern may name, too.
+        columns: The columns of ``students.csv`` that the pattern may use.
 
     Raises:
-        GradingError: The pattern has a word that is not known, a word twice, or none that names a student.
+        GradingError: The pattern has an unknown word, a word twice, or no word that identifies a student.
     """
     words = [word for word in _WORD.findall(pattern) if word != "any"]
     says_who = set(words) & {*WORDS[:7], *columns}
@@ -66,7 +66,7 @@ def read_names(pattern: str) -> Callable[[Sequence[str]], Found | None]:
                     else []
                 )
                 if ways:
-                    # ben_b_7 may be of ben or of ben_b: the class knows one of them, or it is not clear.
+                    # ben_b_7 may belong to ben or to ben_b: either the class has only one of them, or it is unclear.
                     found = [_found(way, parts[-1]) for way in ways]
                     return replace(found[0], readings=tuple(dict.fromkeys(one.identity for one in found)))
         return None
@@ -75,7 +75,7 @@ def read_names(pattern: str) -> Callable[[Sequence[str]], Found | None]:
 
 
 def _ways(text: str, literals: Sequence[str], words: Sequence[str]) -> Iterator[dict[str, str]]:
-    """All ways to divide a text into the words between these literals."""
+    """Return all ways to divide a text into the words between these literals."""
     folded, first = text.casefold(), literals[0]
     if len(folded) != len(text) or not folded.startswith(first):
         return

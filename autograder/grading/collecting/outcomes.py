@@ -1,4 +1,4 @@
-"""The outcome of each file that was collected: to its place, among earlier attempts, or nowhere, with the reason."""
+"""The outcome of each collected file: its place, among earlier attempts, or nowhere, with the reason."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ class State(StrEnum):
     """The outcome of a file; each file has one of these."""
 
     PLACED = "placed"
-    """It is in ``submitted``."""
+    """The file is in ``submitted``."""
     UNCHANGED = "unchanged"
-    """The same is there already."""
+    """The same file is already there."""
     EARLIER = "earlier"
-    """Another one counts; this one is kept."""
+    """Another file counts; this one is kept."""
     BESIDE = "beside"
-    """It is no notebook that was asked for, and its student has handed in one, or it is the LMS's own page."""
+    """The file is not a requested notebook, and its student has handed in one; or it is the LMS's own page."""
     NOT_PLACED = "not placed"
-    """A line that waits for a person: it may be a student's work."""
+    """The file waits for a person: it may be a student's work."""
     LEFT_OUT = "left out"
     """A person wrote ``no`` under ``use``."""
 
@@ -34,13 +34,13 @@ class Outcome:
 
     Attributes:
         label: The file's name in messages.
-        state: The place where it went.
-        reason: The reason why it is not at its place, and what to type; empty where it is there.
-        student: The student's id; empty where it is not known.
-        assignment: The assignment's name; empty where it is not known.
-        when: The time of handing in, in UTC; None where nothing says it.
-        late: Whether the LMS marks it as late.
-        replaced: Whether another one lay at its place, which is kept.
+        state: The state of the file.
+        reason: Why the file is not at its place, and what to type; empty if it is there.
+        student: The student's id; empty if unknown.
+        assignment: The assignment's name; empty if unknown.
+        when: The time of handing in, in UTC; None if unknown.
+        late: True if the LMS marks it as late.
+        replaced: True if another file was at its place; that file is kept.
         key: The key of its line in the table.
     """
 
@@ -62,12 +62,12 @@ class CollectReport:
     Attributes:
         path: The class.
         outcomes: The outcome of each file.
-        unread_times: Times in names and lists that nobody could read.
-        untimed: Students for whose work, collected now, nothing says the time of handing in; by assignment.
+        unread_times: Times in names and lists that could not be read.
+        untimed: Students with work collected now whose time of handing in is unknown; by assignment.
         missing: Students who have handed in nothing, by assignment.
-        waiting: How many lines of the table wait for a person.
-        by_their_names: Whether there is no list of students, so that folders have the LMS's names.
-        notes: Times that were noted, names in a list that are no student's, empty downloads.
+        waiting: The number of lines in the table that wait for a person.
+        by_their_names: True if there is no list of students, so that folders have the LMS's names.
+        notes: Times that were recorded, names in a list that are not students, empty downloads.
     """
 
     path: Path
@@ -80,7 +80,7 @@ class CollectReport:
     notes: tuple[str, ...] = ()
 
     def having(self, state: State) -> tuple[Outcome, ...]:
-        """The files that went there."""
+        """The files with this state."""
         return tuple(one for one in self.outcomes if one.state == state)
 
     @property

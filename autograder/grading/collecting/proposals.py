@@ -1,4 +1,4 @@
-"""What the inbox and the class say of each file: its students, its notebook, its time; or why they do not say it."""
+"""What the inbox and the class tell about each file: its students, its notebook, its time; or why they are unknown."""
 
 from __future__ import annotations
 
@@ -28,20 +28,20 @@ if TYPE_CHECKING:
 PAGES = ("index.html", "grades.csv", GRADESCOPE)
 """Files that a system itself adds to a download."""
 _ONE_NUMBER = ("canvas", "moodle", "brightspace")
-"""The systems that give a person one number in a download, and in which people may change their names."""
+"""The systems with one number for each person in a download, in which users may change their names."""
 _OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".tgz", ".tar", ".bz2", ".xz", ".zst")
 
 
 @dataclass(frozen=True)
 class Edit:
-    """What a person wrote in the cells of a line; an empty cell is no edit.
+    """A person's entries in the cells of a line; an empty cell is not an edit.
 
     Attributes:
         use: ``yes`` or ``no``.
-        student: Ids with semicolons between them.
+        student: Ids, separated by semicolons.
         assignment: The name of an assignment.
-        notebook: The name of a notebook of it.
-        handed_in: A time as :meth:`datetime.isoformat` writes it, in UTC.
+        notebook: The name of a notebook of that assignment.
+        handed_in: A time in the format of :meth:`datetime.isoformat`, in UTC.
     """
 
     use: str = ""
@@ -53,7 +53,7 @@ class Edit:
 
 @dataclass(frozen=True)
 class Line:
-    """One file, as far as anything is known of it.
+    """One file, with everything known about it.
 
     Attributes:
         key: Its key in the table.
@@ -63,21 +63,21 @@ class Line:
         assignment: The name of its assignment; empty if it is not known. For other files, the one that its name means.
         notebook: The name of its notebook; empty if it is not known, or if the file is not a notebook.
         when: The time of handing in, in UTC.
-        order: Grows with later files of one student, if the system numbers files.
-        late: Whether the system marks it as late.
+        order: Increases with later files of one student, if the system numbers files.
+        late: True if the system marks it as late.
         use: ``yes`` or ``no`` as a person wrote it.
         reason: Why it cannot count, and what to do.
-        is_soft: Whether it needs nobody's attention once the notebook of its student counts.
-        what_to_do: What to do if that notebook does not come.
-        lms, number, name, file: The system, and what it calls the student and the file.
+        is_soft: True if it needs no attention once the notebook of its student counts.
+        what_to_do: The advice if that notebook does not come.
+        lms, number, name, file: The system, and its names for the student and the file.
         number_of_copy: The number that a browser has added to the name.
-        is_named: Whether the file is called as the notebook is.
-        is_sure: Whether a number of the system's names the student, and not a name that students may choose.
-        readings: How the name of the file names the student.
-        repository: The repository on GitHub that it came from.
-        came_in: The downloads that it came in.
-        unread_time: The time in the name, if nobody could read it.
-        rank: Less if the command named the system, more if it named the assignment: the line that is shown of several.
+        is_named: True if the file's name is that of the notebook.
+        is_sure: True if a system's number identifies the student, not just a name that students may choose.
+        readings: The ways in which the name of the file identifies the student.
+        repository: The repository on GitHub that contained it.
+        came_in: The downloads that contained it.
+        unread_time: The time in the name, if it could not be read.
+        rank: Lower if the command named the system, higher if it named the assignment; decides which line is shown.
     """
 
     key: str
@@ -108,23 +108,23 @@ class Line:
 
     @property
     def is_by_hand(self) -> bool:
-        """Whether a person put it into ``submitted``."""
+        """True if a person put it into ``submitted``."""
         return self.lms == BY_HAND
 
     @property
     def is_by_name(self) -> bool:
-        """Whether only a name says whose it is, though the system has a number for each person."""
+        """True if only a name identifies its student, although the system has a number for each person."""
         return self.lms in _ONE_NUMBER and not self.is_sure
 
 
 class Proposals:
-    """Reads the inbox with the eyes of a class.
+    """Interprets the inbox with the knowledge of a class.
 
     Args:
         directory: The class.
         inbox: Its inbox.
         roster: Its students.
-        edits: What a person wrote, by the key of the line.
+        edits: A person's entries, by the key of the line.
     """
 
     def __init__(
@@ -139,10 +139,10 @@ class Proposals:
         self._entries = entries_of(inbox)
 
     def student_of(self, delivery: Delivery, id_: str = "") -> StudentOf:
-        """Who is who in a delivery.
+        """Return the students' names as known for a delivery.
 
-        Lists say of all deliveries who a number is. Their times are those of the files beside them: a later list may be
-        about a later file. A list that came alone is about all files.
+        For all deliveries, lists map numbers to students. Their times apply to the files in the same delivery,
+        because a later list may be about a later file. A list that came alone applies to all files.
         """
         alone = (
             one for one, of in self._inbox.deliveries.items() if all(file.is_list for file in of.arrivals)
@@ -155,9 +155,9 @@ class Proposals:
         )
 
     def lines(self) -> list[Line]:
-        """Return one line for each file, with what a person wrote in the place of what is proposed.
+        """Return one line for each file, with a person's entries instead of the proposed ones.
 
-        A file that was collected for two assignments has two.
+        A file that was collected for two assignments has two lines.
         """
         found: dict[str, list[Line]] = defaultdict(list)
         for id_, delivery in self._inbox.deliveries.items():
@@ -195,19 +195,19 @@ class Proposals:
         return self._inbox.read(content)
 
     def target(self, name: str, content: str, asked: str) -> tuple[Target, bool]:
-        """The notebook that a file is, and whether its name says so."""
+        """Return the notebook of a file, and whether the file's name agrees."""
         return self._assignments(asked).target(name, self._inbox.read(content))
 
     def named(self, name: str, asked: str) -> str:
-        """The assignment that a file's name means."""
+        """Return the assignment that a file's name means."""
         return self._assignments(asked).named(name)
 
     def notebooks(self, assignment: str) -> list[str]:
-        """The notebooks of an assignment; none if the class has no assignment of that name, which may be any text."""
+        """Return the notebooks of an assignment; empty if the class has none of that name, which may be any text."""
         return self._directory.notebooks(assignment) if assignment in self._names else []
 
     def known(self, written: str) -> tuple[tuple[str, ...], str]:
-        """The ids of the students that a person wrote, or what is wrong with the cell."""
+        """Return the ids of the students that a person entered, or what is wrong with the cell."""
         ids = []
         for one in (part.strip() for part in written.replace(",", ";").split(";") if part.strip()):
             found = self._roster.find(Identity(login=one, name=one)) or self._without_zeros(one)
@@ -220,17 +220,17 @@ class Proposals:
         return tuple(ids), ""
 
     def _without_zeros(self, written: str) -> tuple[Student, ...]:
-        """The student of a number whose zeros a spreadsheet has dropped."""
+        """Return the student of a number whose leading zeros a spreadsheet has dropped."""
         plain = written.removesuffix(",0").removesuffix(".0").lstrip("0")
         alike = [one for one in self._roster.students.values() if one.id.lstrip("0") == plain]
         return tuple(alike) if plain.isdecimal() and len(alike) == 1 else ()
 
 
 class _Reading:
-    """Reads the files of one delivery.
+    """Interprets the files of one delivery.
 
     Attributes:
-        given: What a person wrote for a student's archive, which holds for the files in it.
+        given: A person's entry for a student's archive, which applies to the files in it.
     """
 
     def __init__(
@@ -244,11 +244,11 @@ class _Reading:
         self.given: dict[tuple[str, tuple[str, ...]], Edit] = {}
 
     def owners(self, arrival: Arrival) -> Owners:
-        """The students that the name of a file names."""
+        """Return the students that the name of a file identifies."""
         return self._student_of.owners(arrival.parts, arrival.levels, is_alone=arrival.is_own)
 
     def line(self, arrival: Arrival, edit: Edit) -> Line:
-        """The line of a file."""
+        """Return the line of a file."""
         rank = bool(self._delivery.assignment) - bool(self._delivery.form or self._delivery.names)
         line = Line(arrival.key, arrival.label, arrival.content, use=edit.use, rank=rank)
         if arrival.is_list:
@@ -262,7 +262,7 @@ class _Reading:
         return line
 
     def _by_hand(self, line: Line, arrival: Arrival) -> Line:
-        """The line of a file from ``submitted``, with what was known of it when there was no inbox."""
+        """Return the line of a file from ``submitted``, with what was recorded before inboxes existed."""
         student, assignment, name = arrival.parts
         notebook = name.removesuffix(SUFFIX)
         known = self._delivery.known or Collected(notebook, arrival.content)
@@ -307,10 +307,10 @@ class _Reading:
                 readings=found.readings[:1] or (identity,),
                 repository=repository_in(identity.lms, arrival.parts, identity.number or identity.name),
             )
-            # What a name says of the assignment counts if the class has one of that name.
+            # An assignment in a name counts if the class has one of that name.
             asked = asked or (found.assignment if self._proposals.notebooks(found.assignment) else "")
         line = replace(line, students=ids, came_in=frozenset({f"{self._id}/{arrival.source}"}))
-        # In a student's own archive, the name says which notebook it is, though not whose.
+        # In a student's own archive, the name identifies the notebook, but not the student.
         own_name = found.file if found and not arrival.inner else arrival.name
         named = self._proposals.named(own_name if owners.members else arrival.name, asked)
         if arrival.refused:
@@ -326,7 +326,7 @@ class _Reading:
         return self._with_target(line, own_name, edit, asked)
 
     def _with_target(self, line: Line, name: str, edit: Edit, asked: str) -> Line:
-        """The same line with the notebook that it is, or the reason why that is not clear."""
+        """Return the same line with its notebook, or the reason why that is unclear."""
         if edit.assignment or edit.notebook:
             return self._as_written(line, name, edit, asked)
         try:
@@ -344,7 +344,7 @@ class _Reading:
         )
 
     def _as_written(self, line: Line, name: str, edit: Edit, asked: str) -> Line:
-        """The same line with the notebook that a person wrote."""
+        """Return the same line with the notebook that a person entered."""
         several = self._proposals.notebooks(asked) if asked else []
         stem = stem_of(name)[0]
         notebook = (
@@ -361,7 +361,7 @@ class _Reading:
         return replace(line, assignment=asked, notebook=notebook, number_of_copy=stem_of(name)[1])
 
     def _no_notebook(self, line: Line, name: str, named: str, *, is_inner: bool) -> Line:
-        """The line of a file that is no notebook: a picture, a page of the system, or the work in another form."""
+        """Return the line of a file that is not a notebook: a picture, a system's page, or work in another format."""
         if name in PAGES and not is_inner and not line.students:
             return replace(line, reason="it is a page of the LMS", is_soft=True, lms="list")
         student = line.students[0] if len(line.students) == 1 else "STUDENT"
@@ -377,7 +377,7 @@ class _Reading:
 
 
 def in_utc(when: datetime | None, zone: tzinfo) -> datetime | None:
-    """A time in UTC; None for one that no clock shows, such as a time of the year 1 or 9999."""
+    """Return a time in UTC; None for one that cannot be converted, such as a time in the year 1 or 9999."""
     if when is None:
         return None
     try:
@@ -387,7 +387,7 @@ def in_utc(when: datetime | None, zone: tzinfo) -> datetime | None:
 
 
 def entries_of(inbox: Inbox) -> dict[str, list[Entry]]:
-    """The entries of all lists in the inbox, by the delivery that they came in."""
+    """Return the entries of all lists in the inbox, by their deliveries."""
     return {
         id_: [
             entry
@@ -400,7 +400,7 @@ def entries_of(inbox: Inbox) -> dict[str, list[Entry]]:
 
 
 def _merged(several: Iterable[Line]) -> Line:
-    """One line of a file that came several times: what is known best of it, and its latest time."""
+    """Return one line for a file that came several times: the most certain facts, and its latest time."""
     lines = sorted(several, key=lambda one: (bool(one.reason), one.is_soft, one.rank, one.label))
     best = lines[0]
     when = max((one.when for one in lines if one.when), default=None)
@@ -409,7 +409,7 @@ def _merged(several: Iterable[Line]) -> Line:
 
 
 def list_trouble(name: str, data: bytes) -> str:
-    """Why a list cannot be used; empty if it can."""
+    """Return why a list cannot be used; empty if it can."""
     if name == GRADESCOPE and len(data) > LARGEST_OF_GRADESCOPE:
         return f"Gradescope's list may have {LARGEST_OF_GRADESCOPE / 1e6:.0f} MB"
     if read_list(name, data) is None:

@@ -1,4 +1,4 @@
-"""The record of what was collected, beside the class: from then on only its times are believed."""
+"""The record of what was collected, stored with the class: only its times are trusted from then on."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ class Collected:
     """One notebook that was collected.
 
     Attributes:
-        notebook: Its name in the class.
+        notebook: The notebook's name in the class.
         content: The hash of its bytes.
-        when: The time of handing in, in UTC; None where nothing says it.
-        order: Grows with later files where there are no times.
-        late: Whether the LMS marks it as late.
-        lms: The system that it came from, empty for plain folders.
-        number: The student's number there: for Canvas of the student, for Moodle of the student in this assignment.
+        when: The time of handing in, in UTC; None if unknown.
+        order: Increases with later files if there are no times.
+        late: True if the LMS marks it as late.
+        lms: The system that it came from; empty for plain folders.
+        number: The student's number there; in Moodle, another number for each assignment.
         name: The student's name there.
-        file: The name of the file there, which its feedback goes back under.
-        by_hand: Whether the instructor put it there, and only its time was collected.
+        file: The name of the file there; the feedback is returned under it.
+        by_hand: True if the instructor put it there, and only its time was collected.
     """
 
     notebook: str
@@ -50,7 +50,7 @@ class Collected:
 
 
 def repository_in(lms: str, parts: Sequence[str], end: str) -> str:
-    """The repository on GitHub in the path of a file: the folder or zip whose name ends with the user name."""
+    """Return the repository on GitHub in a file's path: the folder or zip whose name ends with the user name."""
     if lms != "github":
         return ""
     *folders, file = parts
@@ -62,7 +62,7 @@ def repository_in(lms: str, parts: Sequence[str], end: str) -> str:
 
 @dataclass(frozen=True)
 class History:
-    """The files that were collected of one student for one assignment.
+    """The files that were collected from one student for one assignment.
 
     Attributes:
         now: The content of ``submitted``, by notebook.
@@ -76,20 +76,20 @@ class History:
 
     @property
     def when(self) -> datetime | None:
-        """The time at which the last of it was handed in, in UTC; None where nothing says so."""
+        """The time at which the last of it was handed in, in UTC; None if unknown."""
         return max((one.when for one in self.now.values() if one.when is not None), default=None)
 
     def written(self, notebook: str) -> set[str]:
-        """The hashes of the bytes at a notebook's place that ``collect`` wrote there."""
+        """Return the hashes of the bytes that ``collect`` wrote to a notebook's place."""
         ours = self.now.get(notebook)
         return {self.replaced.get(notebook, ""), ours.content if ours and not ours.by_hand else ""} - {""}
 
 
 class CollectedRecords:
-    """One file a submission.
+    """The records of a class, one file for each submission.
 
     Args:
-        state: The class's folder of the autograder's own files.
+        state: The class's folder for the autograder's own files.
     """
 
     def __init__(self, state: Path) -> None:
@@ -97,21 +97,21 @@ class CollectedRecords:
 
     @property
     def is_used(self) -> bool:
-        """True if anything was ever put at its place in this class, not only named as having none."""
+        """True if at least one file was ever placed in this class."""
         return any(self._folder.glob("*/*.json"))
 
     def get(self, assignment: str, student: str) -> History | None:
-        """The record of what was collected; None where nothing was, or where the file is damaged."""
+        """Return the record of what was collected; None if there is none, or if it is damaged."""
         try:
             return msgspec.json.decode(self._path(assignment, student).read_bytes(), type=History)
         except (OSError, msgspec.MsgspecError):
             return None
 
     def put(self, assignment: str, student: str, history: History) -> None:
-        """Write down what was collected.
+        """Write the record of what was collected.
 
         Raises:
-            OSError: It could not be written.
+            OSError: The record could not be written.
         """
         write_whole(self._path(assignment, student), msgspec.json.encode(history))
 
@@ -125,7 +125,7 @@ class CollectedRecords:
             return None
 
     def waiting(self) -> list[str]:
-        """The names of files that a version without an inbox could not place, and did not keep."""
+        """The names of files that an older version, without an inbox, could not place and did not keep."""
         try:
             listed = msgspec.json.decode((self._folder / "not_placed.json").read_bytes())
             return [str(one["label"]) for one in listed]
@@ -133,7 +133,7 @@ class CollectedRecords:
             return []
 
     def all(self) -> list[tuple[str, str]]:
-        """The students and assignments of which there is a record."""
+        """The students and assignments that have a record."""
         return [(path.stem, path.parent.name) for path in self._folder.glob("*/*.json")]
 
     def _path(self, assignment: str, student: str) -> Path:

@@ -1,4 +1,4 @@
-"""The outcome of collecting in a terminal: every file has a line."""
+"""Prints the outcome of collecting in a terminal: a line for every file."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def show(report: CollectReport, console: Console | None = None) -> None:
-    """Print what was placed where, and what was not and why.
+    """Print where files were placed, and which were not, with the reasons.
 
     Args:
         report: The outcome of collecting.

@@ -27,23 +27,23 @@ if TYPE_CHECKING:
 _WRITE_IT = "write the id under student in collected.csv"
 _NO_ID = f"its name does not say whose it is: {_WRITE_IT}, or add a line to students.csv"
 _LIST_OF = {"moodle": "the grading worksheet (Grades-….csv)", "gradescope": GRADESCOPE}
-"""The list of a system whose numbers are of one work, so that only the list says who a number is."""
+"""The list of a system whose numbers differ for each submission, so that only the list identifies the student."""
 _NOBODY = Identity()
 _BY_NUMBER, _BY_LOGIN = ("canvas", "brightspace"), ("github", "blackboard", "google", "sakai", "ilias")
-"""The systems whose names have one person's number, or one person's user name, whatever is handed in."""
+"""The systems whose names contain a person's number or user name that is the same for all assignments."""
 _LISTED = ("canvas", "github", "gradescope")
-"""The systems whose lists say whom they know. A number of Moodle's or Gradescope's is of one work."""
+"""The systems whose lists identify students. A number of Moodle or Gradescope belongs to one submission."""
 
 
 @dataclass(frozen=True)
 class Owners:
-    """The students who may have handed in a file, as its name says.
+    """The students who may have handed in a file, according to its name.
 
     Attributes:
-        found: The facts in the name; None where it has no known form.
-        members: For each member of the group, the students who may be meant; empty where nobody is known.
-        is_sure: Whether the system's number says so, and not a name that students may choose.
-        rivals: The systems that may have given the name, where each would mean another student or time by it.
+        found: The facts in the name; None if it has no known form.
+        members: For each member of the group, the students who may be meant; empty if none is known.
+        is_sure: True if the system's number identifies them, not just a name that students may choose.
+        rivals: The systems that may have made the name, if they would mean different students or times.
     """
 
     found: Found | None
@@ -53,22 +53,22 @@ class Owners:
 
     @property
     def only(self) -> Student | None:
-        """The student; None where the file is of no student, of a group, or may be of several."""
+        """The student; None if the file belongs to no student, to a group, or to one of several."""
         students = [student for members in self.members for student in members]
         return students[0] if len(students) == 1 else None
 
 
 class StudentOf:
-    """Knows the students of a class by all names that systems have for them.
+    """Knows all names of a class's students in the systems.
 
     Args:
         roster: The students of the class.
-        is_notebook: Whether a file of this name is a notebook of the class.
-        form: The system that the instructor says all is from; empty where names say it.
+        is_notebook: Returns True for the name of a notebook of the class.
+        form: The system that the instructor named for all files; empty to find it from the names.
         names: The pattern of ``--names``; empty for none.
-        entries: Entries of all lists, which say who a number is.
-        own: Those that came with the files, whose times are the files'.
-        others: Those that came alone, whose times count if the others have none.
+        entries: The entries of all lists, which map numbers to students.
+        own: The entries that came with the files; their times apply to the files.
+        others: The entries that came alone; their times count if the others have none.
     """
 
     def __init__(
@@ -91,15 +91,15 @@ class StudentOf:
         self._of = functools.cache(self._who)  # many files have one folder
 
     def owners(self, parts: Sequence[str], levels: int, *, is_alone: bool = False) -> Owners:
-        """The students whose file it is, as the topmost of the path's names says that says anything.
+        """Return the students of a file, by the topmost name in its path that identifies any.
 
-        Whatever a student calls a file, the system's own part is above it or in front of it. Where two systems may have
-        given a name, all of them have to mean the same by it: nobody is not the same as somebody.
+        Whatever a student names a file, the system's own part is above it or before it. If two systems may have made
+        a name, all of them must mean the same student by it: "no match" counts as a disagreement.
 
         Args:
             parts: The path's folders and the file.
             levels: The number of names from the top that no student has chosen.
-            is_alone: Whether the instructor has named this very file, so that it may be called as its student is.
+            is_alone: True if the instructor named this very file, so that its name may be the student's.
         """
         parts = [unicodedata.normalize("NFC", part) for part in parts]
         if self._names is not None:
@@ -109,7 +109,7 @@ class StudentOf:
             return Owners(found, (tuple(meant.values()),) if meant else ())
         forms = [self._form] if self._form else TOLD_APART
         names = [*parts[:-1], PurePath(parts[-1]).stem if is_alone and self._form != "google" else ""]
-        # Google's names are the student's own at any place.
+        # Google's names may be chosen by a student at any level.
         for place in range(len(parts) if self._form == "google" else min(levels, len(parts))):
             if ways := [way for form in forms if (way := read_at(parts, place, form, self._is_notebook))]:
                 return self._undisputed(self._agreed(ways), parts[place])
@@ -118,13 +118,13 @@ class StudentOf:
         return Owners(None)
 
     def has_form(self, path: Path) -> bool:
-        """True if a file or folder is called as a system names one student's work, with a part that is its own."""
+        """True if a file or folder has a name that a system makes for one student's work."""
         owners = self._of_name(path)
         lms = owners.found.identity.lms if owners.found else ""
-        return bool(owners.rivals) or lms not in ("", "google", "github")  # these have none
+        return bool(owners.rivals) or lms not in ("", "google", "github")  # these have no part of their own
 
     def is_called(self, path: Path) -> bool:
-        """True if a file or folder is called as somebody in the list of students is."""
+        """True if a file or folder has the name of a student in the list of students."""
         return bool(self._roster.students and self._of_name(path).members)
 
     def _of_name(self, path: Path) -> Owners:
@@ -132,7 +132,7 @@ class StudentOf:
         return self.owners((name, "") if path.is_dir() else (name,), 1, is_alone=True)
 
     def find(self, way: Found) -> Owners | None:
-        """The students who may be meant, by the first way of reading the name that names one."""
+        """Return the students who may be meant, by the first way to read the name that identifies one."""
         readings = way.readings if self._roster.students and way.readings else (way.identity,)
         for identity in readings:
             members, is_sure = self._of(identity)
@@ -148,7 +148,7 @@ class StudentOf:
         return read[0]
 
     def _undisputed(self, owners: Owners, name: str) -> Owners:
-        """The same; all whose numbers Canvas's name has where the student may be called as another one's number."""
+        """Return the same, or all students of a Canvas name's numbers if a student's name may be another's number."""
         if owners.found is None or owners.found.identity.lms != "canvas" or not owners.members:
             return owners
         others = map(self._of, (Identity("canvas", number) for number in numbers_in(name)))
@@ -159,21 +159,21 @@ class StudentOf:
         return replace(owners, members=(tuple(meant.values()),)) if len(meant) > 1 else owners
 
     def _who(self, identity: Identity) -> tuple[tuple[tuple[Student, ...], ...], bool]:
-        """The students who may be meant, and whether that is sure; without a list, the one that the LMS names."""
+        """Return the students who may be meant, and if that is certain; without a list, the one in the LMS's name."""
         known = self._by_number.get((identity.lms, identity.number or identity.login))
         if known is not None:
             hits = [hit for names in known.members if (hit := self._first(names))]
             hits = [hit for hit in hits if hit[1] or not self._is_another(hit[0], identity)]
             if hits and len(hits) == len(known.members):
                 return tuple((student,) for student, _ in hits), all(is_sure for _, is_sure in hits)
-        # What students.csv has of Moodle is another number: this one is one student's in one assignment.
+        # The number that students.csv has for Moodle differs: this one belongs to one student in one assignment.
         asked = replace(identity, number="") if identity.lms == "moodle" else identity
         found = self._roster.find(asked)
         number = asked.number.casefold()  # user names of GitHub's have capitals or not
         is_sure = bool(found and number) and found[0].lms.get(identity.lms, "").casefold() == number
         found = tuple(one for one in found if is_sure or not self._is_another(one, identity))
         if found and (identity.login or number):
-            # A user name of the system's may be the id of somebody else in the class: the name has to agree.
+            # A user name in the system may be the id of another student in the class, so the name has to agree.
             named = self._roster.find(Identity(name=identity.name))
             found = tuple({one.id: one for one in (*found, *(named if len(named) == 1 else ()))}.values())
         called = identity.login or identity.name
@@ -182,7 +182,7 @@ class StudentOf:
         return ((found,) if found else ()), is_sure
 
     def _is_another(self, student: Student, identity: Identity) -> bool:
-        """True if a student is known there by another number: who takes another's name there is not the other."""
+        """True if the student has another number there, and so is not the one who uses the name there."""
         lms = identity.lms
         by_number = lms in (*_BY_NUMBER, "gradescope")
         theirs = (by_number and identity.number) or (lms in _BY_LOGIN and identity.login) or ""
@@ -196,7 +196,7 @@ class StudentOf:
 
     @functools.cached_property
     def _listed(self) -> dict[tuple[str, str], set[str]]:
-        """The numbers by which lists know a student surely, by the system and the student's id."""
+        """The numbers by which lists identify students with certainty, by the system and the student's id."""
         numbers: dict[tuple[str, str], set[str]] = defaultdict(set)
         entries = (
             (entry, names) for entry in self._entries if entry.lms in _LISTED for names in entry.members
@@ -208,12 +208,12 @@ class StudentOf:
         return numbers
 
     def _first(self, names: Iterable[Identity]) -> tuple[Student, bool] | None:
-        """The student of the first of several names that is one student's alone, and whether it is no mere name."""
+        """Return the student of the first name that belongs to only one, and whether it is more than a name."""
         hits = ((self._roster.find(name), bool(name.login)) for name in names)
         return next(((found[0], is_sure) for found, is_sure in hits if len(found) == 1), None)
 
     def reason_against(self, owners: Owners) -> str:
-        """The reason why a file cannot be taken as a student's, and what to do; empty where it can."""
+        """Return why a file cannot be assigned to a student, and what to do; empty if it can."""
         if owners.rivals:
             read = " and as ".join(form.capitalize() for form in owners.rivals)
             say = " or ".join(f"--from {form}" for form in owners.rivals)
@@ -244,18 +244,18 @@ class StudentOf:
         return f"{nobody} or {_WRITE_IT if identity.lms in _LIST_OF else column}"
 
     def time(self, identity: Identity) -> datetime | None:
-        """The only time at which lists say that this number handed in; None if they do not say it, or several."""
+        """Return the only time of handing in that lists have for this number; None if they have none, or several."""
         number = (identity.lms, identity.number or identity.login)
         times = next((known[number] for known in self._timed if number in known), set())
         return next(iter(times)) if len(times) == 1 else None
 
     @property
     def of_several_times(self) -> list[str]:
-        """The numbers for which lists have several times, so that none counts."""
+        """Return the numbers for which lists have several times, so that none counts."""
         return sorted({number for (_, number), times in self._timed[0].items() if len(times) > 1})
 
     def student(self, entry: Entry) -> Student | None:
-        """The student of an entry of the instructor's own list; None if it names no student of the class."""
+        """Return the student of an entry in the instructor's own list; None if it matches no student of the class."""
         hit = self._first(entry.members[0]) if entry.members else None
         return hit[0] if hit else None
 

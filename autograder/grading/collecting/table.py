@@ -1,7 +1,7 @@
-"""``collected.csv``: one line for each file, as ``collect`` has decided; what a person writes into it wins.
+"""``collected.csv``: one line for each file, as decided by ``collect``; a person's entries take precedence.
 
-A cell is a person's if it differs from the cell in the table that ``collect`` wrote. So a copy of each table is kept,
-and the table says which copy it is: one that somebody had open while others collected is compared with what it was.
+A cell is a person's entry if it differs from the table that ``collect`` wrote. So a copy of each table is kept, and
+the table has the number of its copy: a table that was open during another ``collect`` is compared with its own copy.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ _YES = frozenset(["yes", "y", "ja", "j", "x", "1", "true", "wahr", "oui", "si", 
 _NO = frozenset(["no", "n", "nein", "0", "false", "falsch", "non"])
 _KEY = re2.compile(r"#[0-9a-f]{10}$")
 _STAMP = re2.compile(r"table (\d+)")
-# What a spreadsheet would take for a number, a date or a truth.
+# Values that a spreadsheet would take for a number, a date or a boolean.
 _TURNS = re2.compile(r"(?i)^(?:[\d.,]|[a-zäéû]{3,9}[ .-]*\d+$|(?:true|false|wahr|falsch)$)")
 _IN_NUMBERS = re2.compile(
     r"^(\d{1,4})([./-])(\d{1,2})[./-](\d{2,4})(?:[ T,]+(\d{1,2}):(\d\d)(?::(\d\d))?)?( ?[AaPp][Mm])?$"
@@ -63,8 +63,8 @@ class Waiting:
     Attributes:
         label: The file, with the key of its line.
         reason: Why it waits, and what to do.
-        student: The id of its student; empty if it is not known.
-        assignment: The name of its assignment; empty if it is not known.
+        student: The id of its student; empty if unknown.
+        assignment: The name of its assignment; empty if unknown.
         line: The number of the line in the table.
     """
 
@@ -102,17 +102,17 @@ class Table:
         self._locale = _locale_of(self._zone.key)
 
     def edits(self) -> dict[str, Edit]:
-        """What people have written, as far as ``collect`` has read it."""
+        """Return the entries of people that ``collect`` has read so far."""
         try:
             return msgspec.json.decode(self._edits_file.read_bytes(), type=dict[str, Edit])
         except (OSError, msgspec.MsgspecError):
             return {}
 
     def put_edits(self, edits: Mapping[str, Edit]) -> None:
-        """Keep what people have written.
+        """Store the entries of people.
 
         Raises:
-            OSError: It could not be written.
+            OSError: They could not be written.
         """
         kept = {key: edit for key, edit in sorted(edits.items()) if edit != Edit()}
         if kept != self.edits():
@@ -120,14 +120,14 @@ class Table:
 
     @property
     def is_edited(self) -> bool:
-        """Whether somebody has changed the table since ``collect`` wrote it."""
+        """True if the table was changed after ``collect`` wrote it."""
         try:
             return self.path.read_bytes() != self._copy(self._newest).read_bytes()
         except OSError:
             return False
 
     def read(self) -> tuple[dict[str, Edit], list[str]]:
-        """Return what people have written until now, and a sentence on each cell that is not clear."""
+        """Return the present entries of people, and a sentence about each unclear cell."""
         edits = self.edits()
         try:
             data = self.path.read_bytes()
@@ -176,7 +176,7 @@ class Table:
         return edit
 
     def _value(self, column: str, written: str) -> tuple[str, str]:
-        """The value of a cell, and what is wrong with it."""
+        """Return the value of a cell, and what is wrong with it."""
         if column == "use" and written:
             word = written.casefold()
             if word in _YES | _NO:
@@ -192,13 +192,13 @@ class Table:
         return written, ""
 
     def _time(self, written: str) -> str:
-        """A time as a person or a spreadsheet writes it, in UTC; empty if it is none."""
+        """Return a person's or a spreadsheet's time in UTC; empty if it is not a time."""
         when = read_time(self._in_order(written))
         found = in_utc(when, self._zone)
         return found.isoformat() if found else ""
 
     def _in_order(self, written: str) -> str:
-        """A date such as 31.01.2026 with the year in front; the country says what 3/4 means."""
+        """Return a date such as 31.01.2026 with the year first; the country decides what 3/4 means."""
         match = _IN_NUMBERS.match(written.strip())
         if match is None or len(match[1]) == 4:
             return written
@@ -214,10 +214,10 @@ class Table:
         return f"{year}-{month:02}-{day:02} {hour:02}:{match[6] or '00'}:{match[7] or '00'}"
 
     def write(self, decisions: Iterable[Decision], edits: Mapping[str, Edit]) -> None:
-        """Write the table if anything in it has changed.
+        """Write the table if its content has changed.
 
         Raises:
-            OSError: It could not be written.
+            OSError: The table could not be written.
         """
         lines = defaultdict(list)
         for one in decisions:
@@ -280,11 +280,11 @@ class Table:
         return path.read_bytes() if path.exists() else b""
 
     def lines(self) -> list[dict[str, str]]:
-        """The lines by their columns, as ``collect`` wrote them last."""
+        """Return the lines by their columns, as ``collect`` last wrote them."""
         return _rows(self._read_copy(self._newest), whole=True)[0] or []
 
     def waiting(self) -> list[Waiting]:
-        """The lines that wait, as ``collect`` wrote them last, and what an older version noted as waiting."""
+        """Return the waiting lines, as ``collect`` last wrote them, and those recorded by an older version."""
         lines = self.lines()
         named = {row["file"].rpartition(" ")[0] for row in lines}
         again = "it was collected with a version that did not keep such files: collect it again"
@@ -296,9 +296,9 @@ class Table:
 
 
 def _rows(data: bytes, *, whole: bool = False) -> tuple[list[dict[str, str]] | None, int]:
-    """The lines of a table by their columns, however a spreadsheet has saved it, and the number of the table.
+    """Return the lines of a table by their columns, in any spreadsheet's format, and the number of the table.
 
-    In each line, ``file`` is the key alone unless the ``whole`` cell is asked for; None if no line names the columns.
+    In each line, ``file`` is only the key unless the ``whole`` cell is requested; None if no line names the columns.
     """
     text = _text_of(data)
     first = text.partition("\n")[0]
@@ -321,7 +321,7 @@ def _rows(data: bytes, *, whole: bool = False) -> tuple[list[dict[str, str]] | N
 
 
 def _text_of(data: bytes) -> str:
-    """The text of a file that Excel or LibreOffice has saved in the letters of its system."""
+    """Return the text of a file that Excel or LibreOffice has saved in the system's encoding."""
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return data.decode("utf-16", "replace")
     try:
@@ -331,7 +331,7 @@ def _text_of(data: bytes) -> str:
 
 
 def _guarded(cell: str) -> str:
-    """A cell that no spreadsheet runs, or takes for a number or a date."""
+    """Return a cell that a spreadsheet neither executes nor takes for a number or a date."""
     safe = defused(cell)
     return f"'{safe}" if safe == cell and _TURNS.match(cell) else safe
 
@@ -341,7 +341,7 @@ def _unguarded(cell: str) -> str:
 
 
 def _is_same(written: str, was: str) -> bool:
-    """True if a cell is as it was, but for the zeros that a spreadsheet drops in front of a number."""
+    """True if a cell is unchanged, apart from leading zeros that a spreadsheet drops."""
     if written.casefold() == was.casefold():
         return True
     return (
@@ -350,7 +350,7 @@ def _is_same(written: str, was: str) -> bool:
 
 
 def _locale_of(zone: str) -> Locale:
-    """The customs of the country of a time zone: which separator its spreadsheets expect, and the order of a date."""
+    """Return the conventions of a time zone's country: the separator in its spreadsheets, and the order of a date."""
     territory = get_global("zone_territories").get(zone, "001")
     try:
         return Locale.parse(f"und_{territory}")
