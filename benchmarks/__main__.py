@@ -129,7 +129,7 @@ class _Run:
         ]
 
     def cpu_against(self, floor: list[Floor], made: BenchmarkClass, ours: OurRun) -> results.Figure:
-        """CPU against the floor: of the notebooks that build nothing, graded by themselves where there are others."""
+        """CPU against the floor: of the notebooks without builds, graded alone if the others have builds."""
         building = {one.notebook for one in floor if any(built for _, built in one.checks)}
         others = tuple(name for name in made.assignments if name not in building)
         if building and others:

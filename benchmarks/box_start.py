@@ -28,7 +28,7 @@ class BoxStart:
 
     @property
     def extra(self) -> float:
-        """What the box adds, in seconds."""
+        """The extra time of the box, in seconds."""
         return self.boxed - self.unboxed
 
 

@@ -21,10 +21,10 @@ _ONE_WRONG_IN = 4
 
 @dataclass(frozen=True)
 class Variants:
-    """What students answer to one exercise.
+    """Students' answers to one exercise.
 
     Attributes:
-        right: Files of the bank that earn full marks; empty where the master's own solution is all there is.
+        right: Files of the bank that earn full marks; empty if there is only the master's own solution.
         wrong: Files that earn less, and come to an end by themselves.
     """
 
@@ -58,8 +58,8 @@ def make_class(path: Path, students: int, assignments: tuple[str, ...] = ()) -> 
     Endless loops are left out: stock nbgrader would sit each of them out alone, which would flatter us.
 
     Args:
-        path: Where the class is to be.
-        students: How many.
+        path: The folder for the class.
+        students: The number of students.
         assignments: Only these; all graded notebooks of the course by default.
     """
     new_class(path, course.root(), assignments=assignments)

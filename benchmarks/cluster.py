@@ -45,7 +45,7 @@ BUSY = 0.85
 
 @dataclass(frozen=True)
 class Costs:
-    """What one notebook costs, on the mean of the chapter's graded ones.
+    """The costs of one notebook, on average over the chapter's graded ones.
 
     Attributes:
         machine: What was measured on.
@@ -211,7 +211,7 @@ def _running(command: list[str], folder: Path, ready: str) -> Iterator[Watch]:
         try:
             if not any(ready in line for line in process.stdout):
                 raise RuntimeError(f"{command} did not start")
-            # A pipe that nobody reads would fill up with its log, and stop it.
+            # A pipe that is not read would fill up with the log, and stop the process.
             threading.Thread(target=process.stdout.read, daemon=True).start()
             yield watch
         finally:

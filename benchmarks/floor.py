@@ -27,12 +27,12 @@ Cell = tuple[str, float, float, str]
 
 @dataclass(frozen=True)
 class Floor:
-    """What one notebook costs by itself.
+    """The costs of one notebook by itself.
 
     Attributes:
         notebook: Its name.
         seconds: Wall time of all cells.
-        cpu: CPU seconds of cells and judge; None where this system does not count them.
+        cpu: CPU seconds of cells and judge; None if this system does not count them.
         cells: The code cells.
     """
 

@@ -21,7 +21,7 @@ _GRADED = re.compile(r"graded \d+ of \d+")
 
 
 def measure_interrupts(made: BenchmarkClass, after: Sequence[int]) -> list[float]:
-    """Seconds from Ctrl-C to the end of ``autograder grade``; each run goes on where the one before was stopped.
+    """Seconds from Ctrl-C to the end of ``autograder grade``; each run continues the stopped one.
 
     Args:
         made: The class; it has to last for all turns.
@@ -40,7 +40,7 @@ def _interrupted(made: BenchmarkClass, after: int) -> float:
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,
-        # Where this program was started in the background, it would ignore Ctrl-C, and what it starts as well.
+        # If this program was started in the background, it would ignore Ctrl-C, and so would its children.
         preexec_fn=_hear_interrupts,
     )
     assert process.stderr is not None

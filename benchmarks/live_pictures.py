@@ -32,7 +32,7 @@ GOES_ON = "assert graph.running and robot is not None"
 
 @dataclass(frozen=True)
 class Cost:
-    """What was open, and what it took.
+    """What was open, and its costs.
 
     Attributes:
         what: In words.
@@ -98,7 +98,7 @@ def _run(client: object, cell: str) -> None:
 
 
 def main() -> int:
-    """Measure and print; 1 where an idle notebook with robot and graph costs more than it may."""
+    """Measure and print; return 1 if an idle notebook with robot and graph costs too much."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.live_pictures", description=__doc__)
     parser.add_argument("--seconds", type=float, default=60.0, help="how long each is measured")
     costs = measure(parser.parse_args().seconds)

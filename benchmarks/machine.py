@@ -15,7 +15,7 @@ import psutil
 
 @dataclass(frozen=True)
 class Machine:
-    """What the figures were measured on.
+    """The machine on which the figures were measured.
 
     Attributes:
         cores: Processors.
@@ -42,12 +42,12 @@ def machine() -> Machine:
 
 @dataclass(frozen=True)
 class Usage:
-    """What went on while something was measured.
+    """The load while something was measured.
 
     Attributes:
         seconds: Wall time.
         busy: Share of all cores that was busy with anything, 0 to 1.
-        own_cpu: CPU seconds of the measured processes; None where this system does not count them in a group.
+        own_cpu: CPU seconds of the measured processes; None if this system does not count them in a group.
         load: The system's load average of one minute, at the end.
         others: Share of all cores that processes other than the measured ones took; None like ``own_cpu``.
     """
@@ -122,7 +122,7 @@ class CpuGroup:
 
     @classmethod
     def make(cls) -> CpuGroup | None:
-        """A new group; None where this system has none of this kind, or does not let us."""
+        """Return a new group; None if this system has none of this kind, or does not allow it."""
         folder = Path("/sys/fs/cgroup/cpuacct") / f"benchmark-{os.getpid()}-{time.monotonic_ns()}"
         try:
             folder.mkdir()

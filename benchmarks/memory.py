@@ -78,7 +78,7 @@ def _sample(pid: int, seconds: float) -> MemorySample:
 
 
 def _namespace(pid: int) -> int:
-    """The number of the process namespace; 0 where the process is gone."""
+    """Return the number of the process namespace; 0 if the process is gone."""
     try:
         return os.stat(f"/proc/{pid}/ns/pid").st_ino  # noqa: PTH116  (Path.stat resolves less plainly)
     except OSError:

@@ -27,7 +27,7 @@ GRADE = (*AUTOGRADER, "grade")
 
 @dataclass(frozen=True)
 class OurRun:
-    """What ``autograder grade`` needed for a class.
+    """The costs of ``autograder grade`` for a class.
 
     Attributes:
         notebooks: How many it executed.
@@ -91,12 +91,12 @@ def _while_working(busy: Sequence[float], report: dict[str, object]) -> float:
 
 
 def problems_of(run: OurRun) -> list[str]:
-    """What the run itself said went wrong."""
+    """Return the problems that the run itself reported."""
     return msgspec.convert(run.report["problems"], list[str])
 
 
 def diagnosed(run: OurRun, student: str, assignment: str) -> str:
-    """What the judge had to say to a submission, in keys and words."""
+    """Return the judge's verdicts on a submission, as keys and texts."""
     submissions = msgspec.convert(run.report["submissions"], list[dict[str, Any]])
     return "; ".join(
         f"{exercise['exercise']} {exercise['state']} {exercise['diagnosis']}: {exercise['reason']}"

@@ -23,7 +23,7 @@ Verdicts = dict[tuple[str, str], tuple[float, str, str]]
 
 
 def run_overloaded(made: BenchmarkClass, log: Path) -> OurRun:
-    """Grade a class anew with four times as many boxes as cores, and two busy loops beside them."""
+    """Grade a class again with four times as many boxes as cores, and two busy loops at the same time."""
     loops = [multiprocessing.Process(target=_busy, daemon=True) for _ in range(BUSY_LOOPS)]
     for loop in loops:
         loop.start()

@@ -1,4 +1,4 @@
-"""Where the grader's own process spends its time: everything but boxes, which run beside it."""
+"""Profiles the grader's own process: everything but boxes, which are separate processes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def profile_grade(folder: Path) -> None:
     """Grades a small class under the profiler and prints the functions that took most.
 
     Args:
-        folder: Where the class is made.
+        folder: The folder for the class.
     """
     made = make_class(folder, _STUDENTS, _ASSIGNMENTS)
     profiler = cProfile.Profile()

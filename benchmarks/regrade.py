@@ -23,7 +23,7 @@ from benchmarks.ours import GRADE
 from environment.python_child import python_child
 
 _MORE_TURNS = 2
-"""When somebody edits the course meanwhile, the class is graded anew once and is unchanged again after that."""
+"""If the course is edited meanwhile, the class is graded once more and is unchanged again after that."""
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator

@@ -23,8 +23,8 @@ class Figure:
         name: What was measured.
         aim: What is wanted, in words.
         measured: What came out, in words.
-        reached: Whether the aim is reached; None where the figure is only told.
-        load: The machine meanwhile: its load average, and the share of it that others took where that is known.
+        reached: True if the aim is reached; None if the figure has no aim.
+        load: The machine meanwhile: its load average, and the share that other processes took if known.
     """
 
     name: str

@@ -60,7 +60,7 @@ spin_in_background(node)
 
 @dataclass(frozen=True)
 class Figure:
-    """What came of one command.
+    """The result of one command.
 
     Attributes:
         command: Its words.
@@ -92,7 +92,7 @@ def open_notebooks(notebooks: Sequence[Open], folder: Path) -> Iterator[None]:
 
     Args:
         notebooks: What is opened.
-        folder: Where the journal of their checks goes.
+        folder: The folder for the journal of their checks.
     """
     before = dict(os.environ)
     claim = join_domain()
@@ -129,7 +129,7 @@ def call(*words: str) -> tuple[float, subprocess.CompletedProcess[str]]:
 
 
 def missed(done: subprocess.CompletedProcess[str], expected: set[str]) -> str:
-    """What is wrong with a call; empty where nothing is."""
+    """Return what is wrong with a call; empty if nothing is."""
     missing = expected - set(done.stdout.splitlines())
     if done.returncode or done.stderr or missing:
         return f"exit code {done.returncode}, {done.stderr.strip()!r}, missing: {sorted(missing)}"
@@ -184,7 +184,7 @@ def measure(times: int, only: Sequence[str] = ()) -> tuple[int, list[Figure]]:
 
 
 def main() -> int:
-    """Measure and print the table; 1 where a call missed something."""
+    """Measure and print the table; return 1 if a call missed something."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.ros2_command")
     parser.add_argument("--times", type=int, default=100, help="how often each command is called")
     parser.add_argument("only", nargs="*", help="names of notebooks; all without")

@@ -44,10 +44,10 @@ Points = dict[tuple[str, str], dict[str, float]]
 
 @dataclass(frozen=True)
 class StockRun:
-    """What stock nbgrader needed for a few students.
+    """The costs of stock nbgrader for a few students.
 
     Attributes:
-        students: Who was graded.
+        students: The graded students.
         notebooks: How many notebooks that were.
         start_seconds: Start of the ``nbgrader`` command, which a class of any size pays once an assignment.
         seconds: Wall time of each assignment's command.
@@ -82,7 +82,7 @@ def run_stock(made: BenchmarkClass, folder: Path, students: Sequence[str], *, fe
 
     Args:
         made: The class; nothing is written into it.
-        folder: Where the copy is made.
+        folder: The folder for the copy.
         students: The students that are graded.
         feedback: Also make feedback pages.
     """

@@ -1,7 +1,7 @@
 """Set the course up in ``.venv``: ``python3 -m environment.bootstrap``, with the options below.
 
 Called by ``./course``, with any Python from 3.11 on and its standard library only. Each step is stamped with
-what it was made from (see steps.py), so running this again does what is left to do: nothing, as a rule.
+a hash of its inputs (see steps.py), so running this again only does what is left to do: usually nothing.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 ROOT = Path(__file__).resolve().parent.parent
-# What the environment with everything takes, and some air for the build, in bytes.
+# The disk space of a complete environment, with some reserve for the build, in bytes.
 _SPACE_NEEDED = 1_600_000_000
 _LOG_LINES_SHOWN = 25
 # pip names all of its packages in one line.
@@ -59,7 +59,7 @@ def without_network(wheels: Path | None) -> dict[str, str]:
     """Return the variables with which pip, and so uv, installs from a folder of wheels only.
 
     Raises:
-        SetupError: There is no such folder.
+        SetupError: The folder does not exist.
     """
     if wheels is None:
         return {}
@@ -94,7 +94,7 @@ def _check_place(place: Place) -> None:
 
 
 def _check_space(place: Place) -> None:
-    """Raise a SetupError where a new environment does not fit on the disk."""
+    """Raise a SetupError if a new environment does not fit on the disk."""
     free = shutil.disk_usage(place.root).free
     if not (place.notes / "stamps" / "packages").exists() and free < _SPACE_NEEDED:
         raise SetupError(
@@ -173,7 +173,7 @@ def set_up(place: Place, environ: Mapping[str, str], with_tests: bool, extras: S
 
 
 def _provide(need: system_packages.Need, log: IO[str], otherwise: str) -> None:
-    """Install what is missing for a need where that is possible; else say what follows and how to get it."""
+    """Install what is missing for a need if that is possible; else print the consequence and the command to get it."""
     apt = system_packages.Apt.here()
     for row in system_packages.provide(need, log, say, apt):
         get = system_packages.get_with([row], apt)

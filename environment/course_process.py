@@ -24,7 +24,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Mapping, MutableMapping, Sequence
 
-# Where the programs of the environment come first, as in every activated environment.
+# Variables in which the environment's programs come first, as in every activated environment.
 _IN_FRONT = ("PATH",)
 # A change of these reaches a running process too late: the loader and the interpreter read them at the start.
 READ_AT_START = ("LD_LIBRARY_PATH", "PYTHONPATH", "PYTHONUTF8")
@@ -88,11 +88,11 @@ def _start_again(environ: MutableMapping[str, str]) -> None:
 
 
 def begin() -> None:
-    """Set the variables of this process; where that is too late, start it again once."""
+    """Set the variables of this process; if it is too late for that, start the process again once."""
     from course_paths import PATHS, VALUES
 
     environ = os.environ
-    # Its .pth file imports it by name and then finds it imported.
+    # The .pth file imports the module by name and then finds it imported.
     sys.modules[_BOOTSTRAPPER] = type(sys)(_BOOTSTRAPPER)
     if any(os.path.basename(word).startswith(_SETUP_BASH_HELPER) for word in sys.orig_argv[1:2]):  # noqa: PTH119
         return

@@ -54,7 +54,7 @@ class Finding:
         name: the thing.
         state: how it stands with it.
         detail: what was found: a version, a path, what was wrong.
-        remedy: how to get it; empty where nothing needs doing.
+        remedy: how to get it; empty if there is nothing to do.
     """
 
     name: str
@@ -141,7 +141,7 @@ def ros() -> list[Finding]:
     # The last line: a library that is loaded may have printed before.
     report = _parsed(_last_line(_output(python_child("-m", "environment.ros_report"))[1]))
     found = [_ros(recorded, report), _middleware(report)]
-    # The course's own interfaces are no part of the wheel.
+    # The wheel does not contain the course's own interfaces.
     return [*found, _interfaces(report)] if IS_CLONE else found
 
 
@@ -257,7 +257,7 @@ def jupyter() -> list[Finding]:
 
 
 def kernel(spec: Path) -> Finding:
-    """Look at a kernelspec: it must start a Python that is there, with the variables of a graded cell."""
+    """Check a kernelspec: it must start a Python that exists, with the variables of a graded cell."""
     name = f"Kernel {jupyter_files.KERNEL_NAME}"
     try:
         content = json.loads(spec.read_text(encoding="utf-8"))
@@ -294,7 +294,7 @@ def folder_space(name: str, folder: Path, needed: int, remedy: str, not_yours: s
         folder: the folder.
         needed: the free space that it must have, in bytes.
         remedy: how to get it.
-        not_yours: what to do where the folder is somebody else's; the same where empty.
+        not_yours: what to do if the folder belongs to another user; the same remedy if empty.
     """
     if not folder.is_dir():
         return Finding(name, "missing", f"there is no folder {folder}", remedy)
@@ -313,7 +313,7 @@ def sandbox() -> list[Finding]:
     path = shutil.which("bwrap")
     if path is None:
         return _not_there("sandbox")
-    # A process of its own: this one must also run where the course's package is not installed yet.
+    # A separate process, because this one must also run if the course's package is not installed yet.
     line = _last_line(_output(python_child("-m", "autograder.boxes.sandbox"))[1])
     try:
         report = json.loads(line)

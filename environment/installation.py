@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = "ros2-course-autograder"
 """The name of the wheel."""
 IS_CLONE = (ROOT / "course").is_file()
-"""True in a clone and in what `hand-out` makes; False where the wheel was installed."""
+"""True in a clone and in a hand-out; False if the wheel is installed."""
 COMMAND = "./course" if IS_CLONE else "autograder"
 """The program before each command that a message names."""
 

@@ -23,7 +23,7 @@ ONLY_PYTHON = (
 )
 """For CMake: interfaces for Python nodes alone."""
 
-# Where chapters are written, and where they are in what students are handed.
+# The folder of the chapters: in the course, and in a hand-out.
 _CHAPTERS = ("solutions", "exercises")
 _DEFINITIONS = (".action", ".msg", ".srv")
 _PACKAGE_XML = """\
@@ -81,7 +81,7 @@ def build_command(
         colcon: the program.
         python: the interpreter that the interfaces are for.
         packages: the folders of the definitions.
-        prefix: where they are installed, all merged into one.
+        prefix: the common install folder of all.
         scratch: a folder for what is made on the way.
         light: for Python nodes alone.
 

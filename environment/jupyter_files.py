@@ -49,7 +49,7 @@ def server_config(root: Path, bash: str | None) -> dict[str, object]:
 
     Args:
         root: the folder of the course.
-        bash: the path of bash, or None where there is none; then the terminals stay as they come.
+        bash: the path of bash, or None if there is none; then the terminals keep their defaults.
     """
     if bash is None:
         return {}

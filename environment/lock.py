@@ -4,7 +4,7 @@ The lock files in ``requirements/`` are one resolution, cut into the parts that 
 
 * ``uv.lock``: uv, which installs the others, and resolves them here;
 * ``course.lock``: the dependencies of pyproject.toml, those of a class, and the build tools;
-* ``ros.lock``: the ROS wheels and what only they need, left out where a Jazzy is sourced;
+* ``ros.lock``: the ROS wheels and their other dependencies, left out if a Jazzy is sourced;
 * ``dev.lock``: what ``./course test`` needs besides;
 * ``cluster.lock``, ``postgresql.lock``, ``site.lock``: what the extra of that name needs besides, installed where
   it is asked for.
@@ -93,7 +93,7 @@ def split_blocks(lock: str) -> list[tuple[str, str]]:
 def cut(everything: str, course: set[str], extras: Mapping[str, set[str]]) -> dict[str, str]:
     """Cut one resolution into the bodies of the locks.
 
-    What the course needs is in its lock alone. Whatever else several extras need is in each of their locks,
+    Dependencies of the course are in its lock alone. Other dependencies of several extras are in each of their locks,
     since any of them may be installed without the others.
 
     Args:

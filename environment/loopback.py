@@ -17,7 +17,7 @@ from environment.python_child import python_child
 if TYPE_CHECKING:
     from subprocess import Popen
 
-# Discovery on one host takes well under a second. Where it takes ten, the labs will not work either.
+# Discovery on one host takes well under a second. If it takes ten, the labs will not work either.
 LIMIT = 10.0
 
 

@@ -69,7 +69,7 @@ class Place:
 
     @property
     def warning(self) -> str:
-        """A sentence about a folder that is no good place for the course, or an empty text."""
+        """A warning about a folder that is unsuitable for the course, or an empty text."""
         if not any(character.isspace() for character in str(self.root)):
             return ""
         return (
@@ -111,7 +111,7 @@ def environment_values(place: Place) -> dict[str, str]:
 
 
 def owner(folder: Path) -> str:
-    """The name of whoever a folder belongs to; its number where it has no name here.
+    """Return the name of a folder's owner; the number if the owner has no name here.
 
     In a course that several people share, one of them has to set it up.
     """

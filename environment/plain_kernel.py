@@ -34,7 +34,7 @@ class NotSetUp(Exception):
     """The course cannot be set up here. The message says why and what to do."""
 
     def _render_traceback_(self) -> list[str]:
-        """What IPython shows below the cell: the message, without the lines of this file."""
+        """Return what IPython shows below the cell: the message, without the lines of this file."""
         return [str(self)]
 
 
@@ -59,7 +59,7 @@ def set_up(root: Path = ROOT) -> None:
 def run_set_up(root: Path) -> None:
     """Run ``./course setup`` and show what it says; the environment is made with the Python of this kernel.
 
-    One that is there already stays as it is, although it may come from another Python.
+    An existing environment stays as it is, although it may come from another Python.
 
     Raises:
         NotSetUp: The set-up failed.

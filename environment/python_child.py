@@ -38,7 +38,7 @@ _KEPT_OF_PYTHON = {
     "PYTHONUNBUFFERED",
     "PYTHONUTF8",
 }
-"""These decide how a process reads, writes and prints. Python's other variables name code to run or files to read."""
+"""Variables that decide how a process reads, writes and prints. Python's other variables name code or files."""
 
 
 @dataclass(frozen=True)

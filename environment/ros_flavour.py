@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 Flavour = Literal["wheels", "system", "robostack"]
 
 DISTRO = "jazzy"
-# Where the set-up records its decision, below the prefix of the environment.
+# The file with the set-up's decision, below the prefix of the environment.
 RECORD = Path("course") / "ros.json"
 
 # The search paths that sourcing a ROS 2 sets. PATH is not among them: it is the programs' of the whole
 # session.
 SOURCED_PATHS = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH")
 
-# What the wheels exist for: manylinux_2_28, x86_64, CPython 3.11 (the project's oldest) to 3.14.
+# The wheels support manylinux_2_28, x86_64, CPython 3.11 (the project's oldest) to 3.14.
 _OLDEST_GLIBC = (2, 28)
 _PYTHONS = ((3, 11), (3, 14))
 
@@ -43,7 +43,7 @@ class Ros:
     """The ROS 2 that an environment is set up with.
 
     Attributes:
-        flavour: where it comes from.
+        flavour: the kind of installation.
         paths: what its sourcing put into the search path variables; empty for the wheels.
         notice: a line for the user about something sourced that is not used, or an empty text.
     """
@@ -115,7 +115,7 @@ def decide(environ: Mapping[str, str], machine: Machine, imports_rclpy: Callable
 
     Args:
         environ: the variables of the process.
-        machine: where this runs.
+        machine: the machine.
         imports_rclpy: tries whether this Python can import rclpy with these variables. Called for a Jazzy
         only.
 
@@ -158,7 +158,7 @@ def save(ros: Ros, prefix: Path) -> None:
 
 
 def load(prefix: Path) -> Ros | None:
-    """Return the recorded decision of the environment at `prefix`, or None where there is none to be read."""
+    """Return the recorded decision of the environment at `prefix`, or None if none can be read."""
     try:
         record = json.loads((prefix / RECORD).read_text(encoding="utf-8"))
         paths = {name: tuple(entries) for name, entries in record["paths"].items()}
@@ -170,7 +170,7 @@ def load(prefix: Path) -> Ros | None:
 def with_recorded(environ: Mapping[str, str], recorded: Ros | None) -> dict[str, str]:
     """Return the variables as they were when the recorded ROS was sourced, if none is sourced now.
 
-    So a set-up that was made with a sourced ROS stays with it in a terminal where nothing is sourced.
+    So a set-up that was made with a sourced ROS keeps it in a terminal in which nothing is sourced.
     """
     result = dict(environ)
     if recorded is None or not recorded.is_sourced or sourced_prefixes(environ):

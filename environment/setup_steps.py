@@ -165,7 +165,7 @@ class Setup:
 
     def _install_packages(self, locks: Sequence[Path]) -> None:
         # One requirement exists as source only. It is built by the setuptools of the lock, which is installed
-        # first for that: a build in isolation would fetch one that nobody pinned.
+        # first for that: an isolated build would download an unpinned version.
         blocks = split_blocks(self.place.lock("course").read_text(encoding="utf-8"))
         backend = self.place.notes / "build-backend.lock"
         backend.write_text("\n".join(block for name, block in blocks if name == "setuptools") + "\n", "utf-8")
@@ -183,7 +183,7 @@ class Setup:
                 self._uv(*arguments)
             except SetupError:
                 self.say("uv could not install the packages: pip tries, which takes longer")
-                self._uv_program.unlink()  # what it could not do here it cannot do in the next step
+                self._uv_program.unlink()  # a failure here would also happen in the next step
             else:
                 return
         self._pip(*arguments)
@@ -193,7 +193,7 @@ class Setup:
         return self.place.prefix / "bin" / "uv"
 
     def _uv(self, *arguments: str) -> None:
-        """Install with uv, from where the user's pip would."""
+        """Install with uv, from the index that the user's pip would use."""
         asked: Command = [self.place.python, "-m", "pip", "config", "list"]
         listed = subprocess.run(
             asked, env=self._child_variables(), capture_output=True, text=True, check=False
@@ -201,7 +201,7 @@ class Setup:
         options, variables = as_uv_has_them(listed.stdout)
         command: list[str | Path] = [self._uv_program, "pip", "install", "--no-config", "--no-progress"]
         command += ["--python", self.place.python, "--no-build-isolation", "--compile-bytecode"]
-        # Copied, not linked: who changes a file of this environment must not change uv's cache. pip, too, takes the
+        # Copied, not linked: a changed file in this environment must not change uv's cache. pip, too, takes the
         # best of all indexes; the hashes say which file that is.
         options = [option for option in options if option not in arguments]  # uv takes none twice
         command += ["--link-mode=copy", "--index-strategy=unsafe-best-match", *options, *arguments]
@@ -246,7 +246,7 @@ class Setup:
         (site_packages / "course_paths.py").write_text(
             f"{written}\nPATHS = {paths!r}\nVALUES = {values!r}\n", "utf-8"
         )
-        # Its name comes before ros_wheels_bootstrapper.pth, and so does it.
+        # Its name sorts before ros_wheels_bootstrapper.pth, so it runs first.
         (site_packages / "course_process.pth").write_text(
             "import course_process; course_process.begin()\n", "utf-8"
         )
@@ -265,9 +265,9 @@ class Setup:
     def compile_modules(self) -> None:
         """Compile the course's own modules, those that have changed.
 
-        Where a user's Python keeps no bytecode (``PYTHONDONTWRITEBYTECODE``), or the folder is somebody else's, each
-        process would compile what it imports anew. A module that is just being written may be broken: whoever imports
-        it is told.
+        If a user's Python keeps no bytecode (``PYTHONDONTWRITEBYTECODE``), or the folder belongs to another user,
+        each process would compile its imports again. A module that is being edited may be broken: its importer will
+        report that.
         """
         root = self.place.root
         labs = [file for name in ("solutions", "exercises") for file in sorted(root.glob(f"{name}/*/*/*.py"))]

@@ -18,7 +18,7 @@ from typing import IO, TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-# What needs a row: the set-up itself, the tests (without it those that need it are skipped), or the sandboxes
+# Each row has a purpose: the set-up itself, the tests (those that need a missing row are skipped), or the sandboxes
 # of submissions.
 Need = Literal["setup", "tests", "sandbox"]
 
@@ -49,7 +49,7 @@ class MissingPackagesError(Exception):
 
 
 def find_program(*names: str) -> str | None:
-    """Return the path of the first of these programs that is there, or None."""
+    """Return the path of the first of these programs that exists, or None."""
     return next((path for name in names if (path := shutil.which(name))), None)
 
 
@@ -126,7 +126,7 @@ def missing(need: Need, table: Sequence[SystemPackage] = TABLE) -> list[SystemPa
 
 
 def get_with(rows: Iterable[SystemPackage], apt: Apt) -> str:
-    """Return a line that tells a user how to get these rows: the command to type where it is known."""
+    """Return a line that tells a user how to get these rows: the command to type if it is known."""
     rows = list(rows)
     if apt.program:
         return "Get it with: sudo apt-get install -y " + " ".join(name for row in rows for name in row.debian)
@@ -154,7 +154,7 @@ def provide(
     apt: Apt | None = None,
     table: Sequence[SystemPackage] = TABLE,
 ) -> list[SystemPackage]:
-    """Install what is missing for one need where that is possible, and return the rows that still are.
+    """Install what is missing for one need if that is possible, and return the rows that are still missing.
 
     Args:
         need: which rows to look at.

@@ -177,7 +177,7 @@ def __getattr__(name):
 
 
 def make_imports_lighter(site_packages: Path) -> list[Path]:
-    """Change the modules that are there and not changed yet, each in one step, and return them."""
+    """Change the existing modules that are not changed yet, each in one step, and return them."""
     changed = []
     for module in LATER_IMPORTS:
         path = site_packages / module.file
@@ -192,7 +192,7 @@ def make_imports_lighter(site_packages: Path) -> list[Path]:
 
 
 def repaired_fast_dds(library: bytes) -> bytes:
-    """Return the library with both waits limited; unchanged where they are not there exactly once."""
+    """Return the library with both waits limited; unchanged unless each is found exactly once."""
     if len(_BOTH.findall(library)) != 1:
         return library
     return _BOTH.sub(lambda both: YEARS_68.join(both.groups()), library)

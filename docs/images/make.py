@@ -71,7 +71,7 @@ def see_the_lab(folder: Path) -> None:
 def see_a_class(folder: Path) -> tuple[str, ...]:
     """Grade the sample class and look at its pages; the pictures' names."""
     made = folder / "ros2"
-    # Its exit code is 2: the sample class has a submission that is refused.
+    # The exit code is 2, because the sample class has a submission that is refused.
     for command in ("demo", "report"):
         subprocess.run([*python_child("-m", "autograder").command, command, str(made)], check=False)
     with sync_playwright() as playwright:

@@ -102,7 +102,7 @@ class _Turns:
 
 
 def _cancel(turns: _Turns, handle: Any) -> None:
-    """Cancel a goal that nobody is waiting for any more.
+    """Cancel a goal whose result is no longer awaited.
 
     Raises:
         RuntimeError: the server did not cancel it.

@@ -140,7 +140,7 @@ COMMANDS: Mapping[str, Command] = {
     ),
 }
 
-# Commands of a full Jazzy installation that are not here, with what to know where there is something to know.
+# Commands of a full Jazzy installation that are missing here, with a hint if there is one.
 ELSEWHERE: Mapping[str, str] = {
     "bag": "",
     "component": "",

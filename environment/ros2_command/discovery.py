@@ -1,7 +1,7 @@
-"""Know when the graph is known: by what everybody has answered, and not by the time that has passed.
+"""Decides when the graph is known: by the answers of all participants, not by the time that has passed.
 
-The real command asks a daemon that has been listening all the time, or waits half a second. Here there is no
-daemon. The graph is known when
+The real command asks a daemon that has been listening all the time, or waits half a second. There is no daemon here.
+The graph is known when
 
 * each participant of this machine has answered a roll call: as many as ports of the domain are in use;
 * the endpoints of each have begun to come, and every endpoint's node has a name, or goes on having none;
@@ -30,7 +30,7 @@ _ROUND = (
 )
 _CALL_AGAIN = 0.3  # for those that were still being made
 _OTHER_MACHINES = 0.4  # where other machines may answer, wait at least this long for them
-_WITHOUT_TABLES = 0.5  # where nobody knows who there is: the real command's own wait without a daemon
+_WITHOUT_TABLES = 0.5  # if the participants are unknown: the real command's own wait without a daemon
 PATIENCE = 15.0
 """Seconds after which a participant that does not answer is given up, with a warning."""
 
@@ -102,7 +102,7 @@ def wait_until_settled(
     Args:
         look: returns what is known now.
         roll_call: asks the participants of this machine.
-        ports: returns the ports in use now, None where nobody knows.
+        ports: returns the ports in use now, None if unknown.
         shortest: seconds to wait at the least.
         longest: seconds after which to give up those who do not answer.
         clock: the present time in seconds.

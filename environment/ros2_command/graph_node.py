@@ -51,7 +51,7 @@ def graph_node(
             still works while it is handled.
 
     Raises:
-        RuntimeError: ROS_DOMAIN_ID is no domain.
+        RuntimeError: ROS_DOMAIN_ID is not a domain.
     """
     domain_id()
     if not any(os.environ.get(variable) for variable in _PROFILE_VARIABLES):
@@ -80,7 +80,7 @@ def graph_node(
 
 
 def _end_without_ros(node: Node, ended: threading.Event) -> None:
-    """End this process where a signal has shut ROS down and the verb does not come back from a wait.
+    """End this process if a signal has shut ROS down and the verb does not return from a wait.
 
     rclpy answers SIGTERM by shutting ROS down, which is to wake every wait. Now and then one is not woken, and
     `timeout 8 ros2 ...` would then never end.
@@ -97,7 +97,7 @@ def _create(name: str | None, *, use_sim_time: bool) -> Node:
     from rclpy.node import Node
     from rclpy.parameter import Parameter
 
-    # Services that nobody calls here cost half of the start-up time.
+    # Services that are never called here would cost half of the start-up time.
     return Node(
         name or f"{NAME_PREFIX}_{os.getpid()}",
         start_parameter_services=False,

@@ -5,8 +5,8 @@ The set-up calls `install` once; calling it again changes nothing. Neither thing
 * the program `ros2` hands over to the one of the ROS installation in use, if that has one
   (`real_installation`);
 * `launch` is found by a finder that first asks all others, so that every installed `launch` comes first, wherever
-  in the search path it is. Only a folder without `__init__.py` does not count as one: that is where a package has
-  its launch files, and `colcon build --symlink-install` puts it into the search path.
+  anywhere in the search path it is. A folder without `__init__.py` does not count: a package has its launch files
+  there, and `colcon build --symlink-install` puts it into the search path.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ def _site_packages(venv: Path) -> Path:
     """Return the folder of a virtual environment's packages.
 
     Raises:
-        FileNotFoundError: it is no virtual environment.
+        FileNotFoundError: the folder is not a virtual environment.
     """
     found = sorted(venv.glob("lib/python3*/site-packages"))
     if not found:
@@ -115,7 +115,7 @@ def install(venv: Path) -> None:
         venv: its folder.
 
     Raises:
-        FileNotFoundError: it is no virtual environment.
+        FileNotFoundError: the folder is not a virtual environment.
     """
     packages = _site_packages(venv)
     _write(packages / f"{_HOOK}.py", _HOOK_CODE.format(folder=str(LAUNCH_FRONT)))

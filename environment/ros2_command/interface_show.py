@@ -43,7 +43,7 @@ def definition(name: str, *, comments: bool, nested_comments: bool, level: int =
     """Return the lines of an interface with those of its nested types, indented by tabs.
 
     Raises:
-        ValueError, LookupError: there is no such interface.
+        ValueError, LookupError: the interface does not exist.
     """
     lines: list[str] = []
     for raw in interface_file(name).read_text(encoding="utf-8").splitlines():

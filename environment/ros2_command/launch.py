@@ -74,7 +74,7 @@ def launch_file_in_package(package: str, file_name: str | None) -> str:
     """Return the path of a launch file that a package has installed.
 
     Raises:
-        RuntimeError: there is no such package or file, or several files of that name.
+        RuntimeError: the package or file does not exist, or several files have that name.
     """
     from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
 
@@ -130,7 +130,7 @@ def show_arguments(description: LaunchDescription) -> None:
 
 
 def _find_launch_package() -> None:
-    """Make `launch` importable also where the environment has not been set up with it."""
+    """Make `launch` importable even if the environment was set up without it."""
     import importlib.util
 
     spec = importlib.util.find_spec("launch")
@@ -146,7 +146,7 @@ def _launch(args: argparse.Namespace) -> Outcome:
     if Path(args.package_name).is_file():
         path = args.package_name
         if args.launch_file_name is not None:
-            # With a path there is no second name: what is there is the first argument.
+            # With a path there is no second name, so this word is the first argument.
             given.insert(0, args.launch_file_name)
     else:
         path = launch_file_in_package(args.package_name, args.launch_file_name)

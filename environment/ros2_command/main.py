@@ -218,7 +218,7 @@ def run(argv: list[str]) -> int:
 
 
 def main() -> int:
-    """Be `ros2`: hand over to a real one where there is one, else run the command here."""
+    """Run `ros2`: hand over to a real one if it exists, else run the command here."""
     from environment.ros2_command.real_installation import run_real_command
 
     run_real_command()

@@ -60,7 +60,7 @@ def fill(message: Message, values: Mapping[str, Any]) -> list[StampSetter]:
         present time before each publishing.
 
     Raises:
-        AttributeError: there is no field of a given name.
+        AttributeError: the message does not have a field of a given name.
         TypeError, ValueError: a value does not fit its field.
     """
     if not isinstance(values, Mapping):
@@ -101,7 +101,7 @@ def _converted(field: Any, slot_type: Any, given: Any, setters: list[StampSetter
 
 
 def _abbreviation(declared: str, value: Any) -> str | None:
-    """Return what stands for an array when arrays are not shown, None for what is no array."""
+    """Return the short text for an array when arrays are not shown, None for other values."""
     match = _NESTED.match(declared)
     if match is None:
         return None

@@ -33,7 +33,7 @@ class NodeName:
 
 
 def show(found: Iterable[tuple[str, list[str]]], *, count: bool, types: bool = False) -> None:
-    """Print names, with their types where they are asked for, or only how many there are."""
+    """Print names, with their types if requested, or only their number."""
     if count:
         print(len(list(found)))
         return

@@ -40,8 +40,8 @@ _TYPES = (
 def ask(node: Node, node_name: str, service: str, request: Any, kind: Any) -> Any | None:
     """Call a parameter service; return None when the service does not appear.
 
-    A server drops its answer where it does not know the client yet (rmw_fastrtps waits 0.1 s), so whoever gets
-    none asks again: parameters are the same after a second request as after the first.
+    A server drops its answer if it does not know the client yet (rmw_fastrtps waits 0.1 s), so a client without an
+    answer asks again: a second request changes nothing more.
     """
     import rclpy
 

@@ -1,6 +1,6 @@
 """The participants of a domain on this machine, as the operating system knows it.
 
-Each DDS participant holds a UDP port of its domain, so who there is to meet is known before anybody is met.
+Each DDS participant holds a UDP port of its domain, so the participants are known before any is discovered.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 # participant on a machine is number 10 + 2n.
 _BASE, _PER_DOMAIN, _FIRST_UNICAST = 7400, 250, 10
 _SOCKET_TABLES = ("/proc/net/udp", "/proc/net/udp6")
-_STOPPED = frozenset("TtZX")  # proc(5), states of a process that answers nobody
+_STOPPED = frozenset("TtZX")  # proc(5), states of a process that does not answer
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,8 @@ def _sockets(domain: int, tables: Iterable[str]) -> dict[int, int] | None:
         for line in lines:
             columns = line.split()
             address, _, port = columns[1].rpartition(":")
-            # A participant listens on all addresses. Who listens on one, as the judge does for announcements, is none.
+            # A participant listens on all addresses. A socket on one address, like the judge's for announcements, is
+            # not one.
             if int(address, 16) == 0 and int(port, 16) in wanted:
                 found[int(columns[9])] = int(port, 16)
     return found if seen else None
@@ -91,7 +92,7 @@ def _sockets(domain: int, tables: Iterable[str]) -> dict[int, int] | None:
 def _held_by_stopped(sockets: dict[int, int], processes: Path) -> frozenset[int]:
     """Return the ports of processes that are stopped (Ctrl-Z, a debugger): they answer when they go on."""
     held: set[int] = set()
-    # A glob with a name behind the number asks whether that is there, which raises for a process that ends meanwhile.
+    # A longer glob would check that the rest of the path exists, which raises an error for a process that just ended.
     for process in processes.glob("[0-9]*"):
         try:
             said = (process / "stat").read_text(encoding="utf-8", errors="replace")
@@ -103,7 +104,7 @@ def _held_by_stopped(sockets: dict[int, int], processes: Path) -> frozenset[int]
 
 
 def _inodes(process: Path) -> set[int]:
-    """Return the inodes of a process's sockets; none where it is somebody else's, or has ended."""
+    """Return the inodes of a process's sockets; none if it belongs to another user, or has ended."""
     found: set[int] = set()
     try:
         for link in (process / "fd").iterdir():

@@ -1,4 +1,4 @@
-"""The real ros2cli, which runs where it is installed."""
+"""The real ros2cli, which runs if it is installed."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ _HEAD = 1024  # bytes: a script names what it starts well before this
 def find_real_command(environ: Mapping[str, str]) -> Path | None:
     """Return the `ros2` of the ROS installation in use, None when that has none.
 
-    It is on PATH, is not one of the course's own, and belongs to a prefix of AMENT_PREFIX_PATH: the `ros2` of
-    another distribution that happens to be on PATH would not fit this process's libraries.
+    The real one is on PATH, is not one of the course's own, and belongs to a prefix of AMENT_PREFIX_PATH: the `ros2`
+    of another distribution that happens to be on PATH would not fit this process's libraries.
     """
     prefixes = environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
     for folder in environ.get("PATH", "").split(os.pathsep):

@@ -5,10 +5,10 @@ there already answers at once, and once only: an answer that is read too early i
 comes with the periodic announcement, up to 3 s later (RTPSParticipantImpl::enable, PDPStatelessWriter). Of
 seven participants on an idle machine one or two were met that late, more on a busy one.
 
-A participant answers whoever is new to it. So somebody new is announced here, under a GUID that nobody else
-has: it has no endpoints, it listens on a plain socket that is open before anybody is asked, and it is taken
-back at the end. The answers are announcements as the wire has them; sent on to one's own participant they
-are what it has missed. Whoever does not answer, because it was still being made, is asked again.
+A participant answers every participant that is new to it. So a new one is announced here, under a unique GUID. It has
+no endpoints and a plain socket that is open before the question is sent, and it is withdrawn at the end. The answers
+are announcements in their wire format; passed on to the process's own participant, they are the ones that it has
+missed. A participant that does not answer, because it was still being made, is asked again.
 
 The bytes are those of RTPS (OMG DDSI-RTPS 2.3): 8.3.3 and 9.4.5 for messages, 9.6.2 for parameters.
 """
@@ -28,7 +28,7 @@ LOOPBACK = "127.0.0.1"
 _PREFIX = 12  # bytes of a GUID that name its participant
 _HEADER = 20  # bytes of a message before its first submessage
 _LONGEST = 65536  # bytes of a datagram
-_LEASE = 10  # seconds after which everybody forgets whom nobody took back
+_LEASE = 10  # seconds after which participants forget one that was not withdrawn
 
 _VENDOR = b"\x01\x0f"
 _VERSION = b"\x02\x03"
@@ -37,7 +37,7 @@ _DATA = 0x15
 _LITTLE_ENDIAN, _INLINE_QOS, _PAYLOAD = 0x01, 0x02, 0x04
 _PARTICIPANT = b"\x00\x00\x01\xc1"
 _ANNOUNCER, _DETECTOR = b"\x00\x01\x00\xc2", b"\x00\x01\x00\xc7"
-_ANNOUNCER_AND_DETECTOR = 0x3  # all that it has: nobody tells it of endpoints
+_ANNOUNCER_AND_DETECTOR = 0x3  # its only endpoints, so others send it no endpoint data
 _ROS = b"enclave="  # rmw_fastrtps gives it to each of its participants as user data
 
 
@@ -64,7 +64,7 @@ class RollCall:
     def call(self, ports: Iterable[int]) -> None:
         """Ask who listens on these ports for participants' announcements, and begin a new list."""
         self.close()
-        self._open()  # what still comes to the old socket answers an earlier call
+        self._open()  # late answers to an earlier call go to the old socket
         self.answered, self.strangers = set(), set()
         self._prefix = _VENDOR + os.urandom(_PREFIX - len(_VENDOR))
         self._asked = frozenset(ports)
@@ -90,7 +90,7 @@ class RollCall:
 
     def _send(self, message: bytes, ports: Iterable[int]) -> None:
         for port in ports:
-            # Whoever has gone, or has no room for it, is asked again with the next call.
+            # A participant that is gone, or whose socket is full, is asked again in the next call.
             with contextlib.suppress(OSError):
                 self._socket.sendto(message, (LOOPBACK, port))
 

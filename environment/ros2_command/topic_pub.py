@@ -123,7 +123,7 @@ def _publish(
         node.create_timer(1 / args.rate, publish)
         while times == 0 or count < times:
             rclpy.spin_once(node)
-    # The last message must reach the others before this node is gone: who reads reliably says so.
+    # The last message must reach the subscribers before this node ends; reliable ones confirm that.
     publisher.wait_for_all_acked(Duration(seconds=_ACKNOWLEDGED))
     time.sleep(args.keep_alive)
 

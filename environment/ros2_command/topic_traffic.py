@@ -30,7 +30,7 @@ class Intervals:
     intervals: deque[int] = field(default_factory=deque)
 
     def add(self, now: int) -> None:
-        """Note a message. Begin anew when the clock has gone back."""
+        """Note a message. Begin again when the clock has gone back."""
         if self.last is None or now < self.last:
             self.intervals.clear()
             self.shown_at = None

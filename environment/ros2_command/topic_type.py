@@ -14,7 +14,7 @@ _POLL = 0.02  # seconds
 
 
 def type_on_graph(node: Node, topic: str) -> Any | None:
-    """Return the message class of a topic, None when nobody has the topic.
+    """Return the message class of a topic, None if the topic does not exist.
 
     Raises:
         RuntimeError: the name is not valid, or the topic has several types or one that is not installed.

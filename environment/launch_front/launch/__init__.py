@@ -1,6 +1,6 @@
-"""The course's own `launch`, used where the real one is not installed.
+"""The course's own `launch`, used if the real one is not installed.
 
-It reads the launch files that the chapter teaches, in Python, XML and YAML, as Jazzy's launch does. What it
+This package reads the launch files that the chapter teaches, in Python, XML and YAML, as Jazzy's launch does. What it
 does not have raises an error that names it. `docs/ros2-command.md` lists what is there.
 """
 

@@ -29,7 +29,7 @@ class LaunchDescriptionEntity:
         return ()
 
 
-# What handlers and functions may return: nothing, one entity, or several.
+# The values that handlers and functions may return: nothing, one entity, or several.
 SomeEntitiesType = LaunchDescriptionEntity | Iterable[LaunchDescriptionEntity]
 SomeEntitiesType_types_tuple = (LaunchDescriptionEntity, Iterable)
 

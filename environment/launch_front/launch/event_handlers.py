@@ -25,7 +25,7 @@ def _about(kind: type, target: Any) -> Callable[[Any], bool]:
     """Return a function that recognizes events of a kind about one action, or about those it accepts.
 
     Raises:
-        TypeError: the target is no process.
+        TypeError: the target is not a process.
     """
     if target is not None and not isinstance(target, ProcessAction) and not callable(target):
         raise TypeError(f"target_action must be a process such as a Node, got '{target}'")

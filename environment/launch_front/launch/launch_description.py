@@ -31,7 +31,7 @@ class LaunchDescription(LaunchDescriptionEntity):
         """Add one at the end.
 
         Raises:
-            TypeError: it is no entity.
+            TypeError: the object is not an entity.
         """
         if not isinstance(entity, LaunchDescriptionEntity):
             raise TypeError(

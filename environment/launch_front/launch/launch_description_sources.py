@@ -25,7 +25,7 @@ __all__ = [
     "get_launch_description_from_python_launch_file",
 ]
 
-# What reads XML and YAML makes actions, and one of the actions reads launch files: so the package puts it here.
+# The reader of XML and YAML makes actions, and one of these actions reads launch files: so the package sets it here.
 frontend: Callable[[str], LaunchDescription] | None = None
 
 _FUNCTION = "generate_launch_description"
@@ -80,7 +80,7 @@ def get_launch_description_from_python_launch_file(path: str) -> LaunchDescripti
     """Return what `generate_launch_description()` of a Python file returns.
 
     Raises:
-        InvalidPythonLaunchFileError: there is no such function, or it returns something else.
+        InvalidPythonLaunchFileError: the function does not exist, or returns something different.
         Exception: whatever the file itself raises.
     """
     from .launch_description import LaunchDescription

@@ -87,7 +87,7 @@ class LaunchService:
         """End the launch."""
         self._shutdown("LaunchService.shutdown() called", due_to_sigint=False)
 
-    # What there is to do at once
+    # The work to do at once.
 
     def _work(self) -> None:
         """Visit, handle and start until nothing of that is left."""
@@ -188,14 +188,14 @@ class LaunchService:
         """Look for processes that have ended."""
         for process in [p for p in self._running if p.poll() is not None]:
             for source in tuple(process.streams):
-                # What it wrote last; a child of its own may keep the stream open, so do not wait for an end.
+                # The last output; a child process may keep the stream open, so do not wait for its end.
                 self._show(process, source, process.drain(source))
                 self._selector.unregister(process.streams[source])
             for source in ("stdout", "stderr"):
                 self._show(process, source, process.rest(source))
             self._running.remove(process)
             self._report_end(process, process.poll() or 0)
-            # What it has started and left behind must not outlive it when the launch is ending.
+            # Processes that it left behind must not outlive an ending launch.
             if self.context.is_shutdown:
                 process.send(signal.SIGKILL)
             process.close()

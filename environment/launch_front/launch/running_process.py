@@ -103,7 +103,7 @@ class RunningProcess:
             self.streams[name] = os.fdopen(end, "rb", buffering=0)
 
     def send(self, number: signal.Signals) -> None:
-        """Send a signal to the process and to what it has started, where they are still there."""
+        """Send a signal to the process and to the processes it has started, if they still exist."""
         with contextlib.suppress(ProcessLookupError):
             os.killpg(self.pid, number)
 
@@ -133,7 +133,7 @@ class RunningProcess:
         return self._lines(source, data or b""), data != b""
 
     def drain(self, source: str) -> list[bytes]:
-        """Read all that is there and return the complete lines."""
+        """Read all available output and return the complete lines."""
         lines: list[bytes] = []
         while data := self._data(source):
             lines += self._lines(source, data)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 _LOG_FILE = "launch.log"
 _SOURCES = ("stdout", "stderr", "both")
 _DESTINATIONS = ("screen", "log", "own_log")
-# The short names for where the output of a process goes.
+# The short names for the destinations of a process's output.
 _ALIASES: Mapping[str, Mapping[str, set[str]]] = {
     "screen": {"both": {"screen"}},
     "log": {"both": {"log"}, "stderr": {"screen"}},
@@ -27,7 +27,7 @@ _ALIASES: Mapping[str, Mapping[str, set[str]]] = {
 
 @dataclass(frozen=True)
 class OutputPlan:
-    """The places where the lines of a process go.
+    """The destinations of a process's lines.
 
     Attributes:
         places: for stdout and stderr, which of screen and log get a line.
@@ -138,7 +138,7 @@ class Screen:
 
         Args:
             level: DEBUG, INFO, WARNING or ERROR.
-            name: who says it: launch, launch.user or the name of a process.
+            name: the author of the line: launch, launch.user or the name of a process.
             message: what is said.
         """
         if level == "DEBUG" and not self.debug:
@@ -151,7 +151,7 @@ class Screen:
         """Show or write one line of a process.
 
         Args:
-            plan: where it goes.
+            plan: the destinations.
             source: stdout or stderr.
             line: the line as the process wrote it.
             shown: the line as it is shown, with the name of the process before it.

@@ -46,7 +46,7 @@ class TextSubstitution(Substitution):
         return self.text
 
 
-# What launch files may pass where a text is expected: a text, a substitution, or a list of them to be joined.
+# The values that launch files may pass for a text: a text, a substitution, or a list of them to be joined.
 SomeSubstitutionsType = str | Substitution | Iterable[str | Substitution]
 SomeSubstitutionsType_types_tuple = (str, Substitution, Iterable)
 

@@ -37,7 +37,7 @@ def value_of_text(text: str, value_type: Any = None) -> Any:
         value_type: bool, int, float, str or a List of one of them; None takes what YAML sees in it.
 
     Raises:
-        ValueError: the text is no such value.
+        ValueError: the text is not a valid value.
     """
     import yaml
 
@@ -67,7 +67,7 @@ def number(context: LaunchContext, value: Any) -> float:
     """Return a number that was given as such, as a text or as a substitution.
 
     Raises:
-        ValueError: it is no number.
+        ValueError: the text is not a number.
     """
     from .substitution import normalize, perform
 

@@ -22,7 +22,7 @@ def names_elsewhere(module: str, names: tuple[str, ...]) -> Callable[[str], NoRe
 
 
 def refuse_arguments(owner: str, given: dict[str, Any], elsewhere: tuple[str, ...] = ()) -> None:
-    """Raise for keyword arguments that nobody took.
+    """Raise an error for keyword arguments that were not used.
 
     Args:
         owner: the name of the class.

@@ -1,4 +1,4 @@
-"""The course's own `launch_ros`, used where the real one is not installed: ROS nodes in launch files."""
+"""The course's own `launch_ros`, used if the real one is not installed: ROS nodes in launch files."""
 
 from . import actions, descriptions, parameter_descriptions, substitutions
 

@@ -71,7 +71,7 @@ class ExecutableInPackage(FindPackagePrefix):
         """Return the path.
 
         Raises:
-            SubstitutionFailure: there is no such package, or no such program in it.
+            SubstitutionFailure: the package does not exist, or has no such program.
         """
         prefix = super().perform(context)
         package, executable = perform(context, self.package), perform(context, self.executable)

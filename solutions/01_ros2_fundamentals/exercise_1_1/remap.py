@@ -115,7 +115,7 @@ def only_one_remapped(seen: Launched, _: Launched) -> Advice | None:
 
 @remap.mistake("not_remapped", certain=lambda seen: seen.all_are_there)
 def not_remapped(seen: Launched, _: Launched) -> Advice | None:
-    """Both run, both under another name than asked for."""
+    """Both programs run, but under a wrong name."""
     there = seen.publishers | seen.subscriptions
     if not (seen.publishers and seen.subscriptions) or seen.topic in there:
         return None
@@ -198,7 +198,7 @@ def _is_there(seen: Launched, has_one: bool) -> bool:
 
 
 def _missing(seen: Launched) -> str:
-    """The program of the package in whose place something else is, such as a command; empty where there is none."""
+    """Return the package's program that was replaced, for example by a command; empty if none was."""
     if seen.heard and not _is_there(seen, seen.has_a_talker):
         return "talker"
     return "listener" if seen.says_what_it_hears and not _is_there(seen, seen.has_a_listener) else ""

@@ -134,7 +134,7 @@ adder.knows(
 
 @adder.mistake("one_call_only", late=True, certain=Client.called_each_time)
 def one_call_only(seen: Client, expected: Client) -> Advice | None:
-    """It ends by itself after one call or none."""
+    """The client ends by itself after one call or none."""
     part = next((p for p in seen.served if p.ending and len(requests(p)) < expected.calls), None)
     if part is None or not (seen.had_client or requests(part)):
         return None

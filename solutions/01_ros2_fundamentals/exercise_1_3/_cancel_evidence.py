@@ -75,7 +75,7 @@ def left_before_its_answer(part: Part) -> bool:
 
 
 def telling_count(evidence: Evidence) -> int | None:
-    """The number of feedback messages sent before the cancel request, in the run where that is least right."""
+    """Return the number of feedback messages before the cancel request, in the run in which it is most wrong."""
     runs = (evidence.part(HONOURED), evidence.part(CANCEL_REFUSED))
     counts = [feedbacks_before_cancel(part) for part in runs if goals(part)] or [None]
     return next((n for n in counts if n is None or not FIRST_FEEDBACK <= n <= LAST_FEEDBACK), counts[0])
@@ -99,7 +99,7 @@ def unreported_end(evidence: Evidence) -> tuple[Outcome, Part, list[Part]] | Non
 
 
 def asks_again_when_refused(evidence: Evidence) -> bool:
-    """True if it asks once where its cancel is honoured, and more than once where it is refused."""
+    """True if it requests once if its cancel is accepted, and several times if it is refused."""
     return len(evidence.main.of("cancel")) == 1 and len(evidence.part(CANCEL_REFUSED).of("cancel")) > 1
 
 
@@ -110,7 +110,7 @@ def cancels_every_goal(evidence: Evidence) -> bool:
 
 
 def orders_as_seen(evidence: Evidence) -> str:
-    """The fault of the goals that it sent, in words; empty where there is one of the right order in each run."""
+    """Return the fault of the goals that it sent, in words; empty if each run has one of the right order."""
     made = asked_for(evidence.main)
     refused = asked_for(evidence.part(REFUSED))
     if len(made) > 1:

@@ -54,7 +54,7 @@ def wrong_order(evidence: Evidence) -> Advice | None:
 
 
 def not_waited_for(evidence: Evidence) -> Advice | None:
-    """It was there, and no goal of its ever reached the server, which came a moment after it."""
+    """The client existed, but none of its goals reached the server, which came a moment later."""
     part = evidence.main
     returned_silently = part.returned is not None and not part.said()
     if goals(part) or part.traceback or returned_silently or not evidence.ever_had("action_client"):
@@ -68,7 +68,7 @@ def not_waited_for(evidence: Evidence) -> Advice | None:
 
 
 def ended_on_the_way(evidence: Evidence) -> Advice | None:
-    """It ended before it had to cancel, or before the answer to its cancel request."""
+    """The client ended before it had to cancel, or before the answer to its cancel request."""
     part = evidence.main
     ending, cancel = part.ending, part.first("cancel")
     if not goals(part) or ending is None or (part.traceback and not meant(part.traceback)):
@@ -161,7 +161,7 @@ def cancel_repeated(evidence: Evidence) -> Advice | None:
 
 
 def status_not_reported(evidence: Evidence) -> Advice | None:
-    """It cancels, and of one of its goals it never says how that ended."""
+    """The client cancels, but never says how one of its goals ended."""
     part, unreported = evidence.part(HONOURED), unreported_end(evidence)
     if part.first("cancel") is None or unreported is None:
         return None

@@ -51,14 +51,16 @@ FEW_LATE = 3
 AT_A_TIME = 3
 """Late feedback messages that are sent before the client has to have taken them; its queue holds ten."""
 ENDS = {HONOURED: "canceled", CANCEL_REFUSED: "succeeded", AGREED: "aborted"}
-"""The end of a goal that somebody asked to cancel, by the name of the part; any other one succeeds."""
+"""The end of a goal after a cancel request, by the name of the part; any other goal succeeds."""
 A_MOMENT = 2
 """Feedback messages that may come before a crowded machine lets a client go on whose sleep is over."""
 LAB_TIME = 1.5
 """Seconds of its own time in which a client must not ask once more; the lab's server takes less to end the goal."""
 
 FIRST_STATUS = 2
-"""Before this feedback message the goal's status is said: a while after its acceptance, before anybody may cancel."""
+"""The goal's status is published before this feedback message: some time after its acceptance, before any cancel is
+due.
+"""
 FEEDBACK_GAP = {Pace.FAST: 0.03, Pace.REAL_TIME: 0.5}
 """Seconds between two feedback messages outside the window in which a cancel is expected."""
 FIRST_AFTER = 0.25
@@ -67,13 +69,13 @@ after a whole or a half second does so between two messages."""
 LATE_GAP = 0.2
 """The same in real time after the request."""
 SHORTEST_GAP = 0.25
-"""Seconds between two messages at least, where a crowded machine has kept the judge from sending one in time."""
+"""The least seconds between two messages, even if a busy machine has delayed the judge."""
 WINDOW_WAIT = 0.2
 """Seconds that a fast look waits for a cancel after each feedback message inside that window."""
 PROMPT = 0.05
 """Seconds of wall time in which a client that counts feedback has asked to cancel, once its executor has turned."""
 AT_ONCE = 0.01
-"""The same, where a request comes too early in any case, and only the advice counts the messages before it."""
+"""The same, if a request is too early in any case, and only the advice counts the messages before it."""
 PAUSE = 0.15
 """Seconds after the first feedback message that the second run of a fast look is longer than the first."""
 GOAL_LIMIT = 15.0
@@ -81,7 +83,7 @@ GOAL_LIMIT = 15.0
 END_LIMIT = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
 """Seconds in which the client must ask for the result."""
 HANGS_AFTER = 5.0
-"""Seconds after the result in which the client must have said how the goal ended; where it has not, it hangs."""
+"""Seconds after the result within which the client must have said how the goal ended; otherwise it hangs."""
 AFTERMATH = 1.0
 """Seconds in which a client that has reported may end, or say more."""
 
@@ -159,8 +161,8 @@ def serve_goal(bench: Bench, name: str, *, accept: bool, pause: float, late: flo
     """Start the subject and serve its goal to its end.
 
     Args:
-        bench: Where it happens.
-        name: Of the part.
+        bench: The bench of the scenario.
+        name: The name of the part.
         accept: Whether a request to cancel is accepted.
         pause: Seconds to let pass after the first feedback message of a fast look.
         late: Seconds after its client at which the server comes.
@@ -197,7 +199,7 @@ def serve_goal(bench: Bench, name: str, *, accept: bool, pause: float, late: flo
 def send_feedback_until_cancelled(
     bench: Bench, server: ActionCounterpart, sequence: list[int], pause: float
 ) -> bool:
-    """Send feedback until somebody asks to cancel, as much as there is; whether somebody did."""
+    """Send feedback until a cancel is requested, or until none is left. Return True if a cancel was requested."""
     began = time.monotonic()
     for count in range(WITHOUT_CANCEL + 1):
         if count == FIRST_STATUS:
@@ -263,7 +265,7 @@ def send_late_feedback(bench: Bench, server: ActionCounterpart, sequence: list[i
         bench.wait_until(lambda seen: seen.main.first("cancel_answered") is not None, GOAL_LIMIT)
         bench.pass_time(LAB_TIME, "action_client", action)
         if bench.pace is Pace.FAST and len(bench.seen().of("cancel")) > 1:
-            # A clock may have asked again, and does so while late feedback comes, where that has its real pace.
+            # A timer may have requested again, and would do so during late feedback at its real pace.
             bench.doubt()
     else:
         bench.run_time(FEEDBACK_GAP[bench.pace])

@@ -58,13 +58,13 @@ def cancels_in_the_window(evidence: Evidence) -> Finding:
         return Finding(False, expected, LEFT)
     if cancels_every_goal(evidence):
         return Finding(False, expected, "a request to cancel every goal of the server")
-    # Of two goals nobody can say which one's feedback it counts. A single one may be of any order here.
+    # With two goals it is unclear whose feedback the client counts. A single goal may have any order here.
     goals = len(evidence.main.of("goal"))
     return Finding(inside and goals == 1, expected, seen if goals < 2 else f"{seen}, with {goals} goals sent")
 
 
 def cancels_once(evidence: Evidence) -> Finding:
-    """No second cancel request before late feedback arrives, and none where the first is refused."""
+    """There is no second cancel request before late feedback arrives, and none if the first is refused."""
     cancels = _cancels(evidence.main)
     expected = "one cancel request, before more feedback arrives"
     if cancels and left_before_its_answer(evidence.main):
@@ -79,8 +79,8 @@ def cancels_once(evidence: Evidence) -> Finding:
 def ignores_late_feedback(evidence: Evidence) -> Finding:
     """Feedback that arrives after the request causes no further request and no new goal.
 
-    Who asks again before any arrives goes by a clock: whether that ticks among late feedback is chance, and another
-    criterion's matter (:func:`cancels_once`).
+    A client that requests again before any arrives uses a clock: chance decides whether it ticks during late
+    feedback, and :func:`cancels_once` judges that.
     """
     part = evidence.main
     expected = "nothing more is asked for"
@@ -112,7 +112,7 @@ def _cancels(part: Part) -> list[Event]:
 
 
 def reports_the_status(evidence: Evidence) -> Finding:
-    """It says of each goal how that ended."""
+    """The client says of each goal how it ended."""
     expected = "says `canceled`, `succeeded` or `aborted`, or `status` and the number, as each goal ended"
     part = evidence.part(HONOURED)
     if part.first("cancel") is None:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
 
 ADDER = "my_robot_interfaces/srv/AddTwoInts"
-"""The type that the notebook shows. Others have it, and nobody is asked for it."""
+"""The type that the notebook shows. Other services have it, but the task never asks for it."""
 TEMPTING = {
     "std_srvs/srv/SetBool": "/set_bool",
     "std_srvs/srv/Empty": "/empty",
@@ -50,17 +50,21 @@ OTHER = "another type is asked for"
 ABSENT = "no service has the type"
 
 LOOKS = 4
-"""Looks at the graph after which a subject is sure to look again: the service need not be any later for that one. Who
-looks so often and then gives up has not kept its patience where there is none."""
+"""Looks at the graph after which a subject will certainly look again: the service need not be later than that.
+
+A subject that looks this often and then gives up has not kept its patience if there is no service.
+"""
 IMPATIENT = 3.0
-"""Seconds after which nobody who looked for a while has given up; on a busy machine a single look may take one."""
+"""Seconds within which no patient subject has given up; on a busy machine a single look may take one second."""
 FIND_LIMIT = 12.0
-"""Seconds of wall time in which a subject must have found a service that is there."""
+"""Seconds of wall time within which a subject must have found an existing service."""
 PATIENCE_IN_LATE = (4.0, 5.0)
-"""Between which the patience is drawn that a function is told to have where the service comes late."""
+"""The range of the patience that a function is told if the service comes late."""
 PATIENCE_ELSEWHERE = {Pace.FAST: (0.4, 0.48), Pace.REAL_TIME: PATIENCES}
-"""The same where it is there from the start, and where there is none: nobody can tell the two apart by it. No usual
-constant from 2 seconds on is taken for one of these."""
+"""The range if the service exists from the start, and if there is none, so that the patience does not reveal which.
+
+No usual constant from 2 seconds on lies in one of these.
+"""
 
 _TYPE_OR_NUMBER = re2.compile(r"[\pL_][\pL\pN_]*/srv/[\pL\pN_]+|\d+")
 _WORDS = ("kitchen", "garage", "tower", "harbour", "meadow", "attic", "bridge", "cellar", "garden", "forge")
@@ -101,7 +105,7 @@ def named_services(random: Random, another: str, *, hidden: bool) -> tuple[str, 
 
 
 def unserved(bench: Bench, type_name: str, others: Mapping[str, str]) -> None:
-    """The run in which there is no service of the type."""
+    """Make the run in which no service has the type."""
     if bench.keep(ABSENT):
         return
     patience = giving_up.drawn_patience(bench, PATIENCE_ELSEWHERE[bench.pace])
@@ -131,7 +135,7 @@ def looks_for(bench: Bench, patience: float, *, lateness: float) -> None:
     """Start the subject and let it find the service.
 
     Args:
-        bench: Where it happens.
+        bench: The bench of the scenario.
         patience: Seconds that a function is told to look.
         lateness: Seconds after the subject's node at which those come that come late; 0 where none does.
     """
@@ -212,7 +216,7 @@ def named(part: Part) -> list[str]:
 def named_for_none(evidence: Evidence) -> list[str]:
     """The service that it names at the end where none has the type, in the words in which it names what it found.
 
-    Who says that there is none may say what there is instead.
+    A subject that reports that there is none may name what exists instead.
     """
     part = evidence.part(ABSENT)
     usual = {naming.shape for name in (LATE, OTHER) for naming in answers(evidence.part(name))[-1:]}
@@ -294,7 +298,7 @@ question.asks("late", 4, "Finds a service that comes late", lambda evidence: _fo
 
 @question.criterion("other", 3, "Finds a service of another type")
 def finds_another(seen: Evidence, _: Evidence) -> Finding:
-    """It finds the service that is there from the start, and not only because its first look happened to."""
+    """The subject finds the service that exists from the start, and not only because its first look happened to."""
     found = _found(seen.part(OTHER))
     if found.passed and gave_up_at_once(seen.part(LATE)):
         return Finding(False, found.expected, "it looks once, and what a first look finds is chance")
@@ -307,7 +311,7 @@ def says_that_there_is_none(seen: Evidence, _: Evidence) -> Finding:
     part = seen.part(ABSENT)
     expected = f"says {giving_up.NOT_AVAILABLE} and ends by itself"
     if not names_it(seen.part(LATE)) and not finds_another(seen, seen).passed:
-        # What finds nothing anywhere has not shown that it looked.
+        # A subject that finds nothing in any run has not shown that it looked.
         return Finding(False, expected, "found no service in the other runs")
     if part.ending and (wrong_ones := named_for_none(seen)):
         return Finding(False, expected, f"named {', '.join(wrong_ones)}")
@@ -322,7 +326,7 @@ def found_in(seen: Evidence) -> list[Part]:
 
 
 def not_written(seen: Evidence, _: Evidence) -> bool:
-    """It comes back at once, with nothing, whatever it is asked."""
+    """The function returns nothing, at once, for every type."""
     runs = [seen.part(name) for name in (LATE, OTHER, ABSENT)]
     return not any(part.said() or part.traceback for part in runs) and gave_up_at_once(runs[0])
 
@@ -395,7 +399,7 @@ question.knows(
 
 
 def type_never_matches(seen: Evidence, _: Evidence) -> bool:
-    """It looks long enough and finds nothing, although it is there."""
+    """The subject looks long enough but does not find the existing service."""
     runs = [seen.part(LATE), seen.part(OTHER)]
     looked = not gave_up_at_once(runs[0]) and all(part.events for part in runs)
     return looked and not any(named(part) or _crashed(part) for part in runs)
@@ -421,7 +425,7 @@ question.knows(
 
 @question.mistake("silent_end", certain=True, late=True)
 def silent_end(seen: Evidence, _: Evidence) -> Advice | None:
-    """Without such a service it ends, and says nothing of that."""
+    """Without such a service the subject ends, and does not report that."""
     if says_that_there_is_none(seen, seen).passed:
         return None
     return giving_up.silent_end(seen.part(ABSENT), found_in(seen), "service")

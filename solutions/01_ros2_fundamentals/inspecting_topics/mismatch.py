@@ -1,7 +1,7 @@
 """Inspecting topics: find out on the graph why two nodes do not hear each other.
 
-The judge plants a talker and a listener that do not meet, under names that nobody can guess, and asks for the name and
-the type that each of them uses. Nothing of that is in any code that the student can read: it must be looked up.
+The judge plants a talker and a listener that do not meet, under random names, and asks for the name and the type that
+each of them uses. No code that the student can read contains them: they must be looked up.
 """
 
 from __future__ import annotations
@@ -50,14 +50,14 @@ _OTHER_TYPES = tuple(
     f"geometry_msgs/msg/{name}"
     for name in ("Accel", "Point", "Pose", "Pose2D", "Quaternion", "Transform", "Twist", "Vector3", "Wrench")
 )
-"""Types of another package. Where the two sides differ, one of them has one of these."""
+"""Types of another package. If the two sides differ, one of them has one of these."""
 
 
 def scenario(bench: Bench) -> None:
     """Plant three pairs, one after the other, and ask about each."""
     for case, planted in mismatches(bench.random):
         bench.part(case, **planted)
-        # Made first, it comes first among the ends of a topic: who looks at one of them only finds the wrong node.
+        # Made first, it comes first among the endpoints of a topic: a subject that checks one only is wrong.
         bench.plant(planted["bystander"], **bystander(planted))
         bench.plant(
             planted["talker"],
@@ -85,7 +85,7 @@ def _is_answered(evidence: Evidence) -> bool:
 def bystander(planted: Mapping[str, Any]) -> dict[str, dict[str, str]]:
     """The topics of a third node by role: topics of its own, and each side's beside the node in question.
 
-    In one participant a topic has one type, so where the two sides share the name it is on the listener's only.
+    In one participant a topic has one type, so if the two sides share the name it is on the listener's only.
     """
     published, subscribed = planted["topic_published"], planted["topic_subscribed"]
     talks = {published: planted["type_published"]} if published != subscribed else {}
@@ -157,7 +157,7 @@ def mismatch(
 
 
 def answer(part: Part) -> Mapping[str, Any] | None:
-    """The last dictionary that the subject returned or printed; None where there is none."""
+    """Return the last dictionary that the subject returned or printed; None if there is none."""
     said = part.said()
     text = "\n".join(said)
     # Printed by pprint or with an indent, it stands in several lines.
@@ -293,7 +293,7 @@ def gave_up(seen: Evidence, _: Evidence) -> Advice | None:
 
 @mismatched.mistake("no_answer")
 def no_answer(seen: Evidence, _: Evidence) -> Advice | None:
-    """Something came back, and it is no dictionary with the four keys."""
+    """The subject returned something that is not a dictionary with the four keys."""
     for part, given in _wrong(seen):
         if part.ending is not None and (given is None or not set(KEYS) <= set(given)):
             asked = f"Return a dictionary with the keys {', '.join(KEYS)} (a program prints it)."

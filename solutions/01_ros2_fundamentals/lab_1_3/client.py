@@ -28,7 +28,7 @@ def runs(random: Random) -> tuple[Run, ...]:
         Run(LATE, everyday(random), (-hidden(random),)),
         # 0 is an answer like any other, and neither of the numbers looks like it.
         Run(BIASED, negative(random), (0,)),
-        # Held back is another answer: who does not wait for it must not look like who takes 0 for none.
+        # Another answer is held back: a client that does not wait for it must differ from one that takes 0 for none.
         Run(EXTREME, extreme(random), held=1),
     )
 
@@ -87,7 +87,7 @@ client.knows(
 
 
 def no_call(seen: Client, _: Client) -> bool:
-    """It ends by itself, with a client and without a call."""
+    """The client ends by itself, with a client but without a call."""
     return seen.had_client and any(part.ending and not requests(part) for part in seen.served)
 
 

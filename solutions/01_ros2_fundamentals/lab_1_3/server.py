@@ -59,7 +59,7 @@ def small(random: Random) -> list[Fields]:
 
 
 def objection(request: Fields, answer: Fields | None) -> str:
-    """The fault of an answer, in words; empty where it is right."""
+    """Return the fault of an answer, in words; empty if it is right."""
     a, b = request["a"], request["b"]
     if answer is None:
         return f"no answer to {a} + {b}"
@@ -67,7 +67,7 @@ def objection(request: Fields, answer: Fields | None) -> str:
 
 
 def silence(request: Fields, answer: Fields | None) -> str:
-    """The objection to a call without an answer; empty where one came, right or wrong."""
+    """Return the objection to a missing answer; empty if one came, right or wrong."""
     return "" if answer is not None else objection(request, answer)
 
 
@@ -113,7 +113,7 @@ def wrong_sum(seen: Server, _: Server) -> Advice | None:
     """An answer is not the sum."""
     wrong = [text for text in seen.objections(seen.asked, objection) if " was answered" in text]
     if seen.part.traceback:
-        # rclpy answers with -1 what it cannot put into the message, and dies of it: that is no sum of the subject's.
+        # If a value does not fit into the message, rclpy answers -1 and ends: that is not the subject's own sum.
         wrong = [text for text in wrong if not text.endswith(" was answered with -1")]
     if not wrong:
         return None

@@ -38,10 +38,11 @@ HURRIED, HURRIED_ALONE = 0.25, 0.5
 """The share of such short intervals from which on a server is taken not to pause: of all, and of the few of those goals
 that do not compete with another one where none takes time."""
 LONG_SILENCE, BURST = 1.0, 0.1
-"""Seconds of work without feedback, and the share of them in which all feedback comes where it is sent at the end."""
+"""Seconds of work without feedback, and the share of them in which all feedback comes if it is sent at the end."""
 ROUNDS_LEFT = 2
-"""Numbers that a server may still compute when it has agreed to cancel: of the round that it is in, and of the next one
-where it looked already."""
+"""Numbers that a server may still compute after it agreed to cancel: in its present round, and in the next one if it
+checked too early.
+"""
 FIRST_TOO_LARGE = 47
 """The first order whose last number does not fit into an int32."""
 ALONE = 0
@@ -56,7 +57,7 @@ LONG_BEGINNING = 3
 PACED = (ALONE, BESIDE, AGAIN)
 """The goals that take time and are to succeed."""
 PACED_ALONE = (ALONE, AGAIN)
-"""Those of them that have the server to themselves."""
+"""The goals among them that have the server to themselves."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ class FibonacciGoal(Goal):
 
     @property
     def order(self) -> int | None:
-        """The order that was asked for; None where the goal was not sent."""
+        """The requested order; None if the goal was not sent."""
         return None if self.request is None else int(self.request["order"])
 
     @property
@@ -105,9 +106,9 @@ def all_goals(part: Part) -> list[FibonacciGoal]:
 
 
 def ended_by_a_younger(part: Part) -> FibonacciGoal | None:
-    """The goal that the server ended when a younger one came, before anybody asked to cancel it; None for none.
+    """Return the goal that the server ended for a newer one, before a cancel was requested; None if there is none.
 
-    A server may hold that this is right, as the official example of a single goal does.
+    A server may do so, like the official example of a single goal.
     """
     older, younger = goal(part, LONG), goal(part, BESIDE)
     if older.status not in (ABORTED, CANCELED) or not younger.accepted:
@@ -119,7 +120,7 @@ def ended_by_a_younger(part: Part) -> FibonacciGoal | None:
 
 
 def to_be_canceled(evidence: Evidence) -> FibonacciGoal:
-    """The goal that is canceled: beside a younger one, or alone where the server ended it for that one."""
+    """Return the goal that is canceled: next to a newer one, or alone if the server ended it for that one."""
     part = evidence.part(GOALS)
     return goal(part, LONG_ALONE if ended_by_a_younger(part) else LONG)
 
@@ -133,7 +134,7 @@ def canceled_later(part: Part) -> list[FibonacciGoal]:
 def takes_no_time(part: Part) -> bool:
     """True if the server counts without any pause between two numbers.
 
-    Such a goal is over before anybody can cancel it, except where the machine happens to be so busy that the request
+    Such a goal is over before it can be canceled, except if the machine happens to be so busy that the request
     gets in between. A busy machine makes intervals longer and never shorter, and no server that pauses between two
     numbers can send two of them at once. So it is the short intervals that tell, however few they are; a pause that
     makes up for an earlier one (a rate's) is allowed for.
@@ -176,7 +177,7 @@ def goals_alone(evidence: Evidence) -> list[FibonacciGoal]:
 
 
 def paced_goals_alone(evidence: Evidence) -> list[FibonacciGoal]:
-    """Those of them that take time."""
+    """Return the goals among them that take time."""
     return _sent(evidence, PACED_ALONE)
 
 
@@ -204,7 +205,7 @@ def expected_sequence(evidence: Evidence, order: int) -> list[int]:
 
 
 def objection(evidence: Evidence, seen: FibonacciGoal) -> str:
-    """The fault in the end of a good goal, in words; empty where it is right."""
+    """Return the fault in the end of a good goal, in words; empty if it is right."""
     order = int(seen.order or 0)
     wanted = [expected_sequence(evidence, order)]
     where = f"order {seen.order}: "
@@ -222,14 +223,14 @@ def objection(evidence: Evidence, seen: FibonacciGoal) -> str:
 
 
 def feedback_objection(evidence: Evidence, seen: FibonacciGoal) -> str:
-    """The fault in the feedback of a good goal, in words; empty where it grows by one number each time."""
+    """Return the fault in the feedback of a good goal, in words; empty if it grows by one number each time."""
     wanted = expected_sequence(evidence, int(seen.order or 0))
     where = f"order {seen.order}: "
     if not seen.partials:
         return f"{where}no feedback"
     if text := feedback_slip(evidence, seen):
         return text
-    # It may begin before or with the first new number, and need not tell the last one, which the result does.
+    # Feedback may begin before or with the first new number, and need not contain the last one, which the result has.
     whole = len(seen.partials[0]) <= LONG_BEGINNING and len(seen.partials[-1]) >= len(wanted) - 1
     if whole and not seen.was_computed:
         return f"{where}the goal did not come to its end"

@@ -99,7 +99,7 @@ def _all_right(goals: Sequence[FibonacciGoal], wrong: Sequence[str], expected: s
 
 
 def _told(evidence: Evidence, seen: FibonacciGoal, fault: str) -> str:
-    """A fault, with a word on the goal where the same order was right before."""
+    """Return a fault, with a remark on the goal if the same order was right before."""
     return f"at the end, once more {fault}" if seen == goal(evidence.part(GOALS), AGAIN) else fault
 
 

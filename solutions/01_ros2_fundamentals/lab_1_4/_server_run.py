@@ -120,7 +120,7 @@ def send_good_goals(bench: Bench, caller: ActionCaller) -> bool:
     # Results may overtake feedback on their way to a busy judge.
     bench.wait_until(lambda e: all(_tells_all(goal(e.main, n)) for n in PACED), GOAL_LIMIT, quiet=AFTERMATH)
     if not honoured:
-        # Where two threads work on two goals, nobody reads the cancel before one of them is done.
+        # If two threads work on two goals, the cancel request is read only when one of them is done.
         _await_cancel(bench, LONG)
     return _cancel_more(bench, caller)
 
@@ -155,7 +155,7 @@ def _cancel_alone(bench: Bench, caller: ActionCaller, *, after: int, then: int |
     """Cancel a goal that has the server to itself; whether it was canceled.
 
     Args:
-        bench: Where it happens.
+        bench: The bench of the scenario.
         caller: The judge's client.
         after: Feedback messages after which the cancel is asked for.
         then: The order of a goal that is sent as soon as the server has agreed, before it looks at the request.
@@ -184,7 +184,7 @@ def one_by_one(bench: Bench, caller: ActionCaller, *orders: int) -> bool:
 
 
 def _await_feedback(bench: Bench, number: int, messages: int) -> None:
-    """Wait until a goal has so much feedback, or there is no use in waiting for it."""
+    """Wait until a goal has this much feedback, or waiting is useless."""
 
     def has_told(evidence: Evidence) -> bool:
         seen, others = goal(evidence.main, number), [goal(evidence.main, other) for other in PACED]

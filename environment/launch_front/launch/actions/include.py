@@ -74,7 +74,7 @@ class IncludeLaunchDescription(Action):
 def _required_arguments(description: LaunchDescription) -> list[DeclareLaunchArgument]:
     """Return the arguments without a default that are surely declared by the description itself.
 
-    What it includes, at whatever depth, asks for its own arguments when it is included.
+    An included file, at any depth, checks its own arguments when it is included.
     """
     return [
         argument

@@ -170,7 +170,7 @@ class ExecuteProcess(ProcessAction):
         self._process, self._returned = process, None
 
     def process_ended(self, process: RunningProcess, context: LaunchContext, code: int) -> None:
-        """Do what was to be done at its end, and start it anew if that was wished for."""
+        """Run what was requested for its end, and start it again if that was requested."""
         self._returned = code
         if self._on_exit is not None:
             # Before other handlers, and once for each run of the process.

@@ -45,14 +45,14 @@ class RunningProcessEvent(Event):
 
 
 class ProcessStarted(RunningProcessEvent):
-    """It runs."""
+    """A process has started."""
 
     name = "launch.events.process.ProcessStarted"
 
 
 @dataclass(frozen=True)
 class ProcessExited(RunningProcessEvent):
-    """It has ended. A `returncode` below 0 is the negative number of the signal that ended it."""
+    """A process has ended. A `returncode` below 0 is the negative number of the signal that ended it."""
 
     returncode: int
 
@@ -61,7 +61,7 @@ class ProcessExited(RunningProcessEvent):
 
 @dataclass(frozen=True)
 class ProcessIO(RunningProcessEvent):
-    """It has written something: `text`, in bytes."""
+    """A process has written something: `text`, in bytes."""
 
     text: bytes
     from_stdin: bool = False
@@ -72,13 +72,13 @@ class ProcessIO(RunningProcessEvent):
 
 
 class ProcessStdout(ProcessIO):
-    """It has written to stdout."""
+    """A process has written to stdout."""
 
     name = "launch.events.process.ProcessStdout"
 
 
 class ProcessStderr(ProcessIO):
-    """It has written to stderr."""
+    """A process has written to stderr."""
 
     name = "launch.events.process.ProcessStderr"
 

@@ -18,7 +18,7 @@ class FrontendError(Exception):
 class Entity:
     """A tag, its attributes and what is inside.
 
-    What was asked for is noted, so that a misspelt attribute is not silently ignored.
+    Each access is recorded, so that a misspelled attribute is not silently ignored.
 
     Attributes:
         tag: its name, as `node`.
@@ -72,7 +72,7 @@ class Entity:
         return self.children
 
     def check_all_read(self) -> None:
-        """Make sure that nothing was written that nobody asked for.
+        """Check that every attribute and tag was used.
 
         Raises:
             FrontendError: there is such an attribute or tag.
@@ -106,7 +106,7 @@ def from_yaml(text: str) -> Entity:
     """Read YAML.
 
     Raises:
-        FrontendError: it is no YAML, or not of the form of a launch file.
+        FrontendError: the text is not YAML, or does not have the format of a launch file.
     """
     import yaml
 

@@ -53,8 +53,8 @@ class Node(ExecuteProcess):
         """Return the command line with all ROS arguments.
 
         Raises:
-            ValueError: the name or the namespace is none.
-            SubstitutionFailure: there is no such package or program.
+            ValueError: the name or the namespace is not valid.
+            SubstitutionFailure: the package or the program does not exist.
         """
         ros: list[str] = []
         name = None if self._node_name is None else perform(context, self._node_name)

@@ -13,7 +13,7 @@ from ..parameter_descriptions import evaluate_dictionary
 if TYPE_CHECKING:
     from launch.launch_context import LaunchContext
 
-# Where the namespace of the present scope is kept, as in the real launch: include files can look at it.
+# The variable with the namespace of the present scope, as in the real launch: included files can read it.
 NAMESPACE = "ros_namespace"
 
 
@@ -28,7 +28,7 @@ class PushROSNamespace(Action):
         """Set it, inside the namespace that holds already.
 
         Raises:
-            ValueError: it is no namespace.
+            ValueError: the text is not a namespace.
         """
         outer = context.launch_configurations.get(NAMESPACE)
         namespace = inner_namespace(outer, perform(context, self._namespace)) or "/"
