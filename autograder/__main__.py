@@ -49,7 +49,7 @@ def why_missing(error: ImportError) -> str:
     if top == "autograder" and not Path(__file__).with_name("grading").is_dir():
         return "this is the students' part of the course: that command is not in it"
     if top == "rclpy":
-        return f"there is no ROS 2 here: source a Jazzy, or type: pip install '{PACKAGE}[ros]'"
+        return f"ROS 2 was not found: source a Jazzy, or type: pip install '{PACKAGE}[ros]'"
     with contextlib.suppress(metadata.PackageNotFoundError):
         for line in metadata.requires(PACKAGE) or ():
             name, _, marker = line.partition(";")

@@ -83,16 +83,16 @@ def root() -> Path:
     It is the folder in the environment variable ``AUTOGRADER_COURSE``, or else the clone that contains this package.
 
     Raises:
-        NoCourse: There is no course.
+        NoCourse: No course was found.
     """
     named = os.environ.get(VARIABLE)
     folder = Path(named or Path(__file__).resolve().parents[1]).absolute()
     if _written(folder).is_dir():
         return folder
     if named:
-        raise NoCourse(f"{VARIABLE} is {folder}, and there is no folder {SOLUTIONS} in it")
+        raise NoCourse(f"{VARIABLE} is {folder}, which contains no folder {SOLUTIONS}")
     raise NoCourse(
-        f"there is no course here: go to a folder with {SOLUTIONS}/ in it, or set {VARIABLE} to such a folder"
+        f"no course was found here: go to a folder with {SOLUTIONS}/ in it, or set {VARIABLE} to such a folder"
     )
 
 

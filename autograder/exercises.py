@@ -81,7 +81,7 @@ def path(exercise_id: str) -> Path:
     """
     files = _files()
     if not files:
-        raise UnknownExercise(f"there is no exercise in {course.root() / course.SOLUTIONS}")
+        raise UnknownExercise(f"no exercise was found in {course.root() / course.SOLUTIONS}")
     if exercise_id not in files:
         near = difflib.get_close_matches(exercise_id, files, n=3, cutoff=0.4) or list(files)
         raise UnknownExercise(f"no exercise is called {exercise_id!r}; did you mean {' or '.join(near)}?")
@@ -92,7 +92,7 @@ def reference_path(exercise_id: str) -> Path:
     """Return the path of an exercise's reference output.
 
     Raises:
-        UnknownExercise: There is no such exercise.
+        UnknownExercise: The exercise does not exist.
     """
     return path(exercise_id).with_suffix(REFERENCE)
 

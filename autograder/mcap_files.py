@@ -95,7 +95,7 @@ def _text(type_name: str) -> str:
         package, kind, name = type_name.split("/")
         return (Path(get_package_share_directory(package)) / kind / f"{name}.msg").read_text(encoding="utf-8")
     except (ValueError, PackageNotFoundError, OSError) as error:
-        raise LookupError(f"there is no definition of {type_name} here") from error
+        raise LookupError(f"no definition of {type_name} was found here") from error
 
 
 def _types_in(text: str, package: str) -> Iterator[str]:

@@ -206,13 +206,13 @@ def keep(parent: int, command: list[str]) -> int:
 
 
 def _start(command: list[str]) -> int:
-    """Start the command with nothing open but its standard streams; its process."""
+    """Start the command with nothing open but its standard streams. Return its process id."""
     keeper = os.getpid()
     child = os.fork()
     if child == 0:
         try:
             die_with_parent(keeper)
-            for number in (signal.SIGPIPE, signal.SIGXFSZ):  # which Python ignores, and programs expect
+            for number in (signal.SIGPIPE, signal.SIGXFSZ):  # Python ignores these, but programs expect them
                 signal.signal(number, signal.SIG_DFL)
             os.closerange(3, os.sysconf("SC_OPEN_MAX"))
             os.execvp(command[0], command)
@@ -224,7 +224,10 @@ def _start(command: list[str]) -> int:
 
 
 def reaped(wanted: int) -> int | None:
-    """Reap all children that have ended; the exit code of one of them, None where it lives or was reaped before."""
+    """Reap all children that have ended.
+
+    Return the exit code of the wanted one, None if it lives or was reaped before.
+    """
     code: int | None = None
     with contextlib.suppress(ChildProcessError):
         while (ended := os.waitpid(-1, os.WNOHANG))[0]:
@@ -234,9 +237,9 @@ def reaped(wanted: int) -> int | None:
 
 
 def end_processes_in(folder: Path) -> None:
-    """Kill what was started for a submission with its home in ``folder``, where its worker no longer can.
+    """Kill what was started for a submission with its home in ``folder``, if its worker no longer can.
 
-    Found by command line and by environment, which both are inherited unless somebody takes care to hide.
+    Processes are found by command line and environment, which children inherit unless a program hides them on purpose.
 
     Args:
         folder: A folder that no other process has in its command line or as its home.
@@ -246,12 +249,12 @@ def end_processes_in(folder: Path) -> None:
 
 
 def _signal(process: Known, number: int, within: float = 0.0) -> bool:
-    """Send a signal to a process that is still there, and wait so many seconds at most until it has ended.
+    """Send a signal to a process if it still exists, and wait at most ``within`` seconds for its end.
 
-    One handle is open at a time: a family may have more members than we may have open files.
+    Only one handle is open at a time: a family may have more members than this process may have open files.
 
     Returns:
-        False if the process may not get a signal from us.
+        False if this process may not send it a signal.
     """
     pid, began = process
     with contextlib.suppress(ProcessLookupError):
@@ -270,7 +273,7 @@ def _signal(process: Known, number: int, within: float = 0.0) -> bool:
 
 
 def _lives(pid: int) -> bool:
-    """True if a process is there, and does not only wait for its parent to ask how it ended."""
+    """True if a process exists and is not a zombie."""
     return _fields(pid)[:1] not in ([], ["Z"], ["X"])
 
 
@@ -288,7 +291,7 @@ def _processes() -> list[int]:
 
 
 def _fields(pid: int) -> list[str]:
-    """The words of a process's ``stat`` from its state on; none where it is gone."""
+    """Return the words of a process's ``stat`` from its state on; empty if it is gone."""
     try:
         # After the name of the program, which may hold anything (proc(5)).
         return Path(f"/proc/{pid}/stat").read_text(errors="replace").rpartition(")")[2].split()
@@ -297,7 +300,7 @@ def _fields(pid: int) -> list[str]:
 
 
 def _mentions(pid: int, place: bytes) -> bool:
-    """True if a process has a folder in its command line, or its home there."""
+    """True if a process has a folder in its command line, or has its home there."""
     with contextlib.suppress(OSError):
         if place in Path(f"/proc/{pid}/cmdline").read_bytes():
             return True
@@ -307,7 +310,7 @@ def _mentions(pid: int, place: bytes) -> bool:
 
 
 def _reap(children: Iterable[int]) -> bool:
-    """Reap those of our children that have ended; whether there were any."""
+    """Reap those of our children that have ended. Return True if there were any."""
     reaped = False
     for child in children:
         with contextlib.suppress(ChildProcessError):
@@ -322,7 +325,7 @@ def _prctl(option: int, value: int) -> bool:
 
 
 def _end_as(code: int) -> None:
-    """End with an exit code, or by the signal that a negative one stands for, without a core file of one's own."""
+    """End with an exit code, or by the signal of a negative code, without writing a core file."""
     if code < 0:
         _prctl(_PR_SET_DUMPABLE, 0)
         signal.signal(-code, signal.SIG_DFL)

@@ -1,4 +1,4 @@
-"""Regular files: others' opened, who may have put anything in their place, and own ones written in one step."""
+"""Safe access to regular files: reading files that may have been replaced by anything, and writing in one step."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ _UNFINISHED = re2.compile(r"\..+\.\d+\.new")
 
 
 def opened(path: str | Path, folder: int | None = None) -> IO[bytes]:
-    """A regular file, open for reading: no link is followed to it, and no pipe or device is waited for.
+    """Open a regular file for reading, without following a link to it or waiting for a pipe or device.
 
     Args:
-        path: Where it is. Links on the way to it are followed: name a file of a folder that others can write to by that
-            folder's descriptor, as os.fwalk gives them.
-        folder: A descriptor of the folder that the path is relative to.
+        path: The path. Links on the way to the file are followed: if other users can write to its folder, pass the
+            folder's descriptor, as from os.fwalk.
+        folder: A descriptor of the folder to which the path is relative.
 
     Raises:
-        OSError: It is something else, or cannot be opened.
+        OSError: The path is something else, or cannot be opened.
     """
     flags = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
     descriptor = os.open(path, flags, dir_fd=folder)
@@ -38,19 +38,19 @@ def opened(path: str | Path, folder: int | None = None) -> IO[bytes]:
 
 
 def name_as_text(name: str) -> str:
-    """The name of a file as a text that can be written and searched: on a disk it may be bytes that no text has."""
+    """Return a file name as text that can be encoded and searched: on a disk it may contain any bytes."""
     return name.encode("utf-8", "replace").decode()
 
 
 def write_whole(path: Path, data: bytes) -> None:
-    """Write a file so that it is never there in part, and still there after a power cut when this returns.
+    """Write a file so that it is never incomplete, and survives a power cut once this returns.
 
     Raises:
-        OSError: It could not be written; then what was there before still is.
+        OSError: The file could not be written; then its earlier content is unchanged.
     """
     changed = [path.parent, *(one.parent for one in path.parents if not one.exists())]
     path.parent.mkdir(parents=True, exist_ok=True)
-    # In a folder like /tmp another user could put a link at a name that can be guessed.
+    # In a folder like /tmp another user could place a link at a name that can be guessed.
     beside = path.with_name(f".{path.name}.{secrets.randbelow(10**12)}.new")
     try:
         with beside.open("xb") as file:
@@ -67,10 +67,10 @@ def write_whole(path: Path, data: bytes) -> None:
 
 
 def keep_whole(beside: Path, path: Path) -> None:
-    """Give a file that was written beside ``path`` that name, once the disk has all of it.
+    """Rename a file that was written next to ``path``, once the disk has all of it.
 
     Raises:
-        OSError: It could not be written.
+        OSError: The file could not be written.
     """
     with beside.open("rb+") as file:
         os.fsync(file.fileno())
@@ -79,8 +79,8 @@ def keep_whole(beside: Path, path: Path) -> None:
 
 
 def files_below(folder: Path) -> Iterator[Path]:
-    """All files and links below a folder, as far as they can be looked at, however many folders are in each other."""
-    folders = [folder]  # os.walk and Path.rglob do not come back from a thousand
+    """Yield all accessible files and links below a folder, at any depth."""
+    folders = [folder]  # os.walk and Path.rglob fail at a depth of a thousand
     while folders:
         with contextlib.suppress(OSError), os.scandir(folders.pop()) as entries:
             for entry in entries:
@@ -91,7 +91,7 @@ def files_below(folder: Path) -> Iterator[Path]:
 
 
 def remove_unfinished(folder: Path) -> None:
-    """Remove what killed processes had begun to write below a folder, in which nobody else is at work."""
+    """Remove files that killed processes left unfinished below a folder; no other process may be using it."""
     for file in files_below(folder):
         if _UNFINISHED.fullmatch(name_as_text(file.name)):
             with contextlib.suppress(OSError):
@@ -99,7 +99,7 @@ def remove_unfinished(folder: Path) -> None:
 
 
 def _keep_names(folder: Path) -> None:
-    """Have the disk know the names in a folder; some file systems of a network cannot be told to."""
+    """Make the disk store the names in a folder; some network file systems cannot do that."""
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         with contextlib.suppress(OSError):

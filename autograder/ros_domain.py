@@ -1,9 +1,8 @@
-"""Picking a ROS domain that nobody else on this host uses.
+"""Picks a ROS domain that no other process on this host uses.
 
-Two students on one host who both stay on domain 0 hear each other's ``/chatter``. A domain is free when none
-of its UDP ports is taken, and it stays ours because we keep one of its ports, which DDS itself never uses,
-bound for as long as the process lives: the operating system then refuses it to everybody else, and gives it
-back by itself when the process ends in whatever way.
+If two students on one host both stay on domain 0, they hear each other's ``/chatter``. A domain is free when none of
+its UDP ports is taken. It stays ours because this process keeps one of its ports bound, one that DDS itself never
+uses: the operating system refuses it to other processes, and frees it when this process ends, however it ends.
 
 The port numbers are those of the DDS Interoperability Wire Protocol (RTPS), section 9.6.1.1, with its default
 parameters: port base 7400, domain gain 250, participant gain 2.
@@ -22,20 +21,20 @@ if TYPE_CHECKING:
 
 DOMAIN_VARIABLE = "ROS_DOMAIN_ID"
 FREE_TO_PICK = range(1, 102)
-"""Domain 0 is everybody's default; from 102 on the ports run into Linux's range for outgoing connections."""
+"""Domain 0 is every program's default; from 102 on the ports overlap with Linux's range for outgoing connections."""
 HIGHEST_DOMAIN = 232
 """The last domain whose ports are valid UDP port numbers."""
 
 _PORT_BASE = 7400
 _DOMAIN_GAIN = 250
 _CLAIM_OFFSET = 9
-"""RTPS uses the offsets 0, 1 and those from 10 on; the ones between belong to nobody."""
+"""RTPS uses the offsets 0, 1 and those from 10 on; the ones in between are unused."""
 GROUP_OFFSET = 0
 """Multicast discovery."""
 PARTICIPANT_OFFSET = 10
-"""Discovery of a domain's first participant; that of the next one is two further."""
+"""Discovery of a domain's first participant; that of the next one is two higher."""
 _PROBED_OFFSETS = (GROUP_OFFSET, *range(PARTICIPANT_OFFSET, PARTICIPANT_OFFSET + 16, 2))
-"""Multicast discovery, and the first eight participants: a new participant takes the lowest free place."""
+"""Multicast discovery, and the first eight participants: a new participant takes the lowest free index."""
 
 
 class NoFreeDomainError(RuntimeError):
@@ -62,7 +61,7 @@ def claim_free_domain(candidates: Iterable[int] | None = None) -> DomainClaim:
     """Pick a ROS domain that no other process uses and hold it.
 
     Args:
-        candidates: Domains to try, in this order; 1 to 101 in random order where nothing is given.
+        candidates: Domains to try, in this order; None for 1 to 101 in random order.
 
     Raises:
         NoFreeDomainError: All of them are taken.
@@ -83,10 +82,10 @@ def claim_free_domain(candidates: Iterable[int] | None = None) -> DomainClaim:
 
 
 def domain_from_environment() -> int | None:
-    """The domain that ``ROS_DOMAIN_ID`` names, or None where it is not set.
+    """Return the domain in ``ROS_DOMAIN_ID``, or None if it is not set.
 
     Raises:
-        ValueError: It is set to something that is no domain.
+        ValueError: Its value is not a domain.
     """
     text = os.environ.get(DOMAIN_VARIABLE, "").strip()
     if not text:
@@ -100,7 +99,7 @@ def domain_from_environment() -> int | None:
 
 
 def port(domain: int, offset: int) -> int:
-    """The UDP port of a domain that is ``offset`` ports behind its first."""
+    """Return the UDP port of a domain that is ``offset`` above its first port."""
     return _PORT_BASE + _DOMAIN_GAIN * domain + offset
 
 
@@ -114,7 +113,7 @@ def _looks_used(domain: int) -> bool:
 
 
 def _bind(port: int) -> socket.socket | None:
-    """A UDP socket on the loopback address, or None where the port is taken."""
+    """Return a UDP socket on the loopback address, or None if the port is taken."""
     udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         udp.bind(("127.0.0.1", port))

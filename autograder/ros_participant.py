@@ -1,9 +1,9 @@
-"""Participants that have just begun: what they call others, and how one hears the answers to its first announcement.
+"""New participants: the names of their nodes, and a way not to miss the answers to their first announcement.
 
-Fast DDS 2.14 announces a new participant before its receivers are registered. Whoever is there already answers within
-0.1 ms, once; if a receiving thread reads that answer too early it is lost, and the next one comes with the periodic
-announcement, up to 3 s later: one new participant in three was met that late. So the threads of a new participant must
-not run before the one that makes them is done.
+Fast DDS 2.14 announces a new participant before its receivers are registered. Existing participants answer within 0.1
+ms, once. If a receiving thread reads that answer too early it is lost, and the next one comes with the periodic
+announcement, up to 3 s later: one new participant in three was discovered that late. So the threads of a new
+participant must not run before the thread that makes them has finished.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ UNNAMED = "_NODE_"
 
 @contextlib.contextmanager
 def receivers_wait() -> Iterator[None]:
-    """Hold back the threads that are started inside until the block has ended.
+    """Hold back the threads that are started in the block until the block has ended.
 
-    They are kept on one processor with their maker, under a policy of the scheduler that interrupts no running thread
-    (sched(7), SCHED_BATCH). Does nothing where the operating system has no such policy.
+    They are kept on one processor with their creator, under a scheduling policy that interrupts no running thread
+    (sched(7), SCHED_BATCH). Does nothing if the operating system has no such policy.
     """
     if not hasattr(os, "SCHED_BATCH"):
         yield

@@ -1,7 +1,7 @@
-"""Standard output: kept free for results while Fast DDS prints its warnings there, and read however long its lines are.
+"""Standard output: kept free for results although Fast DDS prints warnings there, and read with a limit on lines.
 
-Fast DDS writes its log to standard output (StdoutConsumer in fastdds/dds/log). One such line between two lines of JSON
-makes them unreadable, and it comes only when something rare happens.
+Fast DDS writes its log to standard output (StdoutConsumer in fastdds/dds/log). One such line between two lines of
+JSON makes them unreadable, and it comes only in rare cases.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ STDERR = 2
 
 
 def private_stdout() -> BinaryIO:
-    """Standard output as a stream for results. From now on, all else that is printed goes to standard error."""
+    """Return standard output as a stream for results. From now on, all other output goes to standard error."""
     sys.stdout.flush()
     results = os.fdopen(os.dup(STDOUT), "wb")
     os.dup2(STDERR, STDOUT)
@@ -28,7 +28,7 @@ def private_stdout() -> BinaryIO:
 
 @contextmanager
 def stray_lines_on_stderr() -> Iterator[None]:
-    """Send to standard error what libraries and child processes print to standard output in the meantime."""
+    """Redirect what libraries and child processes print to standard output in the block to standard error."""
     sys.stdout.flush()
     kept = os.dup(STDOUT)
     os.dup2(STDERR, STDOUT)
@@ -40,20 +40,20 @@ def stray_lines_on_stderr() -> Iterator[None]:
 
 
 class Chunks(Protocol):
-    """A stream that gives what there is, without waiting for more."""
+    """A stream that returns available data without waiting for more."""
 
     def read1(self, size: int, /) -> bytes:
-        """At most so many bytes; none at the end of the stream."""
+        """Return at most ``size`` bytes; b"" at the end of the stream."""
 
 
 _CHUNK = 65_536
 
 
 def split_lines(text: AnyStr) -> list[AnyStr]:
-    """The lines of a text without their ends; the last one has none yet.
+    """Return the lines of a text without their ends; the last one is not complete yet.
 
-    A carriage return ends a line, too: a program may write one line of the terminal over and over. At the end of the
-    text it may be the first half of an end.
+    A carriage return ends a line, too: a program may write one line of the terminal again and again. At the end of
+    the text it may be the first half of a line end.
     """
     end: Any
     back: Any
@@ -65,18 +65,18 @@ def split_lines(text: AnyStr) -> list[AnyStr]:
 
 
 def short_lines(stream: Chunks, limit: int) -> Iterator[bytes]:
-    """The lines of a stream as they come, each with its end; of a longer one only the beginning.
+    """Yield the lines of a stream as they come, each with its end; of a longer one only the beginning.
 
     A carriage return ends a line, as in :func:`split_lines`.
 
     Args:
-        stream: What is read to its end.
-        limit: Bytes of a line that are given.
+        stream: The stream, read to its end.
+        limit: The most bytes of a line.
     """
     rest, begins = b"", True
     while chunk := stream.read1(_CHUNK):
         lines = (rest + chunk).splitlines(keepends=True)
-        # A carriage return at its end may be the first half of a line's end.
+        # A carriage return at the end may be the first half of a line end.
         rest = b"" if lines[-1].endswith(b"\n") else lines.pop()
         for line in lines:
             if begins:
@@ -85,7 +85,7 @@ def short_lines(stream: Chunks, limit: int) -> Iterator[bytes]:
         if len(rest) >= limit:
             if begins:
                 yield rest[:limit]
-            # The last byte tells, with the next one, whether the line has ended.
+            # Together with the next byte, the last byte shows whether the line has ended.
             rest, begins = rest[-1:], False
     if rest and begins:
         yield rest

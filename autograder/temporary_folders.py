@@ -1,7 +1,7 @@
 """Temporary folders and files: the one way to make them.
 
-The linter forbids ``tempfile`` everywhere else. On a machine with several users anyone may put anything at a path of
-``/tmp`` that can be guessed. So each name is drawn, and only the user who makes a folder can look into it.
+The linter forbids ``tempfile`` everywhere else. On a machine with several users, any of them may put something at a
+path in ``/tmp`` that can be guessed. So each name is random, and only the user who makes a folder can look into it.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def fresh_folder(prefix: str, parent: Path | None = None) -> Path:
         parent: A folder of this user; the folder of temporary files if None.
 
     Raises:
-        UnsafeTemporaryFolder: There is no safe place, or the folder does not belong to this user alone.
+        UnsafeTemporaryFolder: No place is safe, or the folder does not belong to this user alone.
     """
     folder = Path(tempfile.mkdtemp(prefix=prefix, dir=parent or _base()))
     if parent is not None:
@@ -59,7 +59,7 @@ def scratch_folder(parent: Path, prefix: str = "n") -> Iterator[Path]:
     """Make a folder in ``parent`` that only we can read, and remove it at the end.
 
     Args:
-        parent: Made where it is not there. Keep it short: Unix sockets will have their names in it.
+        parent: A folder, made if it does not exist. Keep its path short: Unix sockets will have their names in it.
         prefix: The beginning of the name.
     """
     parent.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -71,7 +71,7 @@ def scratch_folder(parent: Path, prefix: str = "n") -> Iterator[Path]:
 
 
 def write_files(files: Mapping[str, bytes], folder: Path) -> Path:
-    """Write files by their relative paths into a folder, which is made; returns the folder."""
+    """Write files by their relative paths into a folder, which is made. Return the folder."""
     folder.mkdir()
     for name, data in files.items():
         path = folder / name
@@ -81,12 +81,12 @@ def write_files(files: Mapping[str, bytes], folder: Path) -> Path:
 
 
 def remove_tree(folder: Path) -> None:
-    """Remove a folder although somebody took away the right to."""
+    """Remove a folder even if the rights to do so were removed."""
 
     def make_writable(function: Callable[[str], Any], name: str, _: Any) -> None:
         path = Path(name)
         with contextlib.suppress(OSError):
-            # Only inside the folder: the one that holds it belongs to everybody.
+            # Only inside the folder: its parent is shared.
             for place in (path.parent, path):
                 if place.is_relative_to(folder) and not place.is_symlink():
                     place.chmod(stat.S_IRWXU)
@@ -96,17 +96,17 @@ def remove_tree(folder: Path) -> None:
 
 
 class HeldFolder:
-    """A fresh folder among the temporary files that only we can read; those of killed makers are removed first.
+    """A fresh private folder among the temporary files; those of killed processes are removed first.
 
-    Nobody who is killed can tidy up, whatever moment it is: so the next one who needs such a folder does it. A lock on
-    the folder says whether its maker lives; the system gives it back when a process ends, in whatever way.
+    A killed process cannot clean up, so the next process that needs such a folder does it. A lock on the folder shows
+    whether its creator lives; the system releases it when a process ends, however it ends.
 
     Args:
-        prefix: How the names of all folders of this kind begin. Folders of this user with such names are removed, so
-            no other program may have them.
+        prefix: The beginning of the names of all folders of this kind. Folders of this user with such names are
+            removed, so no other program may use them.
 
     Attributes:
-        path: Where it is.
+        path: The path.
     """
 
     def __init__(self, prefix: str) -> None:
@@ -117,7 +117,7 @@ class HeldFolder:
                 self.path = fresh_folder(prefix)
                 self._lock = os.open(self.path, os.O_RDONLY | os.O_DIRECTORY)
             except FileNotFoundError:
-                _base()  # raises if the folder of temporary files is what does not exist
+                _base()  # raises an error if the folder of temporary files itself does not exist
                 continue
             fcntl.flock(self._lock, fcntl.LOCK_EX)
             if self.path.exists():
@@ -125,7 +125,7 @@ class HeldFolder:
             os.close(self._lock)
 
     def remove(self) -> None:
-        """Remove it with what is in it; may be called twice."""
+        """Remove the folder and its content; may be called twice."""
         if self._lock >= 0:
             remove_tree(self.path)
             os.close(self._lock)
@@ -139,7 +139,7 @@ class HeldFolder:
 
 
 def sweep(prefix: str) -> None:
-    """Remove the folders of a kind whose makers were killed."""
+    """Remove the folders of a kind whose creators were killed."""
     for folder in _base().glob(f"{prefix}*"):
         with contextlib.suppress(OSError), _locked(folder):
             remove_tree(folder)
@@ -149,7 +149,7 @@ def _base() -> Path:
     """Return the folder of temporary files; if other users could replace what is in it, one of this user alone.
 
     Raises:
-        UnsafeTemporaryFolder: There is no such folder.
+        UnsafeTemporaryFolder: No such folder exists.
     """
     usual = Path(tempfile.gettempdir())
     if _is_safe(usual):
@@ -176,12 +176,12 @@ def _locked(folder: Path) -> Iterator[None]:
     """Hold the lock of a folder of ours.
 
     Raises:
-        OSError: Somebody else holds it, or the folder is not ours, or no folder.
+        OSError: Another process holds it, or the folder belongs to another user, or is not a folder.
     """
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
     try:
         if os.fstat(descriptor).st_uid != os.getuid():
-            raise PermissionError(f"{folder} is somebody else's")
+            raise PermissionError(f"{folder} belongs to another user")
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         yield
     finally:

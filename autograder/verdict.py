@@ -1,7 +1,7 @@
 """The verdict on one exercise, as plain data that travels as JSON.
 
-Everything that shows, stores or counts a verdict (cards, the gradebook, ``--json``) reads these types. They
-know nothing of ROS, of notebooks or of how the judge came to its findings.
+Everything that shows, stores or counts a verdict (cards, the gradebook, ``--json``) reads these types. They do not
+depend on ROS, notebooks or the judge.
 """
 
 from __future__ import annotations
@@ -13,25 +13,25 @@ import msgspec
 
 
 class State(StrEnum):
-    """The end of a check: three different things that are never mixed up."""
+    """The result of a check: three different things that are never mixed up."""
 
     PASSED = "passed"
     """Every criterion holds."""
     FAILED = "failed"
     """The subject was checked and at least one criterion does not hold."""
     NOT_CHECKED = "not_checked"
-    """The judge itself had trouble (no ROS, no free domain, a judge that died). Says nothing of the subject."""
+    """The judge itself failed (no ROS, no free domain, a judge that died). This says nothing about the subject."""
 
 
 @dataclass(frozen=True)
 class Criterion:
-    """One thing that was asked for, and whether it was seen.
+    """One requirement, and whether it was met.
 
     Attributes:
         name: A stable key such as ``"rate"``.
-        title: One line for a person, such as ``"Publishes every 0.5 s"``.
-        points: Points that this criterion carries.
-        passed: Whether it holds.
+        title: A one-line name for people, such as ``"Publishes every 0.5 s"``.
+        points: The points for this criterion.
+        passed: True if the criterion holds.
         expected: What the reference solution does.
         seen: What the subject did.
     """
@@ -73,15 +73,15 @@ class Moment:
     """One dot on the card's timeline.
 
     Attributes:
-        t: Seconds since the check began to watch (simulated seconds where ``simulated`` is set).
-        lane: Where it happened: a topic, service or action name, or ``"log"``.
-        direction: ``"from_subject"``, ``"to_subject"`` or ``"note"``; ``"expected"`` for what did not happen: a
-            message of the reference solution's that did not come.
+        t: Seconds since the judge began to watch (simulated seconds if ``simulated`` is set).
+        lane: The topic, service or action name of the event, or ``"log"``.
+        direction: ``"from_subject"``, ``"to_subject"`` or ``"note"``; ``"expected"`` for a message of the reference
+            solution that did not come.
         label: A few words: the text, the numbers, the status.
-        part: Which part of the check, where it has several (``"the service is late"``), else empty.
-        simulated: Whether ``t`` is simulated time.
-        key: Whether the story hangs on it, such as a goal, a cancel request, a result: a picture always names it.
-        stray: Whether it was beside the point, such as on a topic that nobody asked for.
+        part: The part of the check, if it has several (``"the service is late"``), else empty.
+        simulated: True if ``t`` is simulated time.
+        key: True for an important event, such as a goal, a cancel request, a result: a picture always names it.
+        stray: True if the event is irrelevant for the task, such as a message on another topic.
     """
 
     t: float
@@ -100,17 +100,17 @@ class Verdict:
 
     Attributes:
         exercise: The exercise's id, such as ``"lab_1_2.talker"``.
-        title: The exercise's name for a person.
+        title: The exercise's name for people.
         state: Passed, failed or not checked.
         score: Points earned; 0 unless the subject was checked.
         max_score: Points that can be earned.
         criteria: In the order of the exercise; empty when nothing could be checked.
-        diagnosis: The most useful known mistake, or None when all is well.
-        remarks: Things worth a word that cost no points.
-        timeline: What was on the wire, in order, capped in number.
-        seed: What the random inputs were drawn from; the same seed gives the same inputs.
-        seconds: Wall time that the check took.
-        detail: A traceback or the last lines of output, where they help; empty otherwise.
+        diagnosis: The most useful known mistake, or None if all is well.
+        remarks: Remarks that cost no points.
+        timeline: The events on the wire, in order, limited in number.
+        seed: The seed of the random inputs; the same seed gives the same inputs.
+        seconds: The wall time of the check.
+        detail: A traceback or the last lines of output, if they help; else empty.
     """
 
     exercise: str
@@ -133,7 +133,7 @@ class Verdict:
 
 
 def to_json(verdict: Verdict) -> bytes:
-    """The verdict as one line of UTF-8 JSON."""
+    """Return the verdict as one line of UTF-8 JSON."""
     return msgspec.json.encode(verdict)
 
 
@@ -148,7 +148,7 @@ def from_json(data: bytes | str) -> Verdict:
 
 
 def failed(exercise: str, title: str, max_score: float, diagnosis: Diagnosis, detail: str = "") -> Verdict:
-    """The verdict for a check that could not be made because of what was submitted; it earns nothing."""
+    """Return the verdict for a check that is impossible because of the submission itself; it earns nothing."""
     return Verdict(
         exercise=exercise,
         title=title,

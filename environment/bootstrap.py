@@ -65,7 +65,7 @@ def without_network(wheels: Path | None) -> dict[str, str]:
         return {}
     if not wheels.is_dir():
         raise SetupError(
-            f"there is no folder {wheels}. `python3 -m environment.lock --wheels FOLDER` fills one."
+            f"the folder {wheels} does not exist. `python3 -m environment.lock --wheels FOLDER` fills one."
         )
     return {"PIP_NO_INDEX": "1", "PIP_FIND_LINKS": str(wheels.resolve()), "PIP_EXTRA_INDEX_URL": ""}
 
@@ -84,7 +84,7 @@ def _check_place(place: Place) -> None:
     if ":" in str(place.root):
         raise SetupError(f"a search path cannot hold a folder with a colon in its name: {place.root}")
     if place.prefix.exists() and not (place.notes.exists() or (place.prefix / "pyvenv.cfg").exists()):
-        raise SetupError(f"{place.prefix} is there, but is no Python environment. Move it away.")
+        raise SetupError(f"{place.prefix} exists, but is not a Python environment. Move it away.")
     if not may_write(place.root):
         state = "was changed since it was set up" if place.notes.exists() else "is not set up yet"
         raise SetupError(

@@ -297,7 +297,7 @@ def folder_space(name: str, folder: Path, needed: int, remedy: str, not_yours: s
         not_yours: what to do if the folder belongs to another user; the same remedy if empty.
     """
     if not folder.is_dir():
-        return Finding(name, "missing", f"there is no folder {folder}", remedy)
+        return Finding(name, "missing", f"the folder {folder} does not exist", remedy)
     if not may_write(folder):
         return Finding(name, "missing", f"{folder} is not yours to write to", not_yours or remedy)
     free = shutil.disk_usage(folder).free

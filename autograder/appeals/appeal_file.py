@@ -93,7 +93,7 @@ def read(path: Path) -> Appeal:
         content = json.loads(data)
     except (ValueError, RecursionError) as error:
         raise BadAppeal(
-            f"{path} is no appeal file, or only a part of one ({error}). Write it again: "
+            f"{path} is not an appeal file, or is only a part of one ({error}). Write it again: "
             f"{COMMAND} appeal CLASS STUDENT EXERCISE"
         ) from error
     if not isinstance(content, dict) or content.pop("format", None) != FORMAT:

@@ -126,7 +126,9 @@ class Listed:
             there = sorted(file.name for file in self.base.parent.glob("*.*"))
             like = difflib.get_close_matches(self.base.name, there, 1)
             hint = f"did you mean {like[0]}?" if like else f"there are {', '.join(there)}"
-            raise self._bad(f"its base {self.base.name} is no file of {self.base.parent}; {hint}") from None
+            raise self._bad(
+                f"its base {self.base.name} is not a file of {self.base.parent}; {hint}"
+            ) from None
         try:
             changed = edited(text, self.entry.change)
         except CannotEdit as error:
@@ -178,7 +180,7 @@ def _look_at(answer: Listed, *, twice: bool) -> None:
         "an edit needs base and change": any(given) and not all(needed),
         "a workspace needs no base: it changes that of the folder": workspace and bool(entry.base),
         f"it is an edit, and {file} is there as well: remove one of them": any(given) and file.exists(),
-        f"there is no file {file}, and the entry is no edit": not any(given) and not file.exists(),
+        f"the file {file} does not exist, and the entry is not an edit": not any(given) and not file.exists(),
     }
     for what, holds in troubles.items():
         if holds:

@@ -65,7 +65,7 @@ class Answer:
         return self.edit.text() if self.edit else self.file.read_text(encoding="utf-8")
 
     def unpack(self, folder: Path) -> list[str]:
-        """Write the files that are not ready to run where they are stored into a folder.
+        """Write the files that cannot run in their stored form into a folder.
 
         Args:
             folder: An empty folder.
@@ -141,7 +141,7 @@ def named(name: str) -> Answer:
     """Return the answer of that name, such as ``lab_1_2.talker/wrong/topic_name.py``.
 
     Raises:
-        StopIteration: There is no such answer.
+        StopIteration: The answer does not exist.
     """
     return next(answer for answer in answers() if answer.name == name)
 

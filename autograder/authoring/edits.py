@@ -77,7 +77,7 @@ def _sides(block: str) -> tuple[list[str], list[str]]:
         )
     if not old:
         raise CannotEdit(
-            f"nobody knows where {block!r} comes: write the line before or after it, with a space in front"
+            f"the place of {block!r} is unknown: write the line before or after it, with a space in front"
         )
     return old, new
 
@@ -96,7 +96,7 @@ def _place(lines: list[str], old: list[str]) -> int:
         )
     missing = next((line for line in old if line not in lines), None)
     if missing is not None:
-        raise CannotEdit(f"{missing!r} is no line of the base")
+        raise CannotEdit(f"{missing!r} is not a line of the base")
     raise CannotEdit(f"each line of {text!r} is in the base, but they do not follow each other there")
 
 

@@ -74,7 +74,9 @@ def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
     known = [lab_name(master) for master in found]
     for name in only:
         if name not in known:
-            raise NothingToExecuteError(f"there is no notebook {name!r}. There are: {', '.join(known)}.")
+            raise NothingToExecuteError(
+                f"no notebook is named {name!r}. The notebooks are: {', '.join(known)}."
+            )
     planned = []
     for master in found:
         if only and lab_name(master) not in only:
@@ -86,7 +88,7 @@ def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
             built = nodes.read(chapter.read_text(encoding="utf-8"))
         except Exception as error:  # nbformat's libraries may raise any error
             raise NothingToExecuteError(
-                f"{chapter.relative_to(root)} is no notebook: run `{COMMAND} build`."
+                f"{chapter.relative_to(root)} is not a notebook: run `{COMMAND} build`."
             ) from error
         planned.append(_planned(NotebookKind.MASTER, lab_name(master), source_notebook(master)))
         planned.append(_planned(NotebookKind.CHAPTER, lab_name(master), built))

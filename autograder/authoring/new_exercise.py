@@ -98,7 +98,7 @@ def _interface_of(root: Path, chapter: Path, interface: str) -> re.Match[str]:
     found = _INTERFACE.fullmatch(interface)
     if found is None:
         raise CannotMake(
-            f"{interface!r} is no interface: it is the package, the kind (msg, srv or action) and the type, such as "
+            f"{interface!r} is not an interface: write package, kind (msg, srv or action) and type, such as "
             "power_interfaces/srv/SetLevel"
         )
     package = found["package"]
@@ -149,7 +149,7 @@ def _defined(chapter: Path, interface: re.Match[str]) -> list[Path]:
 def _lab_of(exercise_id: str) -> str:
     if not _ID.fullmatch(exercise_id):
         raise CannotMake(
-            f"{exercise_id!r} is no id: it is the lab, a dot, and the exercise, in small letters, digits and _, "
+            f"{exercise_id!r} is not an id: write the lab, a dot, and the exercise, in small letters, digits and _, "
             "such as lab_8_1.battery"
         )
     return exercise_id.partition(".")[0]
@@ -158,7 +158,7 @@ def _lab_of(exercise_id: str) -> str:
 def _example(recipe: str) -> Path:
     known = recipes()
     if recipe not in known:
-        raise CannotMake(f"there is no recipe {recipe!r}. There are: {', '.join(known)}")
+        raise CannotMake(f"no recipe is named {recipe!r}. The recipes are: {', '.join(known)}")
     return known[recipe]
 
 
@@ -176,7 +176,7 @@ def _chapter(root: Path, name: str | None) -> Path:
         return there[-1].folder
     if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_-]*", name, re.ASCII):
         raise CannotMake(
-            f"{name!r} is no good name of a chapter's folder: use letters, digits, _ and -, such as 02_navigation"
+            f"{name!r} is not a valid name for a chapter's folder: use letters, digits, _ and -, such as 02_navigation"
         )
     return root / course.SOLUTIONS / name
 

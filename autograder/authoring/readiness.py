@@ -1,4 +1,4 @@
-"""What tests and linters would object to in a new exercise, for its author while working on it."""
+"""Tells an author early which faults of a new exercise tests and linters would report."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def faults_of_text(exercise: Exercise, said: str) -> Iterator[str]:
     judged = {name for names in exercise.text.values() for name in names.split()}
     known = {criterion.name for criterion in exercise.criteria}
     yield from (f"no words of the task are behind the criterion {name}" for name in sorted(known - judged))
-    yield from (f"there is no criterion {name}" for name in sorted(judged - known))
+    yield from (f"the criterion {name} does not exist" for name in sorted(judged - known))
 
 
 def _of_linters(lab: Path) -> Iterator[str]:

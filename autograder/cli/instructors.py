@@ -28,7 +28,7 @@ def _known_zone(_context: click.Context, _option: click.Parameter, name: str) ->
     try:
         return ZoneInfo(name) if name else None
     except (ValueError, OSError, LookupError):
-        fail(f"There is no time zone {name!r}. A name looks like Europe/Berlin.")
+        fail(f"The time zone {name!r} does not exist. A name looks like Europe/Berlin.")
 
 
 @click.command("hand-out")

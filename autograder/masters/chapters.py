@@ -119,7 +119,7 @@ def _lines(report: BuildReport) -> list[tuple[str, tuple[Path, ...], str]]:
     return [
         ("written", report.written, ""),
         ("stale", report.stale, f"— run: {COMMAND} build"),
-        ("edited", report.edited, "— somebody's work is in it: move it away, then build again"),
+        ("edited", report.edited, "— it contains work: move it away, then build again"),
         ("orphan", report.orphans, "— no master stands for it: write one, or delete it"),
     ]
 

@@ -85,7 +85,7 @@ def exercise_points(check: CheckCall) -> float:
     """Return the points of the exercise that a check cell names.
 
     Raises:
-        MasterError: There is no such exercise, it is broken, or it is worth nothing.
+        MasterError: The exercise does not exist, is broken, or has no points.
     """
     try:
         points = float(exercises.get(check.exercise).points)
@@ -94,8 +94,8 @@ def exercise_points(check: CheckCall) -> float:
         raise MasterError(
             check.master,
             check.line,
-            f"There is no exercise '{check.exercise}'.",
-            f"Add it to the lab's folder, or name one that is there: {', '.join(near)}.",
+            f"The exercise '{check.exercise}' does not exist.",
+            f"Add it to the lab's folder, or name an existing one: {', '.join(near)}.",
         ) from error
     except exercises.BrokenExercise as error:
         raise MasterError(check.master, check.line, f"{error}.", "Correct that file.") from error

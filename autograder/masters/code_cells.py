@@ -102,7 +102,7 @@ def find_model_answer(source: str) -> str:
     if not answer:
         raise CellError(begin + 1, "The region holds no answer.", "Write a good one, and what earns points.")
     if not "".join(lines[:begin]).strip():
-        raise CellError(begin, "There is no question.", f"Ask it above '{BEGIN}'.")
+        raise CellError(begin, "The question is missing.", f"Ask it above '{BEGIN}'.")
     return answer
 
 

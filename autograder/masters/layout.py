@@ -22,15 +22,14 @@ def masters(root: Path) -> list[Path]:
     """Return the masters of the course in ``root``, in reading order: ``solutions/<chapter>/<lab>/lab.md``.
 
     Raises:
-        MasterError: ``root`` holds no ``solutions`` folder, a chapter's description cannot be used, or there is no
-            master.
+        MasterError: ``root`` has no folder ``solutions``, a chapter's description cannot be used, or no master exists.
     """
     folder = root / SOLUTIONS
     if not folder.is_dir():
         raise MasterError(
             root,
             None,
-            "There is no folder 'solutions' here.",
+            "This folder contains no folder 'solutions'.",
             "Name the folder that holds 'solutions' and 'chapters'.",
         )
     try:
@@ -93,7 +92,7 @@ def find_root(start: Path) -> Path:
 
 
 def relinked(text: str, place: Callable[[str], str]) -> str:
-    """Return a text with its links to other notebooks adapted to where it is read.
+    """Return a text with its links to other notebooks adapted to its new place.
 
     Args:
         text: Markdown, or a notebook's file with Markdown in it.

@@ -92,7 +92,7 @@ def parse_master(path: Path) -> list[Cell]:
     """Read the cells of a master.
 
     Raises:
-        MasterError: The file is missing or no UTF-8 text, its options are no YAML, or one of them is unknown.
+        MasterError: The file is missing or not UTF-8 text, its options are not YAML, or one of them is unknown.
     """
     text = _read(path)
     try:
@@ -112,7 +112,7 @@ def _read(path: Path) -> str:
     try:
         return path.read_text(encoding="utf-8")
     except FileNotFoundError as error:
-        raise MasterError(path, None, "There is no such master.", "Look at the file's name.") from error
+        raise MasterError(path, None, "The master does not exist.", "Look at the file's name.") from error
     except UnicodeDecodeError as error:
         raise MasterError(path, None, "The file is not UTF-8 text.", "Save it as UTF-8.") from error
 
@@ -147,7 +147,7 @@ def _question(path: Path, metadata: Any, text: str, line: int, figures: dict[str
         raise MasterError(
             path,
             line,
-            "Text has options only where a person grades it, and this cell's are not those.",
+            "Text has options only if a person grades it, and this cell has other options.",
             f"Write them so: '{MANUAL_FORM}'.",
         )
     return Cell(CellRole.MANUAL, text, line, line, str(name), figures, float(points))
@@ -182,11 +182,11 @@ def _body_line(source: str, place: int, lines: list[str]) -> int:
 
 
 def with_copies(master: Path, cells: list[Cell]) -> list[Cell]:
-    """The cells, with what is copied in the place of the lines that say so.
+    """Return the cells, with copied text in the place of the lines that ask for it.
 
     Args:
-        master: Where the cells come from.
-        cells: As they were parsed.
+        master: The master of the cells.
+        cells: The cells as they were parsed.
 
     Raises:
         MasterError: What is to be copied is not defined above.

@@ -157,7 +157,7 @@ class Meet(Message, frozen=True):
     """Wait until the participant sees certain endpoints of the judge, and no longer sees others.
 
     Attributes:
-        fresh: With a context that is made anew.
+        fresh: True to make a new context first.
         there: Endpoints that it must see.
         gone: Endpoints of earlier runs that it must no longer see.
         within: Limit in seconds.
@@ -174,7 +174,7 @@ class Start(Message, frozen=True):
 
     Attributes:
         run: The number of this run.
-        fresh: With a context that is made anew.
+        fresh: True to make a new context first.
         arguments: The arguments of the class or function.
         options: Further arguments, passed if it has parameters of these names.
     """

@@ -32,8 +32,8 @@ class Check(Message, frozen=True):
         exercise: The exercise's id.
         domain: The ROS domain of the programs.
         path: The workspace or launch file among the sources.
-        count: How many sources follow.
-        trouble: Why there are none, for the student; empty where there are.
+        count: The number of sources that follow.
+        trouble: Why there are none, for the student; empty if some follow.
     """
 
     exercise: str

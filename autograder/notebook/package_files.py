@@ -44,7 +44,7 @@ class _Element:
 
 
 def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str = PACKAGE) -> str:
-    """Add entry points to a package's ``setup.py``, in place of those with the same executable or function.
+    """Add entry points to a package's ``setup.py``, replacing those with the same executable or function.
 
     Args:
         workspace: The folder that contains ``src``.
@@ -52,7 +52,7 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
         package: The name of the package.
 
     Returns:
-        The executables that the package has now, a line each and a warning where an entry cannot work, or what the
+        The executables that the package has now, one on each line, with a warning for each invalid entry; or what the
         student has to do.
     """
     setup = Path(workspace) / "src" / package / "setup.py"
@@ -162,7 +162,7 @@ def _read(setup: Path) -> tuple[str, ast.Module]:
 
 
 def add_dependencies(workspace: str | Path, names: Iterable[str], package: str = PACKAGE) -> str:
-    """Put ``<depend>`` lines into ``package.xml`` of a package where they are missing.
+    """Add missing ``<depend>`` lines to ``package.xml`` of a package.
 
     Args:
         workspace: The folder that contains ``src``.
@@ -196,7 +196,7 @@ def add_definition(workspace: str | Path, package: str, definition: str, needs: 
         needs: The packages that the generated code needs.
 
     Returns:
-        What the package generates now, or what the student has to do.
+        The definitions from which the package now generates code, or what the student has to do.
     """
     folder = Path(workspace) / "src" / package
     file, lists = folder / definition, folder / "CMakeLists.txt"
@@ -214,7 +214,7 @@ def add_definition(workspace: str | Path, package: str, definition: str, needs: 
 
 
 def _without_package(entries: list[str], package: str) -> list[str]:
-    """A warning for each module that is named without its package."""
+    """Return a warning for each module that is named without its package."""
     modules = [(entry, _parts(entry)[1].partition(":")[0]) for entry in entries]
     return [
         f"Careful: in {entry!r} the module has no package in front of it, so Python will not find it. "
@@ -225,7 +225,7 @@ def _without_package(entries: list[str], package: str) -> list[str]:
 
 
 def _parts(entry: str) -> tuple[str, str]:
-    """The executable, and what it starts."""
+    """Return the executable, and what it starts."""
     name, _, target = "".join(entry.split()).partition("=")
     return name, target
 
@@ -236,7 +236,7 @@ def _written(entry: str) -> _Element:
 
 
 def _elements(text: str, tree: ast.Module, programs: ast.List) -> tuple[list[_Element], list[str]]:
-    """The elements of a list in a setup.py, and the comments below its last element."""
+    """Return the elements of a list in a setup.py, and the comments below its last element."""
     names = {
         target.id: node.value.value
         for node in tree.body
@@ -258,7 +258,7 @@ def _elements(text: str, tree: ast.Module, programs: ast.List) -> tuple[list[_El
 
 
 def _comments(text: str, programs: ast.List) -> dict[int, str]:
-    """The comments in the list of a setup.py, by line (from 1), in order."""
+    """Return the comments in the list of a setup.py, by line (from 1), in order."""
     first, last = programs.lineno, programs.end_lineno or programs.lineno
     return {
         token.start[0]: token.string
@@ -268,7 +268,7 @@ def _comments(text: str, programs: ast.List) -> dict[int, str]:
 
 
 def _value(node: ast.expr, names: Mapping[str, object]) -> str | None:
-    """A text that is put together from texts and names for texts; None where it takes more to know it."""
+    """Return a text that is composed of texts and names of texts; None if finding it takes more."""
     match node:
         case ast.Constant(value=value):
             return str(value)
@@ -286,7 +286,7 @@ def _value(node: ast.expr, names: Mapping[str, object]) -> str | None:
 
 
 def _with_list(text: str, programs: ast.List, elements: list[_Element], last_comments: list[str]) -> str:
-    """The file with these elements in the place of its list, and comments below them."""
+    """Return the file with these elements in its list, and comments below them."""
     lines = text.encode().split(b"\n")
     first, last = programs.lineno - 1, (programs.end_lineno or programs.lineno) - 1
     before = b"\n".join([*lines[:first], lines[first][: programs.col_offset]]).decode()
@@ -298,5 +298,5 @@ def _with_list(text: str, programs: ast.List, elements: list[_Element], last_com
 
 
 def _lines(element: _Element) -> list[str]:
-    """An element of the list with its comments, a line each."""
+    """Return an element of the list with its comments, one on each line."""
     return [*element.above, f"{element.source},{'  ' * bool(element.behind)}{element.behind}"]

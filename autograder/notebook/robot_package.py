@@ -29,7 +29,7 @@ def complete_package(workspace: str | Path = "ros2_ws", source: Path | None = No
         source: The package to copy from; by default the course's own.
 
     Returns:
-        What was done, or what the student has to do, in one or two sentences.
+        One or two sentences that say what was done, or what the student has to do.
     """
     package = Path(workspace) / "src" / PACKAGE
     try:

@@ -50,7 +50,7 @@ def standing_text(standing: Standing) -> str:
     if standing.following is not None:
         verb = "Go on" if standing.begun else "Begin"
         lines.append(f"{verb} with {standing.following.title} ({standing.following.name}): {COMMAND} lab")
-    lines.append("Points are those of your own checks on this machine. They are no grade.")
+    lines.append("The points come from your own checks on this machine. They are not a grade.")
     return "\n".join(lines)
 
 

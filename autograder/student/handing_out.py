@@ -69,7 +69,7 @@ _OF_A_CLONE = {
 $ ./course lab
 ```
 
-The first time this sets everything up, in one to three minutes, or longer where the network is slow or the computer is
+The first time this sets everything up, in one to three minutes, or longer if the network is slow or the computer is
 busy. It opens a map of all notebooks; press *Begin*.
 
 On a Mac, on Windows without WSL or on an ARM computer, use Docker: `environment/jazzy.Dockerfile` begins with the two
@@ -129,8 +129,8 @@ def hand_out(
         root: The whole course.
         assignments: The names of the notebooks to hand out, graded or not; empty for all.
         as_zip: True to make a zip.
-        with_solutions: True to add what cards show with full marks: the reference solutions and their reasons. Students
-            who open the folder ``exercises`` can read them earlier.
+        with_solutions: True to add what cards show with full marks: the reference solutions and their reasons.
+            Students can read them earlier by opening the folder ``exercises``.
 
     Raises:
         CannotHandOut: The place is not empty, a name is not that of a notebook, a notebook of the chapters was
@@ -160,7 +160,7 @@ def _wanted(chapters: Sequence[course.Chapter], names: Collection[str]) -> list[
     known = [lab.name for chapter in chapters for lab in chapter.labs]
     for name in names:
         if name not in known:
-            raise CannotHandOut(f"there is no notebook named {name}. There is: {', '.join(known)}")
+            raise CannotHandOut(f"no notebook is named {name}. The notebooks are: {', '.join(known)}")
     found = [
         replace(chapter, labs=tuple(lab for lab in chapter.labs if not names or lab.name in names))
         for chapter in chapters
@@ -201,7 +201,7 @@ def _notebook(
         return
     if holds_work(notebook):
         raise CannotHandOut(
-            f"somebody has worked in {notebook}, and would be handed out: {COMMAND} reset {lab.name}"
+            f"{notebook} contains work, which would be handed out: {COMMAND} reset {lab.name}"
         )
     # A link to a notebook that is not handed out would be broken, so only its text stays.
     beside = {name: f"{name}.ipynb" for name in names}

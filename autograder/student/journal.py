@@ -171,7 +171,7 @@ def _opened(path: Path, flags: int) -> Iterator[int]:
     number = os.open(path, flags | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC, 0o600)
     try:
         if not stat.S_ISREG(os.fstat(number).st_mode):
-            raise OSError(f"{path} is no file")
+            raise OSError(f"{path} is not a file")
         yield number
     finally:
         os.close(number)

@@ -50,7 +50,7 @@ def open_lab(folder: Path, arguments: Sequence[str] = ()) -> None:
 
     Raises:
         NoSuchFolderError: ``folder`` is not a folder.
-        ValueError: ``ROS_DOMAIN_ID`` is set to something that is no domain.
+        ValueError: ``ROS_DOMAIN_ID`` is not a domain.
         NoFreeDomainError: Every domain on this host is in use.
     """
     if not folder.is_dir():
@@ -98,7 +98,7 @@ def join_domain() -> DomainClaim | None:
         The claim on the domain, or None if ``ROS_DOMAIN_ID`` names it.
 
     Raises:
-        ValueError: ``ROS_DOMAIN_ID`` is set to something that is no domain.
+        ValueError: ``ROS_DOMAIN_ID`` is not a domain.
         NoFreeDomainError: Every domain on this host is in use.
     """
     if not any(os.environ.get(name) for name in _DISCOVERY):

@@ -148,7 +148,7 @@ class Certificate(_CourseHandler):
                 self.set_header("Content-Disposition", f'attachment; filename="certificate-{name}.svg"')
                 self.finish(certificate.certificate_svg(chapter.title, chapter.possible, chapter.finished))
                 return
-        raise web.HTTPError(404, reason="there is no such certificate yet")
+        raise web.HTTPError(404, reason="this certificate does not exist yet")
 
 
 class OpenedNotebooks(AsyncLargeFileManager):

@@ -44,7 +44,7 @@ def reset(root: Path, folder: Path, name: str, entries_in: Path | None = None) -
         entries_in: The journal, in which its points are reset; the default is this session's own.
 
     Raises:
-        CannotReset: There is no such notebook, or the folder cannot be written.
+        CannotReset: The notebook does not exist, or the folder cannot be written.
         BrokenChapter: A chapter's description cannot be used.
     """
     chapter, lab = _find(root, name)

@@ -104,7 +104,7 @@ def _site_packages(venv: Path) -> Path:
     """
     found = sorted(venv.glob("lib/python3*/site-packages"))
     if not found:
-        raise FileNotFoundError(f"{venv} is no virtual environment: it has no lib/python3*/site-packages")
+        raise FileNotFoundError(f"{venv} is not a virtual environment: it has no lib/python3*/site-packages")
     return found[-1]
 
 

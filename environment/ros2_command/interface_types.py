@@ -29,7 +29,7 @@ def load_type(name: str, kind: str) -> Any:
     except (ImportError, AttributeError, ValueError) as error:
         raise ValueError(f"no interface '{name}'") from error
     if not all(hasattr(found, part) for part in _PARTS[kind]):
-        raise ValueError(f"'{name}' is no {kind}")
+        raise ValueError(f"'{name}' is not the name of a {kind}")
     return found
 
 

@@ -129,7 +129,7 @@ def _check_word(parser: _Parser, name: str, known: Iterable[str]) -> None:
     if name and name not in known:
         close = difflib.get_close_matches(name, known, n=1)
         meant = f"Did you mean `{parser.prog} {close[0]}`? " if close else ""
-        parser.error(f"there is no word '{name}' here. {meant}`{parser.prog} -h` lists all.")
+        parser.error(f"the word '{name}' does not exist here. {meant}`{parser.prog} -h` lists all.")
 
 
 def _dispatch(argv: list[str]) -> Outcome:

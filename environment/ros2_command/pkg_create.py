@@ -145,7 +145,7 @@ def _create(args: argparse.Namespace) -> Outcome:
         return None
     name = args.package_name
     if name != Path(name).name or name in (".", ".."):
-        return f"'{name}' is no package name: give the folder with --destination-directory"
+        return f"'{name}' is not a package name: give the folder with --destination-directory"
     if args.build_type == "ament_python" and name == "test":
         # The folder of the source and the folder of the tests would be one.
         return (

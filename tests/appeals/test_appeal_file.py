@@ -65,9 +65,9 @@ def test_a_cut_file_says_what_to_do(file: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (b"\x89MCAP0\r\n", "is no appeal file"),
-        (b"", "is no appeal file"),
-        (b"[" * 100_000, "is no appeal file"),
+        (b"\x89MCAP0\r\n", "is not an appeal file"),
+        (b"", "is not an appeal file"),
+        (b"[" * 100_000, "is not an appeal file"),
         (b"[]", "is JSON, but not an appeal file"),
         (b'{"exercise": "lab_1_2.talker"}', "is JSON, but not an appeal file"),
         (b'{"format": "ros2-course-appeal-1"}', "is not a valid appeal file"),

@@ -64,10 +64,12 @@ def test_a_base_without_a_comment_loses_nothing(folder: Path) -> None:
         pytest.param(
             '"usual.py"',
             '"usul.py"',
-            "its base usul.py is no file of .*right; did you mean usual.py",
+            "its base usul.py is not a file of .*right; did you mean usual.py",
             id="base",
         ),
-        pytest.param("-i = 0", "-i = 5", "does not fit usual.py: 'i = 5' is no line of the base", id="line"),
+        pytest.param(
+            "-i = 0", "-i = 5", "does not fit usual.py: 'i = 5' is not a line of the base", id="line"
+        ),
     ],
 )
 def test_an_edit_that_does_not_fit_is_named_when_it_is_used(
@@ -92,7 +94,7 @@ def test_an_edit_that_does_not_fit_is_named_when_it_is_used(
             'why = "1, 2, 3"', "why = 1", r"Expected `str`, got `int` - at `\$\[...\].why`", id="no text"
         ),
         pytest.param(
-            EDIT, '"a.py" = { why = "?", diagnosis = "a" }', "there is no file .*a.py", id="no file"
+            EDIT, '"a.py" = { why = "?", diagnosis = "a" }', "the file .*a.py does not exist", id="no file"
         ),
     ],
 )

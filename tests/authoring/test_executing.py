@@ -125,7 +125,7 @@ def test_what_would_alarm_a_student_is_found(text: str, words: str, tmp_path: Pa
 
 
 def test_an_unknown_name_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(NothingToExecuteError, match="there is no notebook 'lab_7'"):
+    with pytest.raises(NothingToExecuteError, match="no notebook is named 'lab_7'"):
         execute(course(tmp_path, GOOD), only=["lab_7"])
 
 
@@ -139,5 +139,5 @@ def test_a_chapter_that_is_no_notebook_is_named(tmp_path: Path) -> None:
     root = course(tmp_path, GOOD)
     (notebook,) = (root / "chapters").rglob("*.ipynb")
     notebook.write_text("<<<<<<< HEAD")
-    with pytest.raises(NothingToExecuteError, match=r"is no notebook: run `\./course build`"):
+    with pytest.raises(NothingToExecuteError, match=r"is not a notebook: run `\./course build`"):
         execute(root)

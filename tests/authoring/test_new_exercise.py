@@ -87,9 +87,9 @@ def test_an_interface_of_the_chapter_s_own_is_defined_and_named(root: Path, desc
 @pytest.mark.parametrize(
     ("name", "problem"),
     [
-        ("SetLevel", "is no interface"),
-        ("power/srv/set_level", "is no interface"),
-        ("../power/srv/SetLevel", "is no interface"),
+        ("SetLevel", "is not an interface"),
+        ("power/srv/set_level", "is not an interface"),
+        ("../power/srv/SetLevel", "is not an interface"),
         ("std_msgs/msg/Text", "installation of ROS or of the course has a package"),
         ("of_the_environment/msg/Text", "installation of ROS or of the course has a package"),
         ("of_the_second/msg/Text", "chapter 02_second has a package"),
@@ -123,11 +123,11 @@ def test_an_example_has_at_most_a_hundred_lines(recipe: str) -> None:
 @pytest.mark.parametrize(
     ("exercise_id", "recipe", "chapter", "said"),
     [
-        ("lab_9_1", "publisher", None, "is no id"),
-        ("Lab_9_1.battery", "publisher", None, "is no id"),
-        ("../lab.battery", "publisher", None, "is no id"),
-        ("lab_9_1.battery", "telepathy", None, "There are: publisher"),
-        ("lab_9_1.battery", "publisher", "../elsewhere", "no good name of a chapter"),
+        ("lab_9_1", "publisher", None, "is not an id"),
+        ("Lab_9_1.battery", "publisher", None, "is not an id"),
+        ("../lab.battery", "publisher", None, "is not an id"),
+        ("lab_9_1.battery", "telepathy", None, "The recipes are: "),
+        ("lab_9_1.battery", "publisher", "../elsewhere", "not a valid name for a chapter"),
         ("json.battery", "publisher", None, "Python has a module json"),
     ],
 )

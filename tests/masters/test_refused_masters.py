@@ -52,9 +52,9 @@ REFUSED = {
     "unknown_tag": (9, "Unknown tag 'solutoin'", "solution"),
     "two_tags": (9, "2 tags", "keep one"),
     "unknown_option": (9, "Unknown cell option 'points'", "grade_id, tags"),
-    "manual_without_points": (11, "only where a person grades it", '"points": 5'),
+    "manual_without_points": (11, "only if a person grades it", '"points": 5'),
     "manual_without_an_answer": (11, "without '### BEGIN SOLUTION'", "Put what students"),
-    "manual_without_a_question": (12, "There is no question", "Ask it above"),
+    "manual_without_a_question": (12, "The question is missing", "Ask it above"),
     "manual_code": (9, "A person grades text, not code", '"manual"'),
     "empty_cell": (9, "empty code cell", "take it out"),
     "open_hint": (11, "hint that is not closed", "':::'"),
@@ -100,7 +100,7 @@ def test_a_good_master_passes_the_same_door(as_lab_9_1: Callable[[Path], Path], 
 
 
 def test_an_unknown_exercise_names_the_nearest(as_lab_9_1: Callable[[Path], Path]) -> None:
-    with pytest.raises(MasterError, match=r"no exercise 'lab_9_1\.double'.*lab_1_\d\.") as caught:
+    with pytest.raises(MasterError, match=r"exercise 'lab_9_1\.double' does not exist.*lab_1_\d\.") as caught:
         source_notebook(as_lab_9_1(HERE / "good.md"))
     assert caught.value.line == 20
 
@@ -120,7 +120,7 @@ def test_bytes_that_are_no_text(tmp_path: Path, ten_points: Points) -> None:
 
 
 def test_a_missing_master(tmp_path: Path, ten_points: Points) -> None:
-    with pytest.raises(MasterError, match="no such master"):
+    with pytest.raises(MasterError, match="master does not exist"):
         source_notebook(tmp_path / "lab.md", points=ten_points)
 
 

@@ -216,7 +216,7 @@ def test_a_course_of_three_labs_has_no_link_that_leads_nowhere(tmp_path: Path) -
     assert {line.split(".")[0] for line in listed.stdout.splitlines()} == set(labs)
     said = run(tmp_path / "course", "progress")
     assert (said.returncode, "Lab 1.3" in said.stdout, "Lab 1.4" in said.stdout) == (0, False, True)
-    with pytest.raises(CannotHandOut, match="no notebook named lab_9"):
+    with pytest.raises(CannotHandOut, match="no notebook is named lab_9"):
         hand_out(tmp_path / "other", ROOT, assignments=["lab_9"])
 
 

@@ -126,11 +126,11 @@ class _Sorting:
         }
         if len(strangers) == 1:
             found.append(
-                f"There is no graded cell {_quoted(*strangers)} in this notebook. It runs as a cell of your own."
+                f"This notebook has no graded cell {_quoted(*strangers)}. It runs as a cell of your own."
             )
         elif strangers:
             found.append(
-                f"There are no graded cells {_listed(sorted(strangers))}. They run as cells of your own."
+                f"This notebook has no graded cells {_listed(sorted(strangers))}. They run as cells of your own."
             )
         return found
 

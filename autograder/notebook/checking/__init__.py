@@ -1,1 +1,1 @@
-"""The check cell: the conversation with the judge, the runs of the subject, and the card."""
+"""The check cell: the connection to the judge, the runs of the subject, and the card."""

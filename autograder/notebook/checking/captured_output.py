@@ -113,7 +113,7 @@ def _no_input_for(captured: Callable[[], bool], usual: Callable[..., str]) -> Ca
 class _CapturedStream:
     """Replaces sys.stdout, and also receives what is written to the stream itself.
 
-    It forwards the lines of captured threads to the judge, and writes those of all others as usual.
+    Lines of captured threads go to the judge, those of all other threads are written as usual.
     """
 
     def __init__(self, stream: Any, tell: Callable[[str, bool], None], captured: Callable[[], bool]) -> None:

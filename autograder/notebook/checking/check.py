@@ -1,4 +1,4 @@
-"""The check cell: run the subject at the judge's word, show its card, note it in the journal, give the score."""
+"""The check cell: runs the subject as the judge asks, shows the card, notes the result, and returns the score."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def check(exercise: str, subject: Any) -> float:
 
     Raises:
         TypeError: The subject is neither a class nor a function nor a path; the message says what to write instead.
-        StaleCodeError: The cell that defines the subject anew ended with an error. A grader judges what there is.
+        StaleCodeError: The cell that redefines the subject ended with an error, and a grader would judge the old one.
     """
     if not (inspect.isclass(subject) or callable(subject) or is_path(subject)):
         raise TypeError(what_to_pass(exercise, subject))
@@ -119,10 +119,10 @@ def _ask(exercise: str, subject: Any, place: CardDisplay) -> Verdict | None:
 
 
 def converse(link: JudgeLink, exercise: str, subject: Any, card: Place) -> Verdict | None:
-    """Do what the judge says until it has a verdict; None where it tells its grader alone.
+    """Carry out the judge's requests until it has a verdict; None if it reports only to its grader.
 
     Args:
-        link: To the judge.
+        link: The connection to the judge.
         exercise: The exercise's id.
         subject: What is checked.
         card: Is told what goes on.
@@ -178,7 +178,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: Place) -> Verdi
                         link.say(messages.Stacks(number, captured.stacks()))
                     case messages.Stop() if run is not None:
                         if not run.stop():
-                            place.renew()  # what will not end keeps the old context and is no longer heard
+                            place.renew()  # a run that does not end keeps the old context and is no longer heard
                         link.say(messages.Stopped(number))
                         card.doing(f"the judge looks at run {number}")
                         run = None
@@ -192,9 +192,9 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: Place) -> Verdi
 
 
 def keep(verdict: Verdict) -> None:
-    """Note a check in the journal; where it was the last one of a chapter, show the certificate.
+    """Note a check in the journal; if it was the last one of a chapter, show the certificate.
 
-    A grader's kernel has no journal. Nothing here can break a check: what cannot be read or written is left out.
+    A grader's kernel has no journal. Nothing here can break a check: unreadable or unwritable files are skipped.
     """
     if notebook_shell() is None or os.environ.get(messages.SOCKET_VARIABLE):
         return
@@ -255,7 +255,7 @@ def _retold(tell: Tell, card: Place) -> Tell:
 
 
 def what_to_pass(exercise: str, subject: Any, call: str = "check") -> str:
-    """The advice for a subject that is none."""
+    """Return the advice for an object that cannot be a subject."""
     kind = type(subject).__name__
     names = getattr(notebook_shell(), "user_ns", {})
     if names.get(kind) is subject:

@@ -39,7 +39,7 @@ class JudgeLink:
         """Connect to the judge; start one if there is none.
 
         Raises:
-            JudgeUnreachable: There is no judge and none could be started.
+            JudgeUnreachable: No judge runs, and none could be started.
         """
         path = os.environ.get(SOCKET_VARIABLE) or own_judge().path()
         try:

@@ -1,4 +1,4 @@
-"""One run of a path as a subject: the workspace is built, or the launch file launched, in a process of its own."""
+"""One run of a path as a subject: its workspace is built, or its launch file launched, in a separate process."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from autograder.notebook.checking.subject_run import Tell
 
 POLITE = 1.5
-"""Seconds of wall time that the programs have to end after an interrupt, before they are killed."""
+"""Seconds of wall time for programs to end after an interrupt, before they are killed."""
 
 
 class PathRun:
@@ -41,7 +41,7 @@ class PathRun:
         """Start the process.
 
         Args:
-            arguments: Where an exercise is about several programs: which one, and what it is called with.
+            arguments: If an exercise has several programs: the name of one, and its arguments.
             options: None for a path.
         """
         del options
@@ -82,8 +82,8 @@ def send_sources(tell: Tell, subject: object) -> None:
     """Tell a grader's judge what it asks for: everything that a check of this path may need.
 
     Args:
-        tell: Tells the judge.
-        subject: What the check cell was given; of what is no path there are no sources.
+        tell: Sends a message to the judge.
+        subject: The argument of the check cell; anything but a path has no sources.
     """
     path, sent, trouble = "nothing", list[Source](), ""
     try:
@@ -102,7 +102,7 @@ def send_sources(tell: Tell, subject: object) -> None:
 
 
 def _environment(domain: int) -> dict[str, str]:
-    """The kernel's own environment, on the domain of the check and on its transport."""
+    """Return the kernel's own environment, with the domain and the transport of the check."""
     return {
         **os.environ,
         "ROS_DOMAIN_ID": str(domain),

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from autograder.messages.lines import Message
 
 Tell = Callable[["Message"], None]
-"""Tells the judge something."""
+"""Sends a message to the judge."""
 
 END_LIMIT = 1.5
 """Seconds of wall time in which a stopped subject must have left its thread."""
@@ -50,9 +50,9 @@ class SubjectRun:
         """Begin.
 
         Args:
-            arguments: What the class or function is called with.
-            options: Passed on where a function has parameters of these names; for a class, ``threads`` says how many
-                threads spin it.
+            arguments: The arguments of the class or function.
+            options: Passed on if a function has parameters of these names; for a class, ``threads`` is the number of
+                threads that spin it.
         """
         self._arguments, self._options = arguments, options
         self._thread.start()
@@ -140,12 +140,12 @@ def formatted(error: BaseException) -> str:
     trace = student_frames(error.__traceback__)
     shown = traceback.format_exception(type(error), error, trace)
     text = "".join(shown).strip() + meant_name(error, trace)
-    # The beginning says where it began, the end what was raised.
+    # The beginning shows where the error began, the end shows which one it was.
     return text if len(text) <= MAX_TEXT else f"{text[: MAX_TEXT // 2]}\n{text[-MAX_TEXT // 2 + 1 :]}"
 
 
 def _mark(node: Node, number: int) -> str:
-    """Put a last endpoint of each kind on the graph: whoever sees it has seen all that the subject made before."""
+    """Put a last endpoint of each kind on the graph: to see it is to have seen all earlier ones of the subject."""
     name = f"/_ready_{number}"
     try:
         Node.create_publisher(node, Empty, name, 1)
@@ -156,7 +156,7 @@ def _mark(node: Node, number: int) -> str:
 
 
 def _accepted(function: Any, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Those of the options that the function has a parameter for."""
+    """Return the options for which the function has a parameter."""
     try:
         parameters = inspect.signature(function).parameters
     except (TypeError, ValueError):

@@ -1,6 +1,6 @@
 """Watch mode: check a class again each time that its cell redefines it.
 
-It begins by itself after a check that did not earn all points, or on the student's request.
+Watching begins automatically after a check that did not earn all points, or on the student's request.
 
 The cell ends as fast as before, and the check runs while the kernel is idle. A check replaces rclpy's
 default context and captures all output, so it cannot run at the same time as a cell: it stops for the next cell,

@@ -88,7 +88,7 @@ class Taken:
 
 
 class LendingExecutor(Executor):
-    """What both executors of this module add to rclpy's."""
+    """The additions of this module's executors to rclpy's."""
 
     on_taken: Callable[[Taken], None] | None = None
     """Called in the thread that takes a node, before it takes it."""

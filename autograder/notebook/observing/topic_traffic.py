@@ -22,7 +22,7 @@ MOST = 200
 ANY = QoSProfile(
     depth=MOST,
     history=HistoryPolicy.KEEP_LAST,
-    # What asks for least meets every publisher.
+    # The least demanding settings match every publisher.
     reliability=ReliabilityPolicy.BEST_EFFORT,
     durability=DurabilityPolicy.VOLATILE,
 )
@@ -35,7 +35,7 @@ class _Counted:
 
 
 class TopicTraffic:
-    """Counts on a node that nobody spins: what has arrived waits in the middleware until the next look."""
+    """Counts on a node that is not spun: what has arrived waits in the middleware until the next look."""
 
     def __init__(self, node: Node) -> None:
         self._node = node

@@ -26,7 +26,7 @@ def truth(text: str) -> bool:
         return True
     if word in ("false", "0"):
         return False
-    raise InvalidConditionExpressionError(f"'{text}' is no truth value: it must be true, false, 1 or 0")
+    raise InvalidConditionExpressionError(f"'{text}' is not a truth value: it must be true, false, 1 or 0")
 
 
 def value_of_text(text: str, value_type: Any = None) -> Any:
@@ -52,7 +52,7 @@ def value_of_text(text: str, value_type: Any = None) -> Any:
         return _checked(text, value, _SCALARS)
     item_type = typing.get_args(value_type)[0]
     if not isinstance(value, list) or not all(isinstance(item, item_type) for item in value):
-        raise ValueError(f"'{text}' is no list of {item_type.__name__}")
+        raise ValueError(f"'{text}' is not a list of {item_type.__name__}")
     return value
 
 
@@ -60,7 +60,7 @@ def _checked(text: str, value: Any, allowed: tuple[type, ...]) -> Any:
     items = value if isinstance(value, list) else [value]
     if all(isinstance(item, allowed) for item in items) and len({type(item) for item in items}) <= 1:
         return value
-    raise ValueError(f"'{text}' is no value of type {' or '.join(kind.__name__ for kind in allowed)}")
+    raise ValueError(f"'{text}' is not a value of type {' or '.join(kind.__name__ for kind in allowed)}")
 
 
 def number(context: LaunchContext, value: Any) -> float:

@@ -125,5 +125,5 @@ def _evaluated_list(context: LaunchContext, value: Sequence[Any]) -> list[Any]:
     if kinds == {int, float}:
         return [float(item) for item in items]
     if len(kinds) != 1 or not kinds <= {bool, int, float, str}:
-        raise ValueError(f"{value!r} is no list with items of one type")
+        raise ValueError(f"{value!r} is not a list with items of one type")
     return items

@@ -75,7 +75,7 @@ def test_a_wrong_word_is_an_error_that_names_the_right_one(
 ) -> None:
     assert exit_code(*words) == 2
     first, *rest = capsys.readouterr().err.splitlines()
-    assert f"there is no word '{words[-1]}' here. Did you mean `{meant}`?" in first
+    assert f"the word '{words[-1]}' does not exist here. Did you mean `{meant}`?" in first
     assert rest[1].startswith("usage: ros2")
 
 

@@ -25,7 +25,7 @@ def switching(met: Met) -> bool:
 
 
 def is_switched(met: Met, on: bool) -> bool:
-    """Switch it and listen; whether it answered, and published where it is on."""
+    """Switch it and listen. Return True if it answered, and published if it is on."""
     (caller,) = met.callers
     caller.ask({"data": on})
     answered = caller.await_answers(PATIENCE)
