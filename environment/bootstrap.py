@@ -215,7 +215,7 @@ def main(arguments: list[str] | None = None) -> int:
         say(f"error: {error.strerror}: {error.filename or place.prefix}")
         return 2
     except KeyboardInterrupt:
-        say("interrupted. Type the same command again: the set-up goes on where it stopped.")
+        say("interrupted. Type the same command again: the set-up continues from there.")
         return 130
     finally:
         os.close(folder)

@@ -54,7 +54,7 @@ def variables(
 ) -> dict[str, str]:
     """Return the variables that have to change for a process of the course, with their new values.
 
-    A folder that is there already keeps its place, so that a student's sourced workspace stays in front of
+    An existing folder keeps its place, so that a student's sourced workspace stays in front of
     ROS. The folders of another ROS than the one this environment was set up with are dropped: two in one
     process never work. ``PATH`` keeps them, for a folder of programs is only looked at when nothing before it
     fits.

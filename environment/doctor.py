@@ -183,7 +183,7 @@ def _interfaces(report: dict[str, object]) -> Finding:
         return Finding(name, "missing", str(report.get("interfaces_error", "rclpy is missing")), _again())
     if report["fields"] != INTERFACE_FIELDS:
         detail = f"another package of that name is in the way: its fields are {report['fields']}"
-        return Finding(name, "missing", detail, "Type it in a terminal where no workspace is sourced.")
+        return Finding(name, "missing", detail, "Type it in a terminal without a sourced workspace.")
     return Finding(name, "ok", "AddTwoInts and Fibonacci")
 
 

@@ -48,13 +48,13 @@ _HEADER = """\
 # inputs sha256:{digest}
 """
 _PURPOSE = {
-    "uv": "What installs the other locks.",
-    "course": "What the course and its autograder run on.",
+    "uv": "The installer of the other locks.",
+    "course": "The packages of the course and its autograder.",
     "ros": "ROS 2 Jazzy as wheels, and what only they need.",
-    "dev": "What the checks and tests of the project need besides.",
-    "cluster": "What grading on a Dask cluster needs besides.",
-    "postgresql": "What a gradebook in PostgreSQL needs besides.",
-    "site": "What the course as a book of HTML pages needs besides.",
+    "dev": "More packages for the checks and tests of the project.",
+    "cluster": "More packages for grading on a Dask cluster.",
+    "postgresql": "More packages for a gradebook in PostgreSQL.",
+    "site": "More packages for the course as a book of HTML pages.",
 }
 _BLOCK_START = re.compile(r"^([A-Za-z0-9][A-Za-z0-9._-]*)==")
 

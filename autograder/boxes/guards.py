@@ -353,7 +353,7 @@ def guards() -> Mapping[str, str]:
 
 def _processes_without(watched: str) -> str:
     if os.geteuid() == 0:
-        return f"{watched}; a bomb of forks may be faster: grade as another user than root"
+        return f"{watched}; a bomb of forks may be faster: do not grade as root"
     return f"{watched}, and a limit on the user in the box"
 
 

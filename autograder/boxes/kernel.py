@@ -217,7 +217,7 @@ class Kernel:
         return Ended.DONE if reply.get("status") == "ok" else Ended.RAISED
 
     def _await_idle(self, request: str, left: Left) -> None:
-        """Wait for a cell's last outputs, which use another socket than the reply and may arrive after it.
+        """Wait for a cell's last outputs, which use a different socket and may arrive after it.
 
         If the machine is busy, they may be much later: an earlier cell's line of 100 MB may be in front of them.
         """

@@ -42,7 +42,7 @@ _PRELOADED = (
 )
 _MAGIC = "autograder.notebook.cells.program_files"
 _PREPARED = ("autograder.cards.bundle",)
-"""Those modules whose function ``prepare`` is called."""
+"""The modules among them whose function ``prepare`` is called."""
 
 
 def prepare(*interfaces: str) -> None:

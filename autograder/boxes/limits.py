@@ -46,7 +46,7 @@ class Limits:
         scratch_files: The number of files, folders and links in a box.
     """
 
-    # What honest notebooks need, and why these limits are several times that: docs/decisions.md, on limits.
+    # The needs of honest notebooks, and why these limits are several times that: docs/decisions.md, on limits.
     cell_seconds: float = 60.0
     terminal_factor: float = 2.0
     check_margin: float = 10.0

@@ -1,6 +1,6 @@
 """Executes a rebuilt notebook cell by cell; the judge observes each check cell.
 
-What the notebook prints, raises or returns decides nothing. The result of a check cell is what the judge reports
+The notebook's output, errors and values decide nothing. The result of a check cell is what the judge reports
 after the cell; without a report it is zero points, with the reason.
 """
 
@@ -35,7 +35,7 @@ class Unfinished(RuntimeError):
 
 
 class Judge(Protocol):
-    """What this module needs of the judge."""
+    """The methods of the judge that this module uses."""
 
     def open(self, exercise_id: str) -> None:
         """Allow a check of this exercise from now on."""

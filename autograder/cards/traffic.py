@@ -59,7 +59,7 @@ class Part:
 
     @property
     def kind_of_time(self) -> str:
-        """What the axis shows, in words."""
+        """The quantity on the axis, in words."""
         return "simulated time" if self.simulated else "time"
 
     @functools.cached_property

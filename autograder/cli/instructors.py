@@ -175,7 +175,7 @@ def collect(
 @click.option(
     "--unsafe-no-sandbox",
     is_flag=True,
-    help="Run submissions with all your rights where no sandbox is possible. They could change any grade.",
+    help="If no sandbox is possible, run submissions with all your rights. They could change any grade.",
 )
 @click.option(
     "--scheduler",

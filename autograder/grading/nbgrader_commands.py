@@ -166,7 +166,7 @@ class FeedbackExporter(PageExporter):
 class WireExecute(NbGraderPreprocessor):
     """Replaces nbgrader's Execute and refuses to grade.
 
-    Its configuration section contains the grader's settings: limits, and two switches.
+    The section of its name in the configuration contains the grader's settings: limits, and two switches.
     """
 
     def preprocess(self, *_: Any, **__: Any) -> tuple[Any, Any]:

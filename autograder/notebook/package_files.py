@@ -93,7 +93,7 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
 def add_data_files(
     workspace: str | Path, pairs: Iterable[tuple[str, Sequence[str]]], package: str = PACKAGE
 ) -> str:
-    """Have a package's ``setup.py`` install files, in place of those that an earlier call has added.
+    """Have a package's ``setup.py`` install files, instead of those that an earlier call has added.
 
     Args:
         workspace: The folder that contains ``src``.

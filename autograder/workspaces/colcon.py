@@ -37,7 +37,7 @@ class Build:
     Attributes:
         workspace: Its folder.
         ok: Whether every package was built.
-        install: Where the packages are installed; empty where it failed.
+        install: The folder of installed packages; empty if the build failed.
         chosen: The packages of ``install`` that belong to the build; empty where all do.
         packages: The packages of the workspace, as their files describe them.
         unusable: The reasons why other packages cannot be used.

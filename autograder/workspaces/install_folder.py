@@ -62,7 +62,7 @@ def linked_build(prefix: Path) -> Path | None:
 
 
 def _libraries(prefix: Path) -> list[Path]:
-    # Debian's Python installs into dist-packages where it is told a prefix of its own.
+    # Debian's Python installs into dist-packages if it is given a prefix.
     candidates = [prefix / LIBRARY, prefix / "local" / LIBRARY.replace("site-", "dist-")]
     return [folder for folder in candidates if folder.is_dir()]
 

@@ -237,7 +237,7 @@ def _validate(file: Path, shown: str) -> None:
         what = re2.sub(r"^Error\(s\) in package '[^']*':\s*", "", str(error)).strip()
         raise BadPackage(f"{shown} is not valid: {what}") from error
     except AssertionError as error:
-        # Its only assertion is about the format, and its message asks to update catkin_pkg.
+        # The only assertion is about the format, and its message asks to update catkin_pkg.
         raise BadPackage(f'{shown} is not valid: <package format="…"> has to be 1, 2 or 3') from error
     except (*UNREADABLE, ExpatError) as error:
         raise BadPackage(f"{shown} is not valid: {_told(error)}") from error

@@ -41,8 +41,8 @@ class Plan:
     Attributes:
         targets: The packages that it needs, by name; none of them means all that there are.
         missing: What it asks for and the build has not brought; empty where all is there.
-        command: What is run, in the environment of the build. Asked for only where nothing is missing.
-        definition: The name of the interface file that it is about; empty where it is about none.
+        command: Returns the command, to be run in the environment of the build. Called only if nothing is missing.
+        definition: The name of the interface file that the exercise is about; empty if there is none.
         launches: The path of the installed launch file; None if the exercise launches none.
     """
 

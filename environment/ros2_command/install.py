@@ -51,14 +51,14 @@ _PACKAGES = ("launch", "launch_ros", "launch_xml", "launch_yaml")
 
 
 def _installed(name):
-    """Return where a package is that somebody has installed; a mere folder of that name is none."""
+    """Return the path of an installed package; a mere folder of that name does not count."""
     finders = [finder for finder in sys.meta_path if finder is not _UnlessInstalled]
     specs = (finder.find_spec(name, None) for finder in finders if hasattr(finder, "find_spec"))
     return next((spec for spec in specs if spec is not None and spec.origin is not None), None)
 
 
 class _UnlessInstalled:
-    """Asked before the others, as PathFinder takes a folder for a package where there is no real one."""
+    """A finder that comes first, because PathFinder takes a folder for a package if no real one exists."""
 
     @staticmethod
     def find_spec(name, path=None, target=None):

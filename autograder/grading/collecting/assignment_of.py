@@ -85,7 +85,7 @@ class AssignmentOf:
             data: The content.
 
         Raises:
-            NoTarget: The notebook is unclear; or the cells belong to several notebooks, or to another one than the
+            NoTarget: The notebook is unclear; or the cells belong to several notebooks, or to one that differs from the
                 name or the instructor says.
         """
         named = self._notebooks.get(stem_of(name)[0].casefold(), [])

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def put_right(directory: ClassDirectory) -> Iterator[str]:
     """Rename what can be renamed without asking, and yield a sentence about each.
 
-    These are a student's folder whose accents a Mac has stored decomposed, because both names look the same, and the
+    They are a student's folder whose accents a Mac has stored decomposed, because both names look the same, and the
     only notebook of a folder, if a browser has added a number to its name.
     """
     for folder in _folders(directory.path / "submitted"):
@@ -75,7 +75,7 @@ def _refused(folder: Path, what_to_do: str, places: Container[Path] = ()) -> lis
     """Return one line for all notebooks and archives in a folder, except those at the right path."""
     others = _work(folder, places)
     more = f", nor are {len(others) - 1} more files here" if others[1:] else ""
-    return [Refused(others[0], f"it is not graded where it is{more}: {what_to_do}")] if others else []
+    return [Refused(others[0], f"it is not graded in this place{more}: {what_to_do}")] if others else []
 
 
 def _rename(entry: Path, place: Path) -> bool:

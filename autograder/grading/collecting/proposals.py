@@ -1,4 +1,4 @@
-"""What the inbox and the class tell about each file: its students, its notebook, its time; or why they are unknown."""
+"""Finds for each file in the inbox its students, its notebook and its time, or why they are unknown."""
 
 from __future__ import annotations
 
@@ -370,7 +370,7 @@ class _Reading:
             what = "it is an archive that is not opened here: unpack it into a folder named"
             return replace(line, reason=f"{what} {student}, and collect that")
         what_to_do = f"ask for the notebook, or put it into submitted/{student}/{named or 'ASSIGNMENT'}"
-        return replace(line, reason="it is no notebook", what_to_do=what_to_do, is_soft=True)
+        return replace(line, reason="it is not a notebook", what_to_do=what_to_do, is_soft=True)
 
     def _in_utc(self, when: datetime | None) -> datetime | None:
         return in_utc(when, self._zone)

@@ -34,7 +34,7 @@ def _lines(report: CollectReport) -> Iterator[str]:
     for one in report.having(State.PLACED):
         when = f", handed in {one.when:%Y-%m-%d %H:%M} UTC" if one.when else ""
         late = ", late as the LMS says" if one.late else ""
-        again = ", in place of an earlier one" if one.replaced else ""
+        again = ", instead of an earlier one" if one.replaced else ""
         yield f"placed       {one.student}/{one.assignment}: {one.label}{when}{late}{again}"
     for state in (State.EARLIER, State.BESIDE, State.LEFT_OUT, State.NOT_PLACED):
         for one in report.having(state):

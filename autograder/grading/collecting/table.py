@@ -137,7 +137,7 @@ class Table:
         rows, stamp = _rows(data)
         if rows is None:
             return edits, [
-                f"{NAME} has no line that names its columns, so nothing was read from it: it is written anew"
+                f"{NAME} has no line that names its columns, so nothing was read from it: it is written again"
             ]
         before = {row["file"]: row for row in (_rows(self._read_copy(stamp))[0] or [])}
         notes: list[str] = []
@@ -151,7 +151,7 @@ class Table:
                 )
             elif key not in before:
                 notes.append(
-                    f"{NAME} has a line of {key or 'no file'}, which is no file that was collected: it was left out"
+                    f"{NAME} has a line of {key or 'no file'}, which is not a file that was collected: it was left out"
                 )
             else:
                 edits[key] = self._read_line(key, several[0], before[key], edits.get(key, Edit()), notes)

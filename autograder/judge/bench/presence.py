@@ -236,7 +236,7 @@ class Presence:
     def note_how_it_leaves(self) -> None:
         """Wait for the end of a program whose endpoints disappeared from the graph, because it is ending.
 
-        Its exit code and last words must not depend on the moment of the query.
+        The exit code and last words must not depend on the moment of the query.
         """
         surveys = self._recorder.part().of("interface", "graph")
         had_endpoints = [any(survey.data[role] for role in graph.ROLES) for survey in surveys]

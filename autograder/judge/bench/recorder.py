@@ -87,7 +87,7 @@ class Recorder:
     def end_of_this_part(self) -> Callable[..., None]:
         """Return a function that records the subject's end in the present part, after everything that it sent before.
 
-        Its arguments are the kind of end, such as ``"exited"``; a function that is called when that is recorded,
+        The arguments are the kind of end, such as ``"exited"``; a function that is called when that is recorded,
         before any waiting thread can see it; and data about the end.
         """
         number = self._number

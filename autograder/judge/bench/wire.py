@@ -50,7 +50,7 @@ class _QuietNode(Node):
 
 
 class Wire:
-    """One participant on one domain. Made anew for each part, because a new participant is discovered at once.
+    """One participant on one domain. Each part gets a new one, because a new participant is discovered at once.
 
     Attributes:
         node: The judge's node; it has no parameter services and no log topic, so that it adds almost nothing to the

@@ -88,7 +88,7 @@ def check_and_keep(
 
 
 def as_run(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> Sequence[str]:
-    """Return the command to run. If a path stands in place of a command, a runner builds, runs or launches it."""
+    """Return the command to run. If a path is given instead of a command, a runner builds, runs or launches it."""
     runner = python_child("-m", "autograder.workspaces", exercise.id).command
     if is_path(exercise, command, cwd):
         return [*runner, command[0]]

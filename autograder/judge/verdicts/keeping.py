@@ -38,7 +38,7 @@ _FLOAT = "$float"
 
 
 class NoEvidence(ValueError):
-    """These bytes are not evidence; the message says why."""
+    """The bytes are not evidence; the message says why."""
 
 
 class KeptLook(msgspec.Struct, frozen=True):

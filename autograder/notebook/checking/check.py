@@ -71,7 +71,7 @@ def check(exercise: str, subject: Any) -> float:
             an exercise about files, the path of the workspace or of the launch file.
 
     Returns:
-        The points earned; 0 in the box of a submission, where no card is shown: the judge tells its grader alone.
+        The points earned; 0 in the box of a submission, which shows no card: the judge tells its grader alone.
 
     Raises:
         TypeError: The subject is neither a class nor a function nor a path; the message says what to write instead.

@@ -27,7 +27,7 @@ PERIOD = 0.5
 WINDOW = 30.0
 """Length of the time axis, in seconds."""
 _LARGEST = 1e300
-"""Larger values, infinity and NaN are not drawn: a laser scan has ``inf`` where it detects nothing."""
+"""Larger values, infinity and NaN are not drawn: a laser scan has ``inf`` in directions without an obstacle."""
 _MOST = 3_000
 """Limit of the points in a plot."""
 _WIDTH, _HEIGHT, _LEFT, _FOOT, _HEAD = 720, 220, 70, 24, 26
@@ -146,7 +146,7 @@ class PlotPicture:
         return [(t, value) for t, value in self.points if abs(value) <= _LARGEST]
 
     def _words(self) -> str:
-        """Return the text to show in place of a curve; otherwise empty."""
+        """Return the text to show instead of a curve; otherwise empty."""
         if not self.points:
             return self.note or "nothing has arrived yet"
         return self.note or (

@@ -112,7 +112,7 @@ class RunningProcess:
         return None if self._process is None else self._process.poll()
 
     def _data(self, source: str) -> bytes | None:
-        """Return what is there: None for nothing yet, an empty text at the end of the stream."""
+        """Return the available output: None for nothing yet, an empty text at the end of the stream."""
         try:
             return self.streams[source].read(_CHUNK)
         except OSError:

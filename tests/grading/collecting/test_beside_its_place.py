@@ -51,7 +51,7 @@ def test_two_numbered_ones_need_a_decision(tiny: TinyClass, fake_engine: FakeEng
     path.with_name("lab_1_2 (2).ipynb").write_bytes(path.read_bytes())
     path.rename(path.with_name("lab_1_2 (1).ipynb"))
     report = tiny.grade()
-    assert "lab_1_2 (1).ipynb: it is not graded where it is, nor are 1 more files here" in refused(report)
+    assert "lab_1_2 (1).ipynb: it is not graded in this place, nor are 1 more files here" in refused(report)
     assert f"put the notebook that counts at {path}" in refused(report)
     assert report.exit_code == 2
 
@@ -60,7 +60,7 @@ def test_one_folder_too_high_is_named_and_stays_there(tiny: TinyClass, fake_engi
     path = tiny.submit("ada", 4, 7)
     high = path.rename(path.parent.parent / "lab_1_2.ipynb")
     report = tiny.grade()
-    assert f"lab_1_2.ipynb: it is not graded where it is: move it into {high.parent}" in refused(report)
+    assert f"lab_1_2.ipynb: it is not graded in this place: move it into {high.parent}" in refused(report)
     assert (report.exit_code, high.exists()) == (2, True)
 
 
@@ -139,7 +139,7 @@ def test_nothing_is_moved_into_a_neighbours_folder_through_a_link(
     one.parent.symlink_to(neighbours)
     report = tiny.grade()
     assert not list(neighbours.iterdir())
-    assert "lab_1_2.ipynb: it is not graded where it is" in refused(report)
+    assert "lab_1_2.ipynb: it is not graded in this place" in refused(report)
     assert "lab_1_2: it is a link" in refused(report)
 
 

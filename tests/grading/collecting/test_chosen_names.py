@@ -156,7 +156,7 @@ def test_what_one_system_reads_as_nobodys_is_not_anothers_student(klass: TinyCla
     assert placed(report) == {}
     assert "as Blackboard and as Canvas gives it" in why(report)
     assert "say --from blackboard or --from canvas" in why(report)
-    assert "nobody in the class is called mallory" in why(collect(klass.path, [file], form="canvas"))
+    assert "no student in the class is called mallory" in why(collect(klass.path, [file], form="canvas"))
     download = write_zip(tmp_path / "s.zip", {f"lab/{IN_BOTH}": work(klass), "lab/zusezoe_105_1_x.png": "x"})
     assert placed(collect(klass.path, [download])) == {}
 
@@ -254,7 +254,7 @@ def test_of_files_named_one_by_one_two_people_of_one_name_are_told_apart(
     (tiny.path / "students.csv").write_text("id,first_name,last_name,canvas\nada,Ada,Lovelace,101\n")
     report = collect(tiny.path)
     assert (placed(report).keys(), lies(tiny, "ada")) == ({"ada"}, work(tiny, 0))
-    assert "nobody in the class is called lovelaceada" in why(report)
+    assert "no student in the class is called lovelaceada" in why(report)
 
 
 @pytest.mark.parametrize(
@@ -275,7 +275,7 @@ def test_who_is_known_by_a_number_is_never_meant_by_name_under_another(
     (tiny.path / "students.csv").write_text(roster)
     report = collect(tiny.path, [write_zip(tmp_path / "d.zip", {name: work(tiny)})])
     assert (placed(report), report.exit_code) == ({}, 2)
-    assert "nobody in the class is called" in why(report)
+    assert "no student in the class is called" in why(report)
 
 
 def test_whose_number_a_list_says_is_not_held_up_by_who_takes_the_name(
@@ -344,7 +344,7 @@ def test_a_strangers_archive_has_one_line(klass: TinyClass, tmp_path: Path) -> N
     archive = zipped({f"{number}/lab_1_2.ipynb": work(klass) for number in range(9)})
     report = collect(klass.path, [write_zip(tmp_path / "c.zip", {"guest_999_9001_x.zip": archive})])
     assert [one.label for one in report.outcomes] == ["c.zip/guest_999_9001_x.zip"]
-    assert "nobody in the class is called guest" in why(report)
+    assert "no student in the class is called guest" in why(report)
 
 
 def test_who_is_excused_from_no_assignment_is_said(klass: TinyClass, tmp_path: Path) -> None:

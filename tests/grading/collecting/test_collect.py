@@ -236,7 +236,7 @@ def test_what_cannot_be_placed_is_listed_with_its_reason(klass: TinyClass, tmp_p
     lines = dict(line.partition(": ")[::2] for line in why(report).splitlines())
     assert "may be ada, ada2" in lines["m.zip/Ada Lovelace_1_assignsubmission_file_lab_1_2.ipynb"]
     assert (
-        "nobody in the class is called Guest User"
+        "no student in the class is called Guest User"
         in lines["m.zip/Guest User_2_assignsubmission_file_lab_1_2.ipynb"]
     )
     assert "write it under assignment" in lines["m.zip/Ben Bär_3_assignsubmission_file_homework.ipynb"]
@@ -584,7 +584,7 @@ def test_the_command_says_everything(klass: TinyClass, tmp_path: Path) -> None:
     assert "placed       ada/lab_1_2" in result.output
     assert "late as the LMS says" in result.output
     assert (
-        "not placed   c.zip/guest_999_9002_lab_1_2.ipynb: nobody in the class is called guest"
+        "not placed   c.zip/guest_999_9002_lab_1_2.ipynb: no student in the class is called guest"
         in result.output
     )
     assert "nothing of   lab_1_2: ben, eve, jose, zoe" in result.output

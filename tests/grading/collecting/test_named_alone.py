@@ -48,7 +48,7 @@ def test_a_zip_of_somebody_unknown_is_no_download_either(
     assert placed(report).keys() == ({ben} if has_list else {ben, "malloryeve"})
     told = [note for note in report.notes if "rename it to submissions.zip or list.csv" in note]
     assert len(told) == 2
-    assert not has_list or "nobody in the class is called malloryeve" in why(report)
+    assert not has_list or "no student in the class is called malloryeve" in why(report)
 
 
 def test_what_is_called_after_a_student_is_that_students(klass: TinyClass, tmp_path: Path) -> None:
@@ -103,7 +103,7 @@ def test_a_students_table_is_no_list_of_the_instructors(klass: TinyClass, tmp_pa
     assert history is not None
     assert history.when is None
     (beside,) = report.having(State.BESIDE)
-    assert (beside.student, beside.reason) == ("ada", "it is no notebook")
+    assert (beside.student, beside.reason) == ("ada", "it is not a notebook")
 
 
 def test_a_download_and_a_list_are_still_what_they_are(klass: TinyClass, tmp_path: Path) -> None:

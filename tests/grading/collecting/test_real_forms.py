@@ -175,7 +175,7 @@ def test_gradescopes_export_is_collected_with_its_times_and_groups(tiny: TinyCla
     assert stamp(tiny, "ada") == "2026-04-26 17:34:00.861687 UTC"
     assert stamp(tiny, "jose") == "2026-04-27 08:00:00.000000 UTC"
     assert why(report).startswith(
-        f"export.zip/{root}/submission_600000002/lab_1_2.ipynb: nobody in the class is called 333"
+        f"export.zip/{root}/submission_600000002/lab_1_2.ipynb: no student in the class is called 333"
     )
     assert len(report.having(State.NOT_PLACED)) == 1
 

@@ -32,7 +32,7 @@ def test_in_canvas_nobody_is_called_so_that_the_name_is_not_the_systems(
     (tmp_path / "d" / f"{hers}x_102_9999_lab_1_2.ipynb").write_text(work(klass, 9))
     report = collect(klass.path, sorted((tmp_path / "d").iterdir()))
     assert (placed(report).keys(), lies(klass, "ben"), when(klass, "ben")) == ({"ben"}, work(klass, 1), None)
-    assert "nobody in the class is called" in why(report)
+    assert "no student in the class is called" in why(report)
 
 
 @pytest.mark.parametrize(
@@ -59,7 +59,7 @@ def test_in_gradescope_nobody_is_who_the_list_knows_by_an_address(klass: TinyCla
     )
     report = collect(klass.path, [write_zip(tmp_path / "g.zip", files)])
     assert lies(klass, "ben") == work(klass, 1)
-    assert "submission_12/lab_1_2.ipynb: nobody in the class is called Ben Bär" in why(report)
+    assert "submission_12/lab_1_2.ipynb: no student in the class is called Ben Bär" in why(report)
     folder(tmp_path, files)
     report = collect(klass.path, [tmp_path / "assignment_1_export" / "submission_11"])
     assert why(report) == "", "the list that came with the export says who number 11 is"
@@ -111,6 +111,6 @@ def test_a_named_file_whose_name_is_no_text_is_one_line(klass: TinyClass, tmp_pa
     report = collect(klass.path, sources)
     assert placed(report).keys() == {"ben"}
     assert os.fsencode(why(report)) == why(report).encode()
-    assert "nobody in the class is called Jos?" in why(report)
+    assert "no student in the class is called Jos?" in why(report)
     report = collect(klass.path, [tmp_path / "Zo\udceb.zip"])
     assert placed(report).keys() == {"ada"}

@@ -96,7 +96,7 @@ def test_who_fills_an_archive_harms_nobody_else(klass: TinyClass, tmp_path: Path
         ("lab_1_2.tar.gz", "unpack it into a folder named ada"),
         ("lab_1_2.7z", "unpack it into a folder named ada"),
         ("lab_1_2.py", "submitted/ada/lab_1_2"),
-        ("answer.docx", "it is no notebook: ask for the notebook"),
+        ("answer.docx", "it is not a notebook: ask for the notebook"),
     ],
 )
 def test_what_is_not_taken_is_named_with_its_student_the_reason_and_what_to_type(
@@ -130,7 +130,7 @@ def test_the_notebook_of_one_assignment_gives_no_place_to_a_file_of_another(
     }
     report = gathered(klass, tmp_path, files)
     assert [(one.label.rpartition("/")[2], one.reason) for one in report.having(State.BESIDE)] == [
-        ("lovelaceada_101_9002_lab_1_2.py", "it is no notebook")
+        ("lovelaceada_101_9002_lab_1_2.py", "it is not a notebook")
     ]
     assert named(report, State.NOT_PLACED) == [("lovelaceada_101_9003_lab_1_3.py", "ada")]
     assert "ask for the notebook" in why(report)

@@ -220,7 +220,7 @@ def test_what_lies_beside_its_place_is_named_and_stays_there(class_: TinyClass) 
     assert code == 2
     said = " ".join(output.split())
     for one in (alone, high, submitted / "moodle.zip"):
-        assert f"refused {one}: it is not graded where it is" in said
+        assert f"refused {one}: it is not graded in this place" in said
         assert one.is_file()
     assert students(found(class_)) == [("ada", "ben")]
 
