@@ -52,7 +52,7 @@ class BadTable(ValueError):
     """A table of the bank cannot be used. The message names the table, the entry, and what to do."""
 
 
-class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class AnswerEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A table's entry about one answer.
 
     Attributes:
@@ -101,7 +101,7 @@ class Listed:
     """
 
     file: Path
-    entry: Entry
+    entry: AnswerEntry
     table: Path
 
     @property
@@ -159,7 +159,7 @@ def listed(folder: Path) -> Iterator[Listed]:
     names = set()
     for kind in KINDS:
         for table in sorted((folder / kind).glob("*.toml")):
-            for name, entry in _read(table, dict[str, Entry]).items():
+            for name, entry in _read(table, dict[str, AnswerEntry]).items():
                 answer = Listed(folder / kind / name, entry, table)
                 _look_at(answer, twice=answer.file in names)
                 names.add(answer.file)

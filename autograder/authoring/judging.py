@@ -17,7 +17,7 @@ LIMIT = 240.0
 """Seconds of wall time within which an answer must be judged."""
 
 
-class Judged(Protocol):
+class Judgeable(Protocol):
     """Something that can be judged: an answer, or a mutant of one."""
 
     @property
@@ -30,7 +30,7 @@ class Judged(Protocol):
         ...
 
 
-T = TypeVar("T", bound=Judged)
+T = TypeVar("T", bound=Judgeable)
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from autograder.cards.traffic import Part
+    from autograder.cards.traffic import TrafficPart
 
 CHARACTER = 6.7
 """Pixels of one character of the 11-pixel monospaced label font; lane names are one pixel larger."""
@@ -43,7 +43,7 @@ class Axis:
     seconds: bool
 
     @classmethod
-    def of(cls, part: Part, lengths: Sequence[float], width: int) -> Axis:
+    def of(cls, part: TrafficPart, lengths: Sequence[float], width: int) -> Axis:
         """Return an axis on which the label of every moment fits between its mark and the right edge.
 
         Args:
@@ -86,7 +86,7 @@ class Axis:
             yield Tick(x, text, "start" if x < len(text) * CHARACTER / 2 else "middle")
 
 
-def places_of(part: Part) -> list[float]:
+def places_of(part: TrafficPart) -> list[float]:
     """Return the position of each moment of a part on the axis."""
     if part.stands_still:
         return [float(number) for number in range(len(part.moments))]

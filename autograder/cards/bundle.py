@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from jinja2 import Template
 
-    from autograder.cards.traffic import Part
+    from autograder.cards.traffic import TrafficPart
     from autograder.verdict import Verdict
 
 _SYMBOLS = {State.PASSED: "✓", State.FAILED: "✗", State.NOT_CHECKED: "?"}
@@ -94,7 +94,7 @@ class _Part:
     gaps: Mapping[int, int]
 
     @classmethod
-    def of(cls, part: Part, width: int) -> _Part:
+    def of(cls, part: TrafficPart, width: int) -> _Part:
         title = one_line(part.title, 120)
         label = "Traffic in its order" if part.stands_still else f"Traffic over {part.kind_of_time}"
         return cls(

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypedDict
 
 from autograder.cards import wording
-from autograder.cards.differences import Piece, difference
+from autograder.cards.differences import TextPiece, difference
 from autograder.cards.readable import block, one_line, paragraph
-from autograder.cards.tracebacks import TRACEBACK, Place, place
+from autograder.cards.tracebacks import TRACEBACK, TracebackPlace, place
 from autograder.cards.traffic import Traffic, traffic
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ class Choices(TypedDict, total=False):
 
 
 @dataclass(frozen=True)
-class Row:
+class CriterionRow:
     """A criterion, with its points in words and as its share of the bar."""
 
     passed: bool
@@ -95,10 +95,10 @@ class Row:
     points: str
     unit: str
     weight: str
-    difference: tuple[Piece, ...]
+    difference: tuple[TextPiece, ...]
 
     @classmethod
-    def of(cls, criterion: Criterion, form: Form) -> Row:
+    def of(cls, criterion: Criterion, form: Form) -> CriterionRow:
         """Return the row of a criterion."""
         earned = criterion.points if criterion.passed else 0.0
         pieces = difference(criterion)
@@ -111,7 +111,7 @@ class Row:
             points=f"{wording.points(earned)} of {wording.points(criterion.points)}",
             unit=wording.unit(criterion.points),
             weight=wording.points(max(criterion.points, 0.1)),
-            difference=tuple(Piece(one.kind, one_line(one.text, 200, mark=form.mark)) for one in pieces),
+            difference=tuple(TextPiece(one.kind, one_line(one.text, 200, mark=form.mark)) for one in pieces),
         )
 
 
@@ -142,8 +142,8 @@ class Card:
     unit: str
     notice: str
     advice: wording.Advice
-    place: Place | None
-    criteria: tuple[Row, ...]
+    place: TracebackPlace | None
+    criteria: tuple[CriterionRow, ...]
     remarks: tuple[str, ...]
     traffic: Traffic
     traffic_notes: str
@@ -186,7 +186,7 @@ class Card:
                 paragraph(advice.next_step, 1200, mark=mark),
             ),
             place=_readable(place(verdict.detail), mark),
-            criteria=tuple(Row.of(criterion, form) for criterion in verdict.criteria),
+            criteria=tuple(CriterionRow.of(criterion, form) for criterion in verdict.criteria),
             remarks=tuple(paragraph(remark, 600, mark=mark) for remark in verdict.remarks),
             traffic=shown,
             traffic_notes=wording.traffic_notes(shown),
@@ -205,11 +205,11 @@ class Card:
         return replace(self, criteria=(), remarks=(), traffic=Traffic(()), detail=(), facts=(), solution=None)
 
 
-def _readable(found: Place | None, mark: str) -> Place | None:
+def _readable(found: TracebackPlace | None, mark: str) -> TracebackPlace | None:
     if found is None:
         return None
     texts = (found.where, 120), (found.quote, 200), (found.error, 300)
-    return Place(*(one_line(text, limit, mark=mark) for text, limit in texts))
+    return TracebackPlace(*(one_line(text, limit, mark=mark) for text, limit in texts))
 
 
 def _code(text: str) -> str:

@@ -33,7 +33,7 @@ class DiffTag(StrEnum):
 
 
 @dataclass(frozen=True)
-class Piece:
+class TextPiece:
     """Successive characters of one kind."""
 
     kind: DiffTag
@@ -48,7 +48,7 @@ class Piece:
         return f"[{text}]" if self.kind is DiffTag.MISSING else f"{{{text}}}"
 
 
-def difference(criterion: Criterion) -> tuple[Piece, ...]:
+def difference(criterion: Criterion) -> tuple[TextPiece, ...]:
     """Return the difference between the first quoted text that was seen and the first one that was expected.
 
     It is empty if the criterion holds, if either has no such text, or if the texts are equal or unlike.
@@ -61,12 +61,12 @@ def difference(criterion: Criterion) -> tuple[Piece, ...]:
     return _pieces(expected[1], seen[1])
 
 
-def marked(pieces: Iterable[Piece]) -> str:
+def marked(pieces: Iterable[TextPiece]) -> str:
     """Return all pieces as one text, such as ``"Hello[,] world[!] 0"``."""
     return "".join(piece.marked for piece in pieces)
 
 
-def _pieces(expected: str, seen: str) -> tuple[Piece, ...]:
+def _pieces(expected: str, seen: str) -> tuple[TextPiece, ...]:
     if expected == seen or max(len(expected), len(seen)) > LONGEST:
         return ()
     matcher = difflib.SequenceMatcher(None, expected, seen, autojunk=False)
@@ -76,10 +76,10 @@ def _pieces(expected: str, seen: str) -> tuple[Piece, ...]:
     for operation, a1, a2, b1, b2 in matcher.get_opcodes():
         fills_in = expected[a1:a2] == _PLACE and seen[b1:b2].isdigit()
         if operation == "equal" or fills_in:
-            found.append(Piece(DiffTag.SAME, seen[b1:b2]))
+            found.append(TextPiece(DiffTag.SAME, seen[b1:b2]))
             continue
         if operation in ("delete", "replace"):
-            found.append(Piece(DiffTag.MISSING, expected[a1:a2]))
+            found.append(TextPiece(DiffTag.MISSING, expected[a1:a2]))
         if operation in ("insert", "replace"):
-            found.append(Piece(DiffTag.EXTRA, seen[b1:b2]))
+            found.append(TextPiece(DiffTag.EXTRA, seen[b1:b2]))
     return tuple(found)

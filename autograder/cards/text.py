@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Unpack
 
 from autograder.cards import wording
-from autograder.cards.card import IN_A_TERMINAL, Card, Choices, Row, Solution
+from autograder.cards.card import IN_A_TERMINAL, Card, Choices, CriterionRow, Solution
 from autograder.cards.differences import marked
 from autograder.cards.readable import one_line, wrap
 from autograder.cards.readable import width as columns
@@ -19,7 +19,7 @@ from autograder.verdict import State
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from autograder.cards.traffic import Part
+    from autograder.cards.traffic import TrafficPart
     from autograder.verdict import Verdict
 
 _MARK = IN_A_TERMINAL.mark
@@ -103,7 +103,7 @@ class _Writer:
             yield self._heading("What to do next")
             yield from self._wrapped(advice.next_step, "  > ", "    ")
 
-    def _criterion(self, row: Row) -> Iterator[str]:
+    def _criterion(self, row: CriterionRow) -> Iterator[str]:
         badge = self._styled(f"[{row.word}]", _COLOURS[State.PASSED if row.passed else State.FAILED])
         line = f"{row.title} ({row.points} {row.unit})"
         first, *rest = self._wrapped(line, " " * (len(row.word) + 5), "    ")
@@ -128,7 +128,7 @@ class _Writer:
         if card.traffic_notes:
             yield from self._wrapped(card.traffic_notes, "  ")
 
-    def _part(self, part: Part) -> Iterator[str]:
+    def _part(self, part: TrafficPart) -> Iterator[str]:
         if part.title:
             yield from self._wrapped(one_line(part.title, 120, mark=_MARK) + ":", "  ", "  ")
         lanes = {lane: one_line(lane, self.width * 3 // 8, mark=_MARK) for lane in part.lanes}

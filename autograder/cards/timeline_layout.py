@@ -18,7 +18,7 @@ from autograder.cards.readable import one_line
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from autograder.cards.traffic import Part
+    from autograder.cards.traffic import TrafficPart
 
 WIDTH = 600
 """Pixels of the narrowest picture in which nothing overlaps; narrower windows scroll."""
@@ -107,7 +107,7 @@ class Picture:
     reading_y: float
 
 
-def picture(part: Part, width: int = WIDTH) -> Picture:
+def picture(part: TrafficPart, width: int = WIDTH) -> Picture:
     """Lay out one part of the traffic.
 
     Args:
@@ -137,7 +137,7 @@ def picture(part: Part, width: int = WIDTH) -> Picture:
 
 
 def _lane(
-    part: Part,
+    part: TrafficPart,
     name: str,
     top: float,
     width: int,
@@ -184,7 +184,7 @@ def _rows(xs: Sequence[float]) -> list[int]:
     return rows
 
 
-def _labels(part: Part) -> list[str]:
+def _labels(part: TrafficPart) -> list[str]:
     """Return the labels to draw: short, and in a full lane without the words of the label before."""
     counts = {lane: sum(moment.lane == lane for moment in part.moments) for lane in part.lanes}
     before: dict[tuple[str, str], str] = {}

@@ -24,7 +24,7 @@ _CELLS = ("/ipykernel_", "<ipython-input")
 
 
 @dataclass(frozen=True)
-class Place:
+class TracebackPlace:
     """The line in which a program failed.
 
     Attributes:
@@ -44,7 +44,7 @@ def last_error(detail: str) -> str:
     return next((line for line in told if line and not _FORM_OF_CALL.match(line)), "")
 
 
-def place(detail: str) -> Place | None:
+def place(detail: str) -> TracebackPlace | None:
     """Return the student's last line in the last traceback of a text.
 
     None if there is none, or if that line only spins: the mistake is in a callback then.
@@ -69,7 +69,7 @@ def place(detail: str) -> Place | None:
         return None
     file, line, quote = found
     of = "your cell" if any(part in file for part in _CELLS) else file.rpartition("/")[2]
-    return Place(f"Line {line} of {of}", quote, error)
+    return TracebackPlace(f"Line {line} of {of}", quote, error)
 
 
 def _is_students(file: str) -> bool:

@@ -31,7 +31,7 @@ _TOGETHER = 3
 
 
 @dataclass(frozen=True)
-class Part:
+class TrafficPart:
     """One part of the check on one axis.
 
     Attributes:
@@ -91,7 +91,7 @@ class Traffic:
         parts_left_out: The number of parts that are not shown.
     """
 
-    parts: tuple[Part, ...]
+    parts: tuple[TrafficPart, ...]
     parts_left_out: int = 0
 
     @property
@@ -120,10 +120,10 @@ def traffic(timeline: Sequence[Moment], *, at_most: int) -> Traffic:
     return Traffic(tuple(parts), len(groups) - len(shown))
 
 
-def _part(title: str, simulated: bool, moments: list[Moment], share: int) -> Part:
+def _part(title: str, simulated: bool, moments: list[Moment], share: int) -> TrafficPart:
     ordered = _few_lanes(sorted(moments, key=lambda moment: moment.t))
     if len(ordered) <= share + 2:  # leaving out one or two is not worth it
-        return Part(title, simulated, tuple(ordered))
+        return TrafficPart(title, simulated, tuple(ordered))
     # The beginning shows the pattern and the end shows the outcome. The middle repeats, except for important moments.
     tail = share // 3
     head = share - tail
@@ -134,7 +134,7 @@ def _part(title: str, simulated: bool, moments: list[Moment], share: int) -> Par
             kept.append(moment)
         else:
             gaps[len(kept) - 1] = gaps.get(len(kept) - 1, 0) + 1
-    return Part(title, simulated, tuple(kept), gaps)
+    return TrafficPart(title, simulated, tuple(kept), gaps)
 
 
 def _few_lanes(moments: list[Moment]) -> list[Moment]:

@@ -11,7 +11,7 @@ from autograder.cards.tracebacks import TRACEBACK, last_error
 from autograder.verdict import State
 
 if TYPE_CHECKING:
-    from autograder.cards.traffic import Part, Traffic
+    from autograder.cards.traffic import Traffic, TrafficPart
     from autograder.verdict import Criterion, Moment, Verdict
 
 STATE_WORDS = {
@@ -182,12 +182,12 @@ def moment_in_words(moment: Moment, when: str) -> str:
     return f"{at} on {where}, {direction(moment.direction)}: {one_line(moment.label, 200)}"
 
 
-def part_in_words(part: Part) -> str:
+def part_in_words(part: TrafficPart) -> str:
     """Return a picture of the traffic in words, one sentence for each lane."""
     return " ".join(_lane_in_words(part, lane) for lane in part.lanes)
 
 
-def _lane_in_words(part: Part, lane: str) -> str:
+def _lane_in_words(part: TrafficPart, lane: str) -> str:
     members = [index for index, moment in enumerate(part.moments) if moment.lane == lane]
     counts = Counter(direction(part.moments[index].direction) for index in members)
     listed = ", ".join(f"{count} {words}" for words, count in counts.items())

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from autograder.grading.class_store import ClassStore
-from autograder.grading.classes.class_directory import ClassDirectory, Refused, Submission
+from autograder.grading.classes.class_directory import ClassDirectory, RefusedFile, Submission
 from autograder.grading.classes.configuration import check_configuration, limits_of
 from autograder.grading.classes.origins import news
 from autograder.grading.classes.timestamps import handed_in_at
@@ -156,7 +156,7 @@ class _Batch:
             raise MasterUnusable(next(iter(released.unusable.values())))
         self._works: list[Work] = []
         self._others: list[Work] = []
-        self._refused: list[Refused] = []
+        self._refused: list[RefusedFile] = []
         self._problems: list[str] = []
         self._notices: list[str] = []
         self._entries: Entries = {}

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.grading.classes.class_directory import Refused
+from autograder.grading.classes.class_directory import RefusedFile
 from autograder.grading.classes.timestamps import handed_in_at, is_not_believed
 from autograder.grading.collecting.table import NAME, Table
 from autograder.grading.entering.gradebook_reading import CellEntry, SubmissionEntry, read_due_dates
@@ -47,7 +47,7 @@ class AskedFor:
             not self.students or student in self.students
         )
 
-    def tells_of(self, refused: Refused, class_folder: Path) -> bool:
+    def tells_of(self, refused: RefusedFile, class_folder: Path) -> bool:
         """True if a refused file belongs to the chosen students and assignments."""
         submitted = class_folder / "submitted"
         if submitted not in refused.path.parents:
@@ -109,7 +109,7 @@ class FoundWork:
 
     works: list[Work]
     others: list[Work]
-    refused: list[Refused]
+    refused: list[RefusedFile]
     notices: list[str]
 
 
@@ -119,7 +119,7 @@ def find_work(
     released: Released,
     roster: Roster,
     fingerprints: Fingerprints,
-    beside: Iterable[Refused],
+    beside: Iterable[RefusedFile],
 ) -> FoundWork:
     """Find the submissions of a class, and those that are chosen.
 
@@ -158,7 +158,7 @@ def find_work(
     return found
 
 
-def _unusable(directory: ClassDirectory, asked: AskedFor, released: Released) -> Iterator[Refused]:
+def _unusable(directory: ClassDirectory, asked: AskedFor, released: Released) -> Iterator[RefusedFile]:
     """Yield the assignments that cannot be graded; they do not stop the others.
 
     Raises:
@@ -168,18 +168,18 @@ def _unusable(directory: ClassDirectory, asked: AskedFor, released: Released) ->
         if name in asked.assignments:
             raise MasterUnusable(reason)
         if not asked.assignments:
-            yield Refused(directory.path / "source" / name, f"{reason} The other assignments are graded.")
+            yield RefusedFile(directory.path / "source" / name, f"{reason} The other assignments are graded.")
 
 
-def _unplaced(directory: ClassDirectory, asked: AskedFor) -> Iterator[Refused]:
+def _unplaced(directory: ClassDirectory, asked: AskedFor) -> Iterator[RefusedFile]:
     """Yield collected files without a place; the instructor is told of them until they have one."""
     table = Table(directory)
     for one in table.waiting():
         if asked.has(one.student, one.assignment) or not (one.student and one.assignment):
-            yield Refused(Path(one.label), f"not placed: {one.sentence}")
+            yield RefusedFile(Path(one.label), f"not placed: {one.sentence}")
     if table.is_edited:
         path = directory.path
-        yield Refused(path / NAME, f"it was edited since: type {course_command('collect', path)}")
+        yield RefusedFile(path / NAME, f"it was edited since: type {course_command('collect', path)}")
 
 
 def would_change(

@@ -35,7 +35,7 @@ WIDTH = 140
 
 
 @dataclass(frozen=True)
-class Reference:
+class ReferenceSolution:
     """A reference solution.
 
     Attributes:

@@ -35,7 +35,7 @@ MOST = 4_000_000
 
 
 @dataclass(frozen=True)
-class Entry:
+class JournalEntry:
     """A line of the journal.
 
     Attributes:
@@ -94,10 +94,10 @@ def note_check(verdict: Verdict, journal: Path | None = None) -> None:
         journal: Where; this session's own where not given.
     """
     if verdict.state != "not_checked":
-        note(Entry("check", verdict.exercise, time.time(), verdict.score, verdict.max_score), journal)
+        note(JournalEntry("check", verdict.exercise, time.time(), verdict.score, verdict.max_score), journal)
 
 
-def note(entry: Entry, journal: Path | None = None) -> bool:
+def note(entry: JournalEntry, journal: Path | None = None) -> bool:
     """Append a line. Return True if it could be written.
 
     Args:
@@ -118,7 +118,7 @@ def note(entry: Entry, journal: Path | None = None) -> bool:
     return True
 
 
-def entries(journal: Path | None) -> list[Entry]:
+def entries(journal: Path | None) -> list[JournalEntry]:
     """Return the readable lines, the oldest first; none if there is no journal."""
     try:
         if journal is None:
@@ -131,13 +131,13 @@ def entries(journal: Path | None) -> list[Entry]:
     found = []
     for line in text.splitlines():
         with contextlib.suppress(msgspec.MsgspecError, UnicodeDecodeError):
-            found.append(msgspec.json.decode(line, type=Entry))
+            found.append(msgspec.json.decode(line, type=JournalEntry))
     return found
 
 
-def best(lines: Iterable[Entry]) -> dict[str, Entry]:
+def best(lines: Iterable[JournalEntry]) -> dict[str, JournalEntry]:
     """Return for each exercise the first of its best checks since its notebook was last reset."""
-    found: dict[str, dict[str, Entry]] = {}
+    found: dict[str, dict[str, JournalEntry]] = {}
     for entry in lines:
         if entry.kind == "reset":
             found.pop(entry.name, None)
@@ -148,7 +148,7 @@ def best(lines: Iterable[Entry]) -> dict[str, Entry]:
     return {name: entry for of_notebook in found.values() for name, entry in of_notebook.items()}
 
 
-def finished(chapter: course.Chapter, reached: dict[str, Entry]) -> float | None:
+def finished(chapter: course.Chapter, reached: dict[str, JournalEntry]) -> float | None:
     """Return the time at which all points of a chapter were reached; None before that.
 
     Args:

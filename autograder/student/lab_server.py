@@ -112,7 +112,7 @@ class ReadNotebook(_CourseHandler):
         self._note("unread")
 
     def _note(self, kind: Any) -> None:
-        if not journal.note(journal.Entry(kind, self.name_in_body(), time.time()), self.journal):
+        if not journal.note(journal.JournalEntry(kind, self.name_in_body(), time.time()), self.journal):
             raise web.HTTPError(500, reason="the journal cannot be written")
         self.set_status(204)
 

@@ -55,7 +55,7 @@ def reset(root: Path, folder: Path, name: str, entries_in: Path | None = None) -
         write_whole(path, fresh)
     except OSError as error:
         raise CannotReset(f"{path} cannot be put back: {error.strerror or error}") from error
-    journal.note(journal.Entry("reset", lab.name, time.time()), entries_in)
+    journal.note(journal.JournalEntry("reset", lab.name, time.time()), entries_in)
     return Reset(path, copy)
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from autograder.student.journal import Entry
+    from autograder.student.journal import JournalEntry
 
 State = Literal["new", "begun", "done"]
 
@@ -130,7 +130,7 @@ class Standing:
     begun: bool
 
 
-def standing(root: Path, folder: Path, entries: Sequence[Entry]) -> Standing:
+def standing(root: Path, folder: Path, entries: Sequence[JournalEntry]) -> Standing:
     """Return the progress of a student.
 
     Args:
@@ -162,9 +162,9 @@ def _following(notebooks: Sequence[NotebookStanding]) -> NotebookStanding | None
 def _chapter(
     chapter: course.Chapter,
     folder: Path,
-    reached: dict[str, Entry],
+    reached: dict[str, JournalEntry],
     read: dict[str, bool],
-    last: dict[str, Entry],
+    last: dict[str, JournalEntry],
 ) -> ChapterStanding:
     notebooks = []
     for lab in chapter.labs:
@@ -193,7 +193,7 @@ def notebook_path(chapter: course.Chapter, lab: Path, folder: Path) -> Path:
     return alone if alone.is_file() else folder / chapter.folder.name / f"{lab.name}.ipynb"
 
 
-def _exercise(exercise_id: str, reached: dict[str, Entry]) -> ExerciseStanding:
+def _exercise(exercise_id: str, reached: dict[str, JournalEntry]) -> ExerciseStanding:
     exercise = exercises.get(exercise_id)
     points = reached[exercise_id].points if exercise_id in reached else 0.0
     return ExerciseStanding(exercise_id, exercise.title, min(points, exercise.points), exercise.points)

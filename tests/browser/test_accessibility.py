@@ -13,7 +13,7 @@ import pytest
 from autograder import exercises
 from autograder.cards.bundle import card_html, waiting_bundle
 from autograder.student import journal
-from autograder.student.journal import Entry
+from autograder.student.journal import JournalEntry
 from autograder.verdict import from_json
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -57,7 +57,9 @@ def note_points(chapters: Path, share: float) -> None:
     names = exercises.all_ids()
     for exercise in names if share == 1 else names[::2]:
         possible = exercises.get(exercise).points
-        assert journal.note(Entry("check", exercise, 1, share * possible, possible), chapters / journal.NAME)
+        assert journal.note(
+            JournalEntry("check", exercise, 1, share * possible, possible), chapters / journal.NAME
+        )
 
 
 def answer(file: str) -> str:
@@ -103,7 +105,7 @@ def test_the_side_panel_and_a_card_in_jupyterlab_by_the_keyboard(
         for exercise in exercises.all_ids():
             if exercise.startswith(f"{lab_before}."):
                 points = exercises.get(exercise).points
-                journal.note(Entry("check", exercise, 1, points, points), chapters / journal.NAME)
+                journal.note(JournalEntry("check", exercise, 1, points, points), chapters / journal.NAME)
     page.goto(lab.format("lab"))
     panel = page.frame_locator("iframe[title=Course]")
     expect(panel.locator("#continue")).to_contain_text("Lab 1.2")

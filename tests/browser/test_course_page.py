@@ -11,7 +11,7 @@ import pytest
 
 from autograder import exercises
 from autograder.student import journal
-from autograder.student.journal import Entry
+from autograder.student.journal import JournalEntry
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,7 +52,7 @@ def all_but(here: Sequence[str], chapters: Path) -> None:
     for exercise in exercises.all_ids():
         points = exercises.get(exercise).points
         if exercise not in here:
-            assert journal.note(Entry("check", exercise, 1, points, points), chapters / journal.NAME)
+            assert journal.note(JournalEntry("check", exercise, 1, points, points), chapters / journal.NAME)
 
 
 def look(page: Page, name: str) -> None:

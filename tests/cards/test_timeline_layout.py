@@ -10,13 +10,13 @@ import pytest
 from autograder.cards import readable
 from autograder.cards.axis import TURNS
 from autograder.cards.timeline_layout import HALF_WIDTH, WIDTH, Lane, Mark, Picture, picture
-from autograder.cards.traffic import Part, traffic
+from autograder.cards.traffic import TrafficPart, traffic
 from autograder.verdict import Moment, Verdict
 
 CHARACTER = 6.62  # pixels of a character of the 11-pixel label font (DejaVu Sans Mono and Menlo: 0.602 em)
 
 
-def parts_of(verdict: Verdict) -> tuple[Part, ...]:
+def parts_of(verdict: Verdict) -> tuple[TrafficPart, ...]:
     return traffic(verdict.timeline, at_most=60).parts
 
 
@@ -79,7 +79,7 @@ def test_any_traffic_is_legible() -> None:
             assert_legible(picture(part, WIDTH), WIDTH)
 
 
-def marks_of(part: Part, width: int = WIDTH) -> list[Mark]:
+def marks_of(part: TrafficPart, width: int = WIDTH) -> list[Mark]:
     """The marks in the order of the part's moments."""
     drawn = picture(part, width)
     in_lane = {name: iter(lane.marks) for name, lane in zip(part.lanes, drawn.lanes, strict=True)}
@@ -112,7 +112,7 @@ def test_moments_of_one_time_stand_at_one_x_and_hide_each_other_not() -> None:
         Moment(1.0, "/add", "to_subject", "a=1"),
         Moment(1.0, "/add", "from_subject", "sum=1"),
     )
-    one, two, three, four = marks_of(Part("", False, moments))
+    one, two, three, four = marks_of(TrafficPart("", False, moments))
     assert one.x == two.x
     assert three.x == four.x
     assert four.y - three.y >= 11
@@ -120,7 +120,7 @@ def test_moments_of_one_time_stand_at_one_x_and_hide_each_other_not() -> None:
 
 def test_time_that_stands_still_has_an_order_and_no_seconds() -> None:
     moments = tuple(Moment(0.0, "/chatter", "to_subject", f"text {n}", "", True) for n in range(6))
-    part = Part("", True, moments)
+    part = TrafficPart("", True, moments)
     drawn = picture(part)
     xs = [mark.x for mark in drawn.lanes[0].marks]
     assert all(left < right for left, right in pairwise(xs))
@@ -157,14 +157,14 @@ def test_what_the_story_hangs_on_is_always_labelled() -> None:
 
 def test_draws_an_uncrowded_axis_true_to_time() -> None:
     moments = tuple(Moment(float(second), "/chatter", "note", "") for second in range(9))
-    xs = [mark.x for mark in picture(Part("", False, moments)).lanes[0].marks]
+    xs = [mark.x for mark in picture(TrafficPart("", False, moments)).lanes[0].marks]
     steps = [right - left for left, right in pairwise(xs)]
     assert max(steps) - min(steps) < 0.05
 
 
 def test_ticks_stand_at_their_times() -> None:
     moments = (Moment(0.0, "a", "note", "x"), Moment(4.0, "a", "note", "y"))
-    drawn = picture(Part("", False, moments))
+    drawn = picture(TrafficPart("", False, moments))
     by_text = {tick.text: tick.x for tick in drawn.ticks}
     assert by_text["0 s"] == drawn.lanes[0].marks[0].x
     assert by_text["4 s"] == drawn.lanes[0].marks[1].x
@@ -172,22 +172,22 @@ def test_ticks_stand_at_their_times() -> None:
 
 def test_milliseconds_are_written_as_such() -> None:
     moments = (Moment(0.214, "a", "note", "x"), Moment(0.219, "a", "note", "y"))
-    assert "216 ms" in {tick.text for tick in picture(Part("", False, moments)).ticks}
+    assert "216 ms" in {tick.text for tick in picture(TrafficPart("", False, moments)).ticks}
 
 
 def test_a_single_moment_and_equal_moments_can_be_drawn() -> None:
     for t in (0.0, 5.0, -3.0):
         for count in (1, 3):
-            assert_legible(picture(Part("", False, (Moment(t, "a", "note", "x"),) * count)), WIDTH)
+            assert_legible(picture(TrafficPart("", False, (Moment(t, "a", "note", "x"),) * count)), WIDTH)
 
 
 def test_repeated_words_are_written_once_in_a_full_lane() -> None:
     moments = tuple(Moment(t / 2, "/chatter", "from_subject", f"Hello, world! {t}") for t in range(8))
-    labels = [mark.label for mark in picture(Part("", False, moments)).lanes[0].marks]
+    labels = [mark.label for mark in picture(TrafficPart("", False, moments)).lanes[0].marks]
     assert labels == ["Hello, world! 0", *(f"…{number}" for number in range(1, 8))]
 
 
 def test_the_same_label_again_is_not_repeated() -> None:
     moments = tuple(Moment(float(t), "log", "from_subject", "waiting again...") for t in range(7))
-    labels = [mark.label for mark in picture(Part("", False, moments)).lanes[0].marks]
+    labels = [mark.label for mark in picture(TrafficPart("", False, moments)).lanes[0].marks]
     assert labels == ["waiting again...", *[""] * 6]

@@ -14,17 +14,17 @@ from autograder.cards.certificate import WORDS, certificate_svg
 from autograder.cli import cli
 from autograder.student import journal
 from autograder.student.course_page import hours, page_html, trouble_html
-from autograder.student.journal import Entry
+from autograder.student.journal import JournalEntry
 from autograder.student.standing import standing
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 ROOT = course.root()
-TALKER = Entry("check", "lab_1_2.talker", 1, 10, 10)
+TALKER = JournalEntry("check", "lab_1_2.talker", 1, 10, 10)
 
 
-def page(*entries: Entry) -> str:
+def page(*entries: JournalEntry) -> str:
     return page_html(standing(ROOT, ROOT / course.CHAPTERS, entries), "/user/ann/", "token")
 
 
@@ -49,7 +49,7 @@ def test_a_course_that_cannot_be_read_still_has_a_way_to_the_notebooks() -> None
 
 
 def test_a_certificate_comes_with_the_last_point_and_says_what_it_is_worth() -> None:
-    everything = [Entry("check", exercise, 86_400, 10, 10) for exercise in exercises.all_ids()]
+    everything = [JournalEntry("check", exercise, 86_400, 10, 10) for exercise in exercises.all_ids()]
     assert WORDS not in page(*everything[1:]).partition("</h2>")[2].partition("</section>")[0]
     assert WORDS in page(*everything)
     svg = certificate_svg("Nodes & <Topics>", 130, 86_400)

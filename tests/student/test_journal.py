@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.student import journal
-from autograder.student.journal import Entry
+from autograder.student.journal import JournalEntry
 from autograder.verdict import State, Verdict, not_checked
 
 if TYPE_CHECKING:
@@ -44,20 +44,20 @@ def test_a_link_in_anothers_folder_has_no_line_written_elsewhere(kept: Path, tmp
     own.write_text("export A=1\n")
     kept.parent.mkdir()
     kept.symlink_to(own)
-    assert not journal.note(Entry("read", "lab", 1))
+    assert not journal.note(JournalEntry("read", "lab", 1))
     assert own.read_text() == "export A=1\n"
     assert journal.entries(kept) == []
 
 
 def test_each_line_of_a_journal_made_by_hand_is_looked_at_once() -> None:
     """Looking at all others for each would take minutes here."""
-    checks = [Entry("check", f"lab.{number}", 1, 1, 10) for number in range(30_000)]
-    assert len(journal.best([*checks, *(Entry("reset", "other", 2) for _ in range(30_000))])) == 30_000
+    checks = [JournalEntry("check", f"lab.{number}", 1, 1, 10) for number in range(30_000)]
+    assert len(journal.best([*checks, *(JournalEntry("reset", "other", 2) for _ in range(30_000))])) == 30_000
 
 
 def test_points_begin_anew_with_the_notebook(kept: Path) -> None:
-    lines = [Entry("check", "lab.talker", 1, 10, 10), Entry("check", "lab_2.server", 2, 5, 10)]
-    lines += [Entry("reset", "lab", 3), Entry("check", "lab.listener", 4, 3, 10)]
+    lines = [JournalEntry("check", "lab.talker", 1, 10, 10), JournalEntry("check", "lab_2.server", 2, 5, 10)]
+    lines += [JournalEntry("reset", "lab", 3), JournalEntry("check", "lab.listener", 4, 3, 10)]
     assert sorted(journal.best(lines)) == ["lab.listener", "lab_2.server"]
 
 
@@ -85,7 +85,7 @@ def test_what_is_no_journal_keeps_nobody_waiting(kept: Path, what: str) -> None:
         kept.parent.mkdir()
         (os.mkdir if what == "folder" else os.mkfifo)(kept)
     journal.note_check(verdict(10))
-    assert not journal.note(Entry("read", "lab", 1))
+    assert not journal.note(JournalEntry("read", "lab", 1))
     assert journal.entries(kept) == []
 
 
@@ -98,11 +98,11 @@ def test_where_no_file_may_be_made_it_is_in_the_home_one_for_each_folder(
     first, second = journal.place(tmp_path / "a"), journal.place(tmp_path / "b")
     assert first.parent == second.parent == tmp_path / "home" / "ros2-course"
     assert first != second
-    assert journal.note(Entry("read", "lab", 1), first)
+    assert journal.note(JournalEntry("read", "lab", 1), first)
     assert len(journal.entries(first)) == 1
 
 
 def test_an_empty_name_means_no_journal(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(journal.VARIABLE, "")
     assert journal.own_place() is None
-    assert not journal.note(Entry("read", "lab", 1))
+    assert not journal.note(JournalEntry("read", "lab", 1))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from autograder import course, exercises
 from autograder.student.handing_out import hand_out
-from autograder.student.journal import Entry
+from autograder.student.journal import JournalEntry
 from autograder.student.standing import Standing, standing
 
 if TYPE_CHECKING:
@@ -16,13 +16,13 @@ ROOT = course.root()
 FOLDER = ROOT / course.CHAPTERS
 
 
-def after(*entries: Entry) -> Standing:
+def after(*entries: JournalEntry) -> Standing:
     return standing(ROOT, FOLDER, entries)
 
 
-def full(exercise: str, time: float = 1) -> Entry:
+def full(exercise: str, time: float = 1) -> JournalEntry:
     points = exercises.get(exercise).points
-    return Entry("check", exercise, time, points, points)
+    return JournalEntry("check", exercise, time, points, points)
 
 
 def exercises_of(notebook: str) -> list[str]:
@@ -41,22 +41,22 @@ def test_it_has_the_notebooks_in_their_order_with_their_titles_and_minutes() -> 
 def test_points_make_a_notebook_done_and_a_mark_one_that_is_only_read() -> None:
     lines = [
         full("lab_1_2.talker"),
-        Entry("check", "lab_1_2.listener", 2, 99, 10),
+        JournalEntry("check", "lab_1_2.listener", 2, 99, 10),
         full("lab_1_2.programs"),
-        Entry("read", "inspecting_actions", 3),
+        JournalEntry("read", "inspecting_actions", 3),
     ]
     states = {one.name: one for one in after(*lines).chapters[0].notebooks}
     assert (states["lab_1_2"].state, states["lab_1_2"].points) == ("done", states["lab_1_2"].possible)
     assert states["inspecting_actions"].state == "done"
     states = {
         one.name: one
-        for one in after(lines[0], Entry("unread", "inspecting_actions", 4)).chapters[0].notebooks
+        for one in after(lines[0], JournalEntry("unread", "inspecting_actions", 4)).chapters[0].notebooks
     }
     assert (states["lab_1_2"].state, states["inspecting_actions"].state) == ("begun", "new")
 
 
 def test_one_goes_on_where_one_has_worked_last() -> None:
-    def following(*entries: Entry) -> str | None:
+    def following(*entries: JournalEntry) -> str | None:
         found = after(*entries).following
         return found.name if found else None
 
@@ -66,10 +66,10 @@ def test_one_goes_on_where_one_has_worked_last() -> None:
     done = [full(exercise, 2) for exercise in exercises_of("lab_1_2")]
     assert following(*done) == names[names.index("lab_1_2") + 1]
     assert following(*done, full("lab_1_4.client", 1)) == names[names.index("lab_1_2") + 1]
-    assert following(*done, Entry("reset", "lab_1_1", 3)) == "lab_1_1"
+    assert following(*done, JournalEntry("reset", "lab_1_1", 3)) == "lab_1_1"
     assert following(*done, full("summary.patrol", 3)) == names[0]
     everything = [full(exercise) for exercise in exercises.all_ids()]
-    read = [Entry("read", name, 2) for name in names]
+    read = [JournalEntry("read", name, 2) for name in names]
     assert following(*everything, *read[1:]) == (None if exercises_of(names[0]) else names[0])
     assert following(*everything, *read) is None
 
@@ -78,14 +78,14 @@ def test_only_what_was_begun_can_be_begun_anew(tmp_path: Path) -> None:
     hand_out(tmp_path / "class", ROOT)
     chapters = tmp_path / "class" / course.CHAPTERS
 
-    def touched(*entries: Entry) -> list[str]:
+    def touched(*entries: JournalEntry) -> list[str]:
         found = standing(tmp_path / "class", chapters, entries).chapters[0].notebooks
         return [one.name for one in found if one.touched]
 
     assert touched() == []
-    checked = Entry("check", "lab_1_2.talker", 1, 0, 10)
+    checked = JournalEntry("check", "lab_1_2.talker", 1, 0, 10)
     assert touched(checked) == ["lab_1_2"]
-    assert touched(checked, Entry("reset", "lab_1_2", 2)) == []
+    assert touched(checked, JournalEntry("reset", "lab_1_2", 2)) == []
     saved = next(chapters.rglob("lab_1_3.ipynb"))
     saved.write_bytes(saved.read_bytes() + b"\n")
     assert touched() == ["lab_1_3"]

@@ -55,7 +55,7 @@ class Submission:
 
 
 @dataclass(frozen=True)
-class Refused:
+class RefusedFile:
     """A file or folder in ``submitted`` that cannot be graded under its name.
 
     Attributes:
@@ -218,14 +218,14 @@ class ClassDirectory:
             )
         }
 
-    def submissions(self) -> tuple[list[Submission], list[Refused]]:
+    def submissions(self) -> tuple[list[Submission], list[RefusedFile]]:
         """Return everything that was handed in, and what cannot be graded under its name.
 
         A notebook that is not an ordinary file is in both lists: it gets zero points and the reason.
         """
         notebooks = {assignment: self.notebooks(assignment) for assignment in self.assignments()}
         taken: list[Submission] = []
-        refused: list[Refused] = []
+        refused: list[RefusedFile] = []
         for student in _folders(self.path / "submitted", refused):
             for folder in _folders(student, refused):
                 if folder.name in notebooks:
@@ -234,7 +234,7 @@ class ClassDirectory:
                 else:
                     known = ", ".join(notebooks) or "none"
                     refused.append(
-                        Refused(folder, f"the class has no assignment of that name (it has: {known})")
+                        RefusedFile(folder, f"the class has no assignment of that name (it has: {known})")
                     )
         return taken, refused
 
@@ -303,37 +303,37 @@ def reason_against_name(name: str) -> str:
     return ""
 
 
-def _odd_files(paths: Iterable[Path]) -> Iterator[Refused]:
+def _odd_files(paths: Iterable[Path]) -> Iterator[RefusedFile]:
     for path in paths:
         reason = reason_against_file(path)
         if reason:
-            yield Refused(path, reason)
+            yield RefusedFile(path, reason)
 
 
-def _folders(parent: Path, refused: list[Refused]) -> list[Path]:
+def _folders(parent: Path, refused: list[RefusedFile]) -> list[Path]:
     """Return the folders in ``parent`` with usable names; hidden entries and plain files are ignored."""
     found = []
     for entry in _entries(parent, refused):
         if entry.name.startswith("."):
             continue
         if entry.is_symlink():
-            refused.append(Refused(entry, "it is a link; put the folder itself there"))
+            refused.append(RefusedFile(entry, "it is a link; put the folder itself there"))
         elif entry.is_dir():
             reason = reason_against_name(entry.name)
             if reason:
-                refused.append(Refused(entry, f"{reason}; rename the folder"))
+                refused.append(RefusedFile(entry, f"{reason}; rename the folder"))
             else:
                 found.append(entry)
         elif not entry.is_file():
-            refused.append(Refused(entry, "it is neither a folder nor a file; remove it"))
+            refused.append(RefusedFile(entry, "it is neither a folder nor a file; remove it"))
     return found
 
 
-def _entries(parent: Path, refused: list[Refused]) -> list[Path]:
+def _entries(parent: Path, refused: list[RefusedFile]) -> list[Path]:
     try:
         return sorted(parent.iterdir())
     except FileNotFoundError:
         return []
     except OSError as error:
-        refused.append(Refused(parent, f"it could not be read: {error.strerror}"))
+        refused.append(RefusedFile(parent, f"it could not be read: {error.strerror}"))
         return []

@@ -7,7 +7,7 @@ import importlib.util
 import re  # noqa: TID251  (an instructor's address)
 from typing import TYPE_CHECKING
 
-from autograder.grading.cluster.link import Link
+from autograder.grading.cluster.link import ClientLink
 from autograder.grading.errors import GradingError
 from autograder.grading.running.dispatcher import Dispatcher
 from environment.installation import installing
@@ -62,7 +62,7 @@ def connected(
         SchedulerGone: No scheduler answers at that address.
         NoWorkers: The scheduler has no worker that can be given work.
     """
-    with Link(address) as link:
+    with ClientLink(address) as link:
         pool = Dispatcher(link, address, judge=judge, boxed=boxed, tell=tell)
         pool.await_workers()
         yield pool

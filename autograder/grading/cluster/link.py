@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _GOODBYE_SECONDS = 1.5
 
 
-class Link:
+class ClientLink:
     """A running client process; leaving the context ends it.
 
     Args:

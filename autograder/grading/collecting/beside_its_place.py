@@ -7,7 +7,7 @@ import unicodedata
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, Refused
+from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, RefusedFile
 from autograder.grading.collecting.forms import base_and_number
 from environment.installation import COMMAND
 
@@ -36,7 +36,7 @@ def put_right(directory: ClassDirectory) -> Iterator[str]:
                     yield f"{label} was called {others[0].name} and is graded"
 
 
-def beside_their_place(directory: ClassDirectory) -> tuple[list[Refused], list[str]]:
+def beside_their_place(directory: ClassDirectory) -> tuple[list[RefusedFile], list[str]]:
     """Return what a person has to move, and sentences for the instructor; one for each folder."""
     submitted = directory.path / "submitted"
     refused = _refused(
@@ -71,11 +71,11 @@ def _of_assignments(directory: ClassDirectory) -> Iterator[tuple[Path, list[Path
                 yield folder, [folder / f"{name}{SUFFIX}" for name in notebooks[folder.name]]
 
 
-def _refused(folder: Path, what_to_do: str, places: Container[Path] = ()) -> list[Refused]:
+def _refused(folder: Path, what_to_do: str, places: Container[Path] = ()) -> list[RefusedFile]:
     """Return one line for all notebooks and archives in a folder, except those at the right path."""
     others = _work(folder, places)
     more = f", nor are {len(others) - 1} more files here" if others[1:] else ""
-    return [Refused(others[0], f"it is not graded in this place{more}: {what_to_do}")] if others else []
+    return [RefusedFile(others[0], f"it is not graded in this place{more}: {what_to_do}")] if others else []
 
 
 def _rename(entry: Path, place: Path) -> bool:

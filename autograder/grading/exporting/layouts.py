@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Layout:
+class GradebookLayout:
     """The format of one system's gradebook file.
 
     Attributes:
@@ -47,33 +47,33 @@ class Layout:
 
 
 LAYOUTS = {
-    "canvas": Layout(
+    "canvas": GradebookLayout(
         "Canvas: Grades, Import",
         {"Student": "name", "ID": "there", "SIS User ID": "", "SIS Login ID": "id", "Section": "section"},
         possible="    Points Possible",
         excused="EX",
     ),
-    "moodle": Layout(
+    "moodle": GradebookLayout(
         "Moodle: Grades, Import, CSV file; map Email address and the assignments",
         {"First name": "first", "Last name": "last", "ID number": "id", "Email address": "email"},
     ),
-    "gradescope": Layout(
+    "gradescope": GradebookLayout(
         "the scores in the form in which Gradescope exports them",
         {"First Name": "first", "Last Name": "last", "SID": "id", "Email": "email"},
         most="{name} - Max Points",
     ),
-    "blackboard": Layout(
+    "blackboard": GradebookLayout(
         "Blackboard: Grade Center, Work Offline, Upload",
         {"Last Name": "last", "First Name": "first", "Username": "user"},
         points="{name} [Total Pts: {most:g} Score]",
     ),
-    "brightspace": Layout(
+    "brightspace": GradebookLayout(
         "Brightspace: Grades, Enter Grades, Import",
         {"OrgDefinedId": "#id"},
         points="{name} Points Grade",
         end={"End-of-Line Indicator": "#"},
     ),
-    "sakai": Layout(
+    "sakai": GradebookLayout(
         "Sakai: Gradebook, Import Grades",
         {"Student ID": "user", "Student Name": "name"},
         points="{name} [{most:g}]",

@@ -138,7 +138,7 @@ def _cell(row: Row | None) -> str:
     return f"{row.score:g}{row.mark}"
 
 
-def _progress(store: ClassStore, table: ClassTable) -> list[figures.Progress]:
+def _progress(store: ClassStore, table: ClassTable) -> list[figures.AttemptProgress]:
     """Return the students whose work was graded more than once, those who gained most first."""
     found = [one for student in table.students for one in figures.progress(student, store.attempts(student))]
     return sorted(found, key=lambda one: one.first - one.last)

@@ -101,7 +101,7 @@ class MistakeFigures:
 
 
 @dataclass(frozen=True)
-class Progress:
+class AttemptProgress:
     """The judge's points of a student's first and last attempt at an assignment.
 
     Attributes:
@@ -121,7 +121,7 @@ class Progress:
     max_score: float
 
 
-def progress(student: str, attempts: Iterable[Attempt]) -> list[Progress]:
+def progress(student: str, attempts: Iterable[Attempt]) -> list[AttemptProgress]:
     """Return how a student's points developed over the attempts.
 
     Args:
@@ -142,7 +142,7 @@ def progress(student: str, attempts: Iterable[Attempt]) -> list[Progress]:
         first, last = (sum(row.score for row in one.rows) for one in (same[0], same[-1]))
         if works > 1:
             most = sum(row.max_score for row in same[-1].rows)
-            shown.append(Progress(student, assignment, works, first, last, most))
+            shown.append(AttemptProgress(student, assignment, works, first, last, most))
     return shown
 
 

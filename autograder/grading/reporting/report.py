@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from datetime import datetime
     from pathlib import Path
 
-    from autograder.grading.classes.class_directory import Refused
+    from autograder.grading.classes.class_directory import RefusedFile
     from autograder.grading.table.class_table import ClassTable
     from autograder.grading.table.point_differences import Difference
 
@@ -49,7 +49,7 @@ class GradeReport:
 
     path: Path
     rows: tuple[Row, ...]
-    refused: tuple[Refused, ...] = ()
+    refused: tuple[RefusedFile, ...] = ()
     problems: tuple[str, ...] = ()
     notices: tuple[str, ...] = ()
     would_change: tuple[Difference, ...] | None = None

@@ -24,7 +24,7 @@ _ALONE = {0x01, *range(0xD0, 0xD8)}
 """JPEG markers without a segment."""
 
 
-class Pictures:
+class PixelBudget:
     """Counts the pixels of the pictures of a notebook."""
 
     def __init__(self) -> None:

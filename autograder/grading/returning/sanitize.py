@@ -22,7 +22,7 @@ from autograder.boxes.outputs import IMAGES
 from autograder.grading.rebuilding import nodes
 from autograder.grading.rebuilding.rebuild import is_check, is_the_masters
 from autograder.grading.rebuilding.submission import HARMLESS_LENGTH
-from autograder.grading.returning.pictures import Pictures, is_shown
+from autograder.grading.returning.pictures import PixelBudget, is_shown
 from autograder.grading.returning.tables import places_in_tables
 
 if TYPE_CHECKING:
@@ -103,7 +103,7 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
         The same notebook.
     """
     longest = _longest_shown([len(cell.source) for n, cell in enumerate(notebook.cells) if n in as_they_are])
-    pictures = Pictures()
+    pictures = PixelBudget()
     for place, cell in enumerate(notebook.cells):
         if not is_the_masters(cell):
             cell.source = visible(cell.source)
@@ -132,7 +132,7 @@ def _pictures_of(cell: NotebookNode) -> list[str]:
     return [*attached, *{found[1] for found in _PICTURE.finditer(cell.source)}]
 
 
-def _with_pictures_that_fit(output: NotebookNode, pictures: Pictures) -> NotebookNode:
+def _with_pictures_that_fit(output: NotebookNode, pictures: PixelBudget) -> NotebookNode:
     """Return an output in which a sentence replaces each picture that a page may not show; the output is changed."""
     for kind in IMAGES:
         encoded = output.get("data", {}).get(kind)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.collecting.beside_its_place import beside_their_place
 from autograder.grading.errors import GradingError, check_known
-from autograder.grading.similarity.own_code import LONGEST, Given, compared
+from autograder.grading.similarity.own_code import LONGEST, GivenTexts, compared
 from autograder.grading.similarity.pairs import Pair, by_students, close_pairs, closest_first
 from autograder.grading.similarity.student_texts import given_texts, read_answers
 from autograder.grading.table.roster import read_roster
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
-    from autograder.grading.classes.class_directory import ClassDirectory, Refused
+    from autograder.grading.classes.class_directory import ClassDirectory, RefusedFile
 
 MOST = 100
 """The most pairs of students to show; a reader needs no more, and they are the closest."""
@@ -70,7 +70,7 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
         raise GradingError(
             f"Nothing was handed in yet{f' for {assignment}' if assignment else ''}, so there is nothing to compare."
         )
-    given = Given(given_texts(directory))
+    given = GivenTexts(given_texts(directory))
     pairs: list[Pair] = []
     notes = []
     read = 0
@@ -106,7 +106,9 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
     )
 
 
-def _not_looked_at(directory: ClassDirectory, refused: Iterable[Refused], assignment: str) -> Iterator[str]:
+def _not_looked_at(
+    directory: ClassDirectory, refused: Iterable[RefusedFile], assignment: str
+) -> Iterator[str]:
     """Yield a line for each file that may be an answer but is in the wrong folder."""
     for one in (*refused, *beside_their_place(directory)[0]):
         # A file above the assignment's folder may belong to any assignment.

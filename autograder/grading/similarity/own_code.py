@@ -12,7 +12,7 @@ from autograder.grading.similarity.words import Word, chosen_names, neutral, wor
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from autograder.grading.similarity.student_texts import Answer
+    from autograder.grading.similarity.student_texts import StudentAnswer
 
 SEQUENCE = 7
 """The number of words in a row that are compared: about one short line."""
@@ -38,7 +38,7 @@ class Compared:
         sequences: The sequences of words that do not come from the task.
     """
 
-    answer: Answer
+    answer: StudentAnswer
     code: Sequence[Word]
     signs: Sequence[str]
     own: Sequence[bool]
@@ -51,7 +51,7 @@ class Compared:
         return sum(self.own)
 
 
-class Given:
+class GivenTexts:
     """The texts that students received, and the solutions.
 
     Args:
@@ -67,7 +67,7 @@ class Given:
         }
 
 
-def compared(answers: Sequence[Answer], given: Given, students: int) -> list[Compared]:
+def compared(answers: Sequence[StudentAnswer], given: GivenTexts, students: int) -> list[Compared]:
     """Find the students' own parts of their answers to one notebook.
 
     Args:

@@ -23,7 +23,7 @@ OWN_CELLS = "own cells"
 
 
 @dataclass(frozen=True)
-class Answer:
+class StudentAnswer:
     """One student's text in one solution cell, or in all cells that the student added.
 
     Attributes:
@@ -51,7 +51,7 @@ class HandedIn:
         troubles: A line for each submission that could not be read, or only partly.
     """
 
-    answers: list[Answer] = field(default_factory=list)
+    answers: list[StudentAnswer] = field(default_factory=list)
     students: list[str] = field(default_factory=list)
     troubles: list[str] = field(default_factory=list)
 
@@ -110,7 +110,7 @@ def read_answers(
         for name in (*answers, OWN_CELLS):
             if name in written:
                 text = "\n\n".join(written[name])
-                found.answers.append(Answer(submission.student, assignment, notebook, name, text))
+                found.answers.append(StudentAnswer(submission.student, assignment, notebook, name, text))
     return found
 
 

@@ -25,7 +25,7 @@ LAST_WORDS = 2.0
 
 
 @dataclass(frozen=True)
-class Outcome:
+class ChildResult:
     """The result of a child process, or the reason why there is none.
 
     Attributes:
@@ -74,7 +74,7 @@ class Child:
             _run(work, writing)
         os.close(writing)
 
-    def result(self, *, within: float | None = None) -> Outcome:
+    def result(self, *, within: float | None = None) -> ChildResult:
         """Wait for the child's result, at most until its time limit.
 
         At the limit, a judge that is deciding is told to stop, and reports that what the subject said
@@ -98,7 +98,7 @@ class Child:
                 continue
             if not ready:
                 self.kill()
-                return Outcome(None, "the judge did not finish in time", hurried, unfinished=True)
+                return ChildResult(None, "the judge did not finish in time", hurried, unfinished=True)
             chunk = os.read(self.reading, 65536)
             if not chunk:
                 break
@@ -106,9 +106,9 @@ class Child:
         os.close(self.reading)
         _, status = os.waitpid(self.pid, 0)
         if os.WIFEXITED(status) and os.WEXITSTATUS(status) == 0 and self._received:
-            return Outcome(bytes(self._received))
+            return ChildResult(bytes(self._received))
         how = f"signal {os.WTERMSIG(status)}" if os.WIFSIGNALED(status) else f"code {os.WEXITSTATUS(status)}"
-        return Outcome(None, f"the judge's process ended with {how} before it had a verdict")
+        return ChildResult(None, f"the judge's process ended with {how} before it had a verdict")
 
     def done(self) -> bool:
         """Return True once the child has ended, and free it. Kill it if its time limit is over."""

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class CellRun:
+class WatchedRun:
     """One run of one cell.
 
     Attributes:
@@ -29,7 +29,7 @@ class CellRun:
     cell: str
     number: int
 
-    def is_later_run_of(self, other: CellRun | None) -> bool:
+    def is_later_run_of(self, other: WatchedRun | None) -> bool:
         """Return True if this is a later run of the same cell."""
         return other is not None and self.cell == other.cell and self.number > other.number
 
@@ -38,8 +38,8 @@ class CellWatch:
     """Follows which cell is running. Outside a notebook no cell runs."""
 
     def __init__(self) -> None:
-        self.current: CellRun | None = None
-        self._before_run: list[Callable[[CellRun], None]] = []
+        self.current: WatchedRun | None = None
+        self._before_run: list[Callable[[WatchedRun], None]] = []
         self._shell: Any = notebook_shell()
         if self._shell is None:
             return
@@ -49,7 +49,7 @@ class CellWatch:
         cell_id = parent.get("metadata", {}).get("cellId")
         self._set_current(cell_id, parent.get("content", {}).get("code", ""))
 
-    def before_each_run(self, action: Callable[[CellRun], None]) -> None:
+    def before_each_run(self, action: Callable[[WatchedRun], None]) -> None:
         """Call a function before each run of a cell."""
         self._before_run.append(action)
 
@@ -58,10 +58,10 @@ class CellWatch:
         for action in self._before_run:
             action(run)
 
-    def _set_current(self, cell_id: str | None, source: str) -> CellRun:
+    def _set_current(self, cell_id: str | None, source: str) -> WatchedRun:
         cell = cell_id or "text:" + hashlib.sha256(source.encode()).hexdigest()
         number = 1 if self.current is None else self.current.number + 1
-        self.current = CellRun(cell, number)
+        self.current = WatchedRun(cell, number)
         return self.current
 
     def _parent_request(self) -> dict[str, Any]:

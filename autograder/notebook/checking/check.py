@@ -40,7 +40,7 @@ class Score(float):
         return '<span class="agc-cell-value" hidden="hidden"></span>'
 
 
-class Place(Protocol):
+class CardPlace(Protocol):
     """The place of a check's card."""
 
     def doing(self, what: str) -> None:
@@ -118,7 +118,7 @@ def _ask(exercise: str, subject: Any, place: CardDisplay) -> Verdict | None:
         link.close()
 
 
-def converse(link: JudgeLink, exercise: str, subject: Any, card: Place) -> Verdict | None:
+def converse(link: JudgeLink, exercise: str, subject: Any, card: CardPlace) -> Verdict | None:
     """Carry out the judge's requests until it has a verdict; None if it reports only to its grader.
 
     Args:
@@ -243,7 +243,7 @@ def _last_words(exercise: str, words: messages.FromJudge) -> Verdict | None:
     return not_checked(exercise, exercise, 0.0, why)
 
 
-def _retold(tell: Tell, card: Place) -> Tell:
+def _retold(tell: Tell, card: CardPlace) -> Tell:
     """Return a function that tells the judge what a program says and shows its last line on the card."""
 
     def told(message: Message) -> None:

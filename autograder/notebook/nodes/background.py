@@ -11,7 +11,7 @@ import threading
 from typing import TYPE_CHECKING, Any
 
 from autograder.notebook.cells.cell_output import let_log_lines_arrive, point_at_raising_lines, say
-from autograder.notebook.cells.cell_runs import CellRun, CellWatch
+from autograder.notebook.cells.cell_runs import CellWatch, WatchedRun
 from autograder.notebook.nodes.callback_errors import CallbackError, CallbackErrors, CallbackFailedError
 from autograder.notebook.nodes.kernel_nodes import MadeNodes, NodeIdentity, destroy_node, node_label
 from autograder.notebook.nodes.ros_session import prepare_environment
@@ -111,7 +111,7 @@ class Background:
 
     def __init__(self, nodes: Sequence[Node], *, threads: int = 1, name: str | None = None) -> None:
         self.name = name
-        self.run: CellRun | None = _cells.current
+        self.run: WatchedRun | None = _cells.current
         self._size = threads
         self._label = ", ".join(node_label(node) for node in nodes)
         self._errors = CallbackErrors()
@@ -273,7 +273,7 @@ def _background_of(node: Node) -> Background | None:
     return next((b for b in running_backgrounds() if any(node is other for other in b.nodes)), None)
 
 
-def _undo_earlier_run(run: CellRun) -> None:
+def _undo_earlier_run(run: WatchedRun) -> None:
     """Before a cell is run again, end the nodes of its earlier run: their messages would mix with the new run's.
 
     A node that another cell made only stops spinning, because its variable may be used again. A background

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from rclpy.context import Context
 
-    from autograder.notebook.cells.cell_runs import CellRun
+    from autograder.notebook.cells.cell_runs import WatchedRun
 
 _STOPPED = "was stopped while this call was waiting for its answer"
 
@@ -55,7 +55,7 @@ class MadeNode:
 
     node: Node
     identity: NodeIdentity
-    run: CellRun | None
+    run: WatchedRun | None
 
 
 class MadeNodes:
@@ -67,12 +67,12 @@ class MadeNodes:
     """
 
     def __init__(
-        self, current_run: Callable[[], CellRun | None], before_making: Callable[[NodeIdentity], None]
+        self, current_run: Callable[[], WatchedRun | None], before_making: Callable[[NodeIdentity], None]
     ) -> None:
         self._current_run = current_run
         self._before_making = before_making
         self._lock = threading.Lock()
-        self._made: list[tuple[weakref.ref[Node], NodeIdentity, CellRun | None]] = []
+        self._made: list[tuple[weakref.ref[Node], NodeIdentity, WatchedRun | None]] = []
 
     def watch(self) -> None:
         """Start recording, by wrapping ``Node.__init__``: rclpy has no other hook for new nodes."""

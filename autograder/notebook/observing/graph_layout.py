@@ -35,7 +35,7 @@ class Arrow:
 
 
 @dataclass(frozen=True)
-class Layout:
+class GraphLayout:
     """Boxes and arrows in pixels.
 
     Attributes:
@@ -49,7 +49,7 @@ class Layout:
     extent: Point
 
 
-def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: float) -> Layout:
+def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: float) -> GraphLayout:
     """Place boxes and arrows, from 0 on.
 
     Args:
@@ -62,7 +62,7 @@ def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: 
     boxes = list(sizes)
     drawn = [(a, b) for a, b in dict.fromkeys(arrows) if a != b]
     if not boxes:
-        return Layout({}, (), (0.0, 0.0))
+        return GraphLayout({}, (), (0.0, 0.0))
     number = {box: index for index, box in enumerate(boxes)}
     edges = [(number[a], number[b]) for a, b in drawn]
     # Reverse these arrows first: igraph 1.0 returns wrong routes for arrows that it reverses itself.
@@ -91,7 +91,7 @@ def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: 
         max(centres[box][0] + sizes[box][0] / 2 for box in boxes),
         max(beside for way in (*ways, [*centres.values()]) for _, beside in way) + start,
     )
-    return Layout(centres, _with_ports(drawn, ways, sizes), extent)
+    return GraphLayout(centres, _with_ports(drawn, ways, sizes), extent)
 
 
 def _push_apart(places: Sequence[list[float]]) -> None:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from autograder.notebook.observing.graph_layout import Arrow, Point, lay_out
 from autograder.notebook.observing.live_picture import LivePicture, as_image, svg_page
-from autograder.notebook.observing.ros_graph import Channel, ChannelKind, RosGraph, look, read_graph
+from autograder.notebook.observing.ros_graph import ChannelKind, GraphChannel, RosGraph, look, read_graph
 from autograder.notebook.observing.topic_traffic import TopicTraffic
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ class GraphPicture:
     """
 
     graph: RosGraph
-    rates: Mapping[Channel, float] = field(default_factory=dict)
+    rates: Mapping[GraphChannel, float] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         """Return the graph in words."""
@@ -177,7 +177,7 @@ def _node_key(node: str) -> str:
     return f"node {node}"
 
 
-def _channel_key(channel: Channel) -> str:
+def _channel_key(channel: GraphChannel) -> str:
     return f"{channel.kind} {channel.name} {channel.type}"
 
 

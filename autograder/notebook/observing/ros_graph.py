@@ -50,7 +50,7 @@ class ChannelKind(StrEnum):
 
 
 @dataclass(frozen=True, order=True)
-class Channel:
+class GraphChannel:
     """A topic, a service or an action."""
 
     kind: ChannelKind
@@ -69,7 +69,7 @@ class End:
     """
 
     node: str
-    channel: Channel
+    channel: GraphChannel
     gives: bool
 
 
@@ -81,7 +81,7 @@ class RosGraph:
     ends: tuple[End, ...]
 
     @property
-    def channels(self) -> tuple[Channel, ...]:
+    def channels(self) -> tuple[GraphChannel, ...]:
         """The topics, services and actions that have an endpoint."""
         return tuple(sorted({end.channel for end in self.ends}))
 
@@ -165,7 +165,7 @@ def _topic_ends(node: Node) -> Iterator[End]:
         ):
             for info in infos:
                 full = _full(info.node_name, info.node_namespace)
-                yield End(full, Channel(ChannelKind.TOPIC, topic, info.topic_type), gives)
+                yield End(full, GraphChannel(ChannelKind.TOPIC, topic, info.topic_type), gives)
 
 
 def _service_and_action_ends(node: Node, name: str, space: str) -> Iterator[End]:
@@ -185,7 +185,7 @@ def _service_and_action_ends(node: Node, name: str, space: str) -> Iterator[End]
             yield End(_full(name, space), channel, gives)
 
 
-def _channels(kind: ChannelKind, names_and_types: Iterable[tuple[str, list[str]]]) -> Iterator[Channel]:
+def _channels(kind: ChannelKind, names_and_types: Iterable[tuple[str, list[str]]]) -> Iterator[GraphChannel]:
     for name, types in names_and_types:
         last = name.rpartition("/")[2]
         common = (
@@ -196,4 +196,4 @@ def _channels(kind: ChannelKind, names_and_types: Iterable[tuple[str, list[str]]
         # An action's own topics and services have names that begin with <action>/_action.
         hidden = any(part.startswith("_") for part in name.split("/"))
         if not common and not hidden:
-            yield from (Channel(kind, name, type_name) for type_name in types)
+            yield from (GraphChannel(kind, name, type_name) for type_name in types)

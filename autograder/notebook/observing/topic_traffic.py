@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
-from autograder.notebook.observing.ros_graph import Channel, ChannelKind
+from autograder.notebook.observing.ros_graph import ChannelKind, GraphChannel
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -39,9 +39,9 @@ class TopicTraffic:
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self._counted: dict[Channel, _Counted | None] = {}
+        self._counted: dict[GraphChannel, _Counted | None] = {}
 
-    def look(self, channels: Iterable[Channel]) -> dict[Channel, float]:
+    def look(self, channels: Iterable[GraphChannel]) -> dict[GraphChannel, float]:
         """Messages in a second on each of these topics since the last look; those that are new are left out."""
         wanted = {channel for channel in channels if channel.kind is ChannelKind.TOPIC}
         for channel in self._counted.keys() - wanted:
@@ -56,7 +56,7 @@ class TopicTraffic:
                 counted.since = now
         return rates
 
-    def _subscribed(self, channel: Channel) -> _Counted | None:
+    def _subscribed(self, channel: GraphChannel) -> _Counted | None:
         try:
             kind = message_class(channel.type)
         except LookupError:
@@ -64,7 +64,7 @@ class TopicTraffic:
         subscription = self._node.create_subscription(kind, channel.name, lambda _: None, ANY, raw=True)
         return _Counted(subscription, time.monotonic())
 
-    def _forget(self, channel: Channel) -> None:
+    def _forget(self, channel: GraphChannel) -> None:
         counted = self._counted.pop(channel)
         if counted is not None:
             self._node.destroy_subscription(counted.subscription)

@@ -48,7 +48,7 @@ class Wall:
 
 
 @dataclass(frozen=True)
-class Room:
+class Walls:
     """The walls around the robot.
 
     Attributes:
@@ -73,11 +73,11 @@ class Room:
         return [min(wall.distance_along(origin, ray) for wall in self.walls) for ray in rays]
 
 
-def _two_rooms() -> Room:
+def _two_rooms() -> Walls:
     corners: tuple[Point, ...] = ((0, 0), (6, 0), (6, 4), (0, 4))
     outer = tuple(Wall(corner, corners[(i + 1) % 4]) for i, corner in enumerate(corners))
     beside_the_door = (Wall((4, 0), (4, 1.4)), Wall((4, 2.6), (4, 4)))
-    return Room(6.0, 4.0, (*outer, *beside_the_door), door=(4.0, 2.0))
+    return Walls(6.0, 4.0, (*outer, *beside_the_door), door=(4.0, 2.0))
 
 
 ROOM = _two_rooms()
@@ -136,7 +136,7 @@ class Moved:
     bumped: bool = False
 
 
-def move(pose: Pose, velocity: Velocity, seconds: float, room: Room) -> Moved:
+def move(pose: Pose, velocity: Velocity, seconds: float, room: Walls) -> Moved:
     """Return the result of turning and rolling for some seconds, at most to the first wall."""
     speed = velocity.within_limits()
     pieces = max(1, math.ceil(abs(speed.forward) * seconds / _STEP))

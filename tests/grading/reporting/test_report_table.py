@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 from rich.console import Console
 
-from autograder.grading.classes.class_directory import Refused
+from autograder.grading.classes.class_directory import RefusedFile
 from autograder.grading.reporting.report import GradeReport
 from autograder.grading.reporting.report_table import show, tables
 from autograder.grading.reporting.rows import Row, columns
@@ -62,7 +62,7 @@ def test_diagnoses_stand_beside_the_points_where_there_is_room() -> None:
 
 def test_a_file_that_is_not_taken_writes_no_line_of_its_own(tiny: TinyClass) -> None:
     out = io.StringIO()
-    refused = Refused(Path("eve.zip"), "nobody is called x\x1b[2J\u202e\nada: 10 of 10")
+    refused = RefusedFile(Path("eve.zip"), "nobody is called x\x1b[2J\u202e\nada: 10 of 10")
     show(GradeReport(tiny.path, (), refused=(refused,)), Console(file=out, width=200))
     (line,) = (line for line in out.getvalue().splitlines() if "eve.zip" in line)
     assert "ada: 10 of 10" in line

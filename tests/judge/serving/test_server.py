@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, cast
 import msgspec
 import pytest
 
-from autograder.judge.serving.fork import Outcome
+from autograder.judge.serving.fork import ChildResult
 from autograder.judge.serving.process import JudgeDied, JudgeProcess, _Child
 from autograder.judge.serving.server import JudgeServer
 from autograder.judge.verdicts import keeping
@@ -181,15 +181,15 @@ def test_a_judge_that_dies_is_reported_and_never_a_verdict(judge: JudgeProcess) 
 class EndedChild:
     """A check's child that has come to this end."""
 
-    def __init__(self, outcome: Outcome) -> None:
+    def __init__(self, outcome: ChildResult) -> None:
         self._outcome = outcome
 
-    def result(self, *, within: float) -> Outcome:
+    def result(self, *, within: float) -> ChildResult:
         del within
         return self._outcome
 
 
-def report_on(outcome: Outcome) -> Report:
+def report_on(outcome: ChildResult) -> Report:
     """What a controlled judge tells its grader of a check that ended so; in one line."""
     with socket.socket(socket.AF_UNIX) as listener:
         server = JudgeServer(listener, controlled=True)
@@ -202,13 +202,13 @@ def report_on(outcome: Outcome) -> Report:
 @pytest.mark.parametrize("data", [b'{"verdict":null}\n{"verdict":null}', b'\n{"verdict":null}'])
 def test_a_child_that_says_more_than_one_line_has_no_verdict(data: bytes) -> None:
     # The rest of it would be taken for the report of the next check.
-    assert report_on(Outcome(data)).trouble
+    assert report_on(ChildResult(data)).trouble
 
 
 def test_a_check_that_was_not_seen_to_its_end_earns_nothing_and_one_whose_time_was_over_says_so() -> None:
     late = "the judge did not finish in time"
-    assert report_on(Outcome(None, late, hurried=True, unfinished=True)) == Report()
-    assert report_on(Outcome(None, late, unfinished=True)) == Report(trouble=late, unfinished=True)
+    assert report_on(ChildResult(None, late, hurried=True, unfinished=True)) == Report()
+    assert report_on(ChildResult(None, late, unfinished=True)) == Report(trouble=late, unfinished=True)
 
 
 def test_a_judge_that_says_no_report_has_died(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

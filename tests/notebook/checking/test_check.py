@@ -12,7 +12,7 @@ from autograder import course, exercises
 from autograder.messages.checks import SOCKET_VARIABLE
 from autograder.notebook.checking import check as check_cell
 from autograder.student import journal
-from autograder.student.journal import Entry
+from autograder.student.journal import JournalEntry
 from autograder.verdict import State, Verdict
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def test_no_trouble_of_the_journal_breaks_a_check(
 
 def test_what_ended_before_is_not_shown_again(shown: list[Any], kept: Path) -> None:
     for name in exercises.all_ids():
-        journal.note(Entry("check", name, 1, 10, 10))
+        journal.note(JournalEntry("check", name, 1, 10, 10))
     check_cell.keep(passed(exercises.all_ids()[0]))
     assert shown == []
 

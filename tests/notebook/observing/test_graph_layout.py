@@ -7,17 +7,17 @@ import random
 
 import pytest
 
-from autograder.notebook.observing.graph_layout import GAP_BESIDE, Layout, lay_out
+from autograder.notebook.observing.graph_layout import GAP_BESIDE, GraphLayout, lay_out
 
 GAP = 50.0
 
 
-def laid(boxes: str, *arrows: str) -> Layout:
+def laid(boxes: str, *arrows: str) -> GraphLayout:
     """Boxes of 100 to 40 pixels; arrows such as "ab"."""
     return lay_out(dict.fromkeys(boxes, (100.0, 40.0)), [(arrow[0], arrow[1]) for arrow in arrows], GAP)
 
 
-def column(layout: Layout, box: str) -> float:
+def column(layout: GraphLayout, box: str) -> float:
     return layout.centres[box][0]
 
 
@@ -77,7 +77,7 @@ def test_arrows_do_not_cross_without_need() -> None:
 
 
 def test_an_empty_graph() -> None:
-    assert lay_out({}, [], GAP) == Layout({}, (), (0.0, 0.0))
+    assert lay_out({}, [], GAP) == GraphLayout({}, (), (0.0, 0.0))
 
 
 def test_boxes_never_overlap_and_nothing_leaves_the_picture() -> None:

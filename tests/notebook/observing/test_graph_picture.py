@@ -18,12 +18,12 @@ from std_msgs.msg import String
 
 from autograder.notebook import start_ros
 from autograder.notebook.observing.graph_picture import GraphPicture, draw_graph
-from autograder.notebook.observing.ros_graph import Channel, ChannelKind, End, RosGraph, read_graph
+from autograder.notebook.observing.ros_graph import ChannelKind, End, GraphChannel, RosGraph, read_graph
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-CHATTER = Channel(ChannelKind.TOPIC, "/chatter", "std_msgs/msg/String")
+CHATTER = GraphChannel(ChannelKind.TOPIC, "/chatter", "std_msgs/msg/String")
 SVG = "{http://www.w3.org/2000/svg}"
 
 
@@ -53,8 +53,8 @@ def test_topics_services_and_actions_are_seen(make: Callable[..., Node]) -> None
     graph = read_graph()
     for end in ends:
         end.destroy()  # type: ignore[no-untyped-call]  # they would outlive their nodes
-    add = Channel(ChannelKind.SERVICE, "/add", "my_robot_interfaces/srv/AddTwoInts")
-    count = Channel(ChannelKind.ACTION, "/count", "my_robot_interfaces/action/Fibonacci")
+    add = GraphChannel(ChannelKind.SERVICE, "/add", "my_robot_interfaces/srv/AddTwoInts")
+    count = GraphChannel(ChannelKind.ACTION, "/count", "my_robot_interfaces/action/Fibonacci")
     assert graph.nodes == ("/desk/other", "/one")
     assert set(graph.ends) == {
         End("/one", CHATTER, True),
@@ -141,7 +141,7 @@ def test_the_arrow_leads_from_the_publisher_to_the_subscriber() -> None:
 
 
 def test_a_long_chain_runs_down_the_page() -> None:
-    topics = [Channel(ChannelKind.TOPIC, f"/topic_number_{n}", "std_msgs/msg/String") for n in range(6)]
+    topics = [GraphChannel(ChannelKind.TOPIC, f"/topic_number_{n}", "std_msgs/msg/String") for n in range(6)]
     nodes = tuple(f"/node_number_{n}" for n in range(7))
     ends = [End(nodes[n], topic, True) for n, topic in enumerate(topics)]
     ends += [End(nodes[n + 1], topic, False) for n, topic in enumerate(topics)]
@@ -153,13 +153,13 @@ def test_a_long_chain_runs_down_the_page() -> None:
 
 def test_the_first_notebook_s_graph_is_not_drawn_wider_downwards() -> None:
     """A page shrinks what is too wide, and the letters with it."""
-    drive = Channel(ChannelKind.TOPIC, "/cmd_vel", "geometry_msgs/msg/Twist")
+    drive = GraphChannel(ChannelKind.TOPIC, "/cmd_vel", "geometry_msgs/msg/Twist")
     robots = (
-        Channel(ChannelKind.TOPIC, "/odom", "nav_msgs/msg/Odometry"),
-        Channel(ChannelKind.TOPIC, "/scan", "sensor_msgs/msg/LaserScan"),
-        Channel(ChannelKind.SERVICE, "/lamp", "std_srvs/srv/SetBool"),
-        Channel(ChannelKind.SERVICE, "/reset", "std_srvs/srv/Trigger"),
-        Channel(ChannelKind.ACTION, "/walk_to", "small_robot_interfaces/action/WalkTo"),
+        GraphChannel(ChannelKind.TOPIC, "/odom", "nav_msgs/msg/Odometry"),
+        GraphChannel(ChannelKind.TOPIC, "/scan", "sensor_msgs/msg/LaserScan"),
+        GraphChannel(ChannelKind.SERVICE, "/lamp", "std_srvs/srv/SetBool"),
+        GraphChannel(ChannelKind.SERVICE, "/reset", "std_srvs/srv/Trigger"),
+        GraphChannel(ChannelKind.ACTION, "/walk_to", "small_robot_interfaces/action/WalkTo"),
     )
     ends = (
         End("/driver", drive, True),
