@@ -93,7 +93,7 @@ def test_an_exercise_is_made_tried_checked_and_a_class_of_two_is_graded(installe
     listed = run(UV, "pip", "list", "--python", installed / "venv", cwd=installed)
     assert not {"jupyterlab", "nbgrader", "igraph"} & {line.split()[0] for line in listed.splitlines()}
     mine = installed / "my-course"
-    assert "there is no course here" in run(autograder, "check", cwd=installed, code=2)
+    assert "no course was found here" in run(autograder, "check", cwd=installed, code=2)
     (mine / "solutions").mkdir(parents=True)
     run(autograder, "new-exercise", "lab_1_1.battery", "--chapter", "01_first", cwd=mine)
     assert "6 answers, none not as expected" in run(autograder, "try-exercise", "lab_1_1.battery", cwd=mine)

@@ -139,7 +139,7 @@ def test_installing_again_changes_nothing(fresh: Path) -> None:
 
 
 def test_what_is_no_environment_is_named(tmp_path: Path) -> None:
-    with pytest.raises(FileNotFoundError, match="no virtual environment"):
+    with pytest.raises(FileNotFoundError, match="is not a virtual environment"):
         install(tmp_path)
 
 

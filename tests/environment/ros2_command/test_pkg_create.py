@@ -126,7 +126,7 @@ def test_an_unknown_license_is_a_warning(ros2: Ros2) -> None:
     [
         (("there",), "The directory already exists: ./there"),
         (("test", "--build-type", "ament_python"), "can't be named 'test'"),
-        (("../outside",), "is no package name"),
+        (("../outside",), "is not a package name"),
     ],
 )
 def test_what_can_not_be_created(words: tuple[str, ...], error: str, ros2: Ros2, tmp_path: Path) -> None:

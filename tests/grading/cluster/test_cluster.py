@@ -208,7 +208,7 @@ def test_workers_that_forge_are_turned_out_by_name_and_run_nothing_here(
     for name, words in {
         "pickler": "its answer is not an execution",
         "large": "its answer has 400000",
-        "object": "what it says cannot be",
+        "object": "it sent an impossible answer",
         "forger": "1000 of 10 points",
     }.items():
         line = next(line for line in said.getvalue().splitlines() if f"The worker {name} " in line)
