@@ -38,7 +38,9 @@ def check_known(wanted: Sequence[str], known: Sequence[str], what: str) -> None:
     """
     for name in wanted:
         if name not in known:
-            raise GradingError(f"There is no {what} named {name} here. There is: {', '.join(known) or 'none'}.")
+            raise GradingError(
+                f"There is no {what} named {name} here. There is: {', '.join(known) or 'none'}."
+            )
 
 
 class NotAClass(GradingError):

@@ -51,7 +51,7 @@ class ReferenceSolution:
 
 def reference_source(
     master: Path, exercise: str, *, points: Points = exercise_points, solved: bool = True
-) -> Reference:
+) -> ReferenceSolution:
     """Return the source of everything that a notebook defines before the check of ``exercise``.
 
     If ``solved`` is false, solution cells are as students get them.
@@ -68,7 +68,7 @@ def reference_source(
         if named.check is not None and named.check.exercise == exercise:
             shell = named.check.is_path
             parts = [part for cell in cells for part in _kept(cell, shell=shell, solved=solved)]
-            return Reference("\n\n".join(parts) + "\n", named.check.subject)
+            return ReferenceSolution("\n\n".join(parts) + "\n", named.check.subject)
         cells.append(named.cell)
     raise MasterError(master, None, f"No cell checks '{exercise}'.", f'Write one: check("{exercise}", …).')
 
