@@ -1,9 +1,9 @@
 """An exercise while it is written: a recipe, then criteria and mistakes, each a decorated function.
 
-A function is given two views of the same kind that the recipe makes: what was seen of the subject, and what was
-recorded of the reference solution. A mistake is spelt in one of two ways. :meth:`Draft.knows` takes two texts, which
-may quote from both views, ``"It carries {seen.counters[0]}."``, and what was found, as ``{}``. Where texts do not do,
-:meth:`Draft.mistake` decorates a function that gives the advice itself.
+A function gets two views of the same kind, made by the recipe: the record of the subject, and the record of the
+reference solution. There are two ways to add a mistake. :meth:`Draft.knows` takes two texts, which may quote from
+both views, ``"It carries {seen.counters[0]}."``, and what was found, as ``{}``. If texts are not enough,
+:meth:`Draft.mistake` decorates a function that returns the advice itself.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 View = TypeVar("View")
 View_co = TypeVar("View_co", covariant=True)
 Judge = Callable[[View, View], Finding]
-"""Decides a criterion from what was seen and from what was recorded."""
+"""Decides a criterion from the records of the subject and of the reference."""
 Told = Callable[[View, View], Advice | None]
-"""Says what is to be told of a mistake, if it was made."""
+"""Returns the advice about a mistake, if it was made."""
 
 
 class Recipe(Protocol[View_co]):
@@ -32,11 +32,11 @@ class Recipe(Protocol[View_co]):
 
     @property
     def roles(self) -> tuple[str, ...]:
-        """The endpoints that make up the subject's public face."""
+        """The roles of the subject's endpoints."""
 
     @property
     def ladder(self) -> Sequence[Mistake]:
-        """The common mistakes, most telling first; :data:`OWN` and :data:`OWN_LATE` stand for the exercise's."""
+        """The common mistakes, most telling first; :data:`OWN` and :data:`OWN_LATE` hold the exercise's places."""
 
     def scenario(self, bench: Bench) -> None:
         """Drive the bench through all parts."""
@@ -49,21 +49,21 @@ class Recipe(Protocol[View_co]):
 
 
 class SeenAsItIs:
-    """Both views of such a recipe are the evidence itself, which has the reference in it: there are several runs."""
+    """A recipe whose two views are the evidence itself, because there are several runs; it contains the reference."""
 
     def seen(self, evidence: Evidence) -> Evidence:
         """The subject, as it was seen."""
         return evidence
 
     def expected(self, evidence: Evidence) -> Evidence:
-        """The same: it holds what was recorded, too."""
+        """The same evidence: it contains the reference, too."""
         return evidence
 
 
 OWN = Mistake("", lambda _: None)
-"""The place in a ladder of an exercise's own mistakes: before anything is said of nodes that hang or are not spun."""
+"""The place in a ladder for an exercise's own mistakes: before those of nodes that hang or are not spun."""
 OWN_LATE = Mistake("", lambda _: None)
-"""The place of those that a node which is not spun would show as well."""
+"""The place for own mistakes that a node which is not spun would show as well."""
 
 
 class Draft(Generic[View]):
@@ -71,9 +71,9 @@ class Draft(Generic[View]):
 
     Args:
         exercise_id: Such as ``"lab_8_1.battery"``: the lab's folder and the file's name.
-        title: For the card: the lab and what the subject is.
-        task: One sentence: what is asked for.
-        recipe: For the kind of subject.
+        title: The title of the card: the lab and the subject.
+        task: One sentence that states the task.
+        recipe: The recipe for the kind of subject.
     """
 
     def __init__(self, exercise_id: str, title: str, task: str, recipe: Recipe[View]) -> None:
@@ -83,13 +83,13 @@ class Draft(Generic[View]):
         self._before: dict[str, list[Mistake]] = {}
 
     def asks(self, name: str, points: float, title: str, judge: Callable[[Evidence], Finding]) -> None:
-        """Add a criterion of the recipe's, in the order of the card.
+        """Add a criterion of the recipe, in the order of the card.
 
         Args:
             name: A stable key.
-            points: Points it carries.
-            title: One line for a person.
-            judge: What the recipe offers.
+            points: The points for it.
+            title: One line for people.
+            judge: A criterion of the recipe.
         """
         self._criteria.append(Criterion(name, title, points, judge))
 
@@ -98,8 +98,8 @@ class Draft(Generic[View]):
 
         Args:
             name: A stable key.
-            points: Points it carries.
-            title: One line for a person.
+            points: The points for it.
+            title: One line for people.
         """
 
         def add(judge: Judge[View]) -> Judge[View]:
@@ -121,16 +121,16 @@ class Draft(Generic[View]):
         late: bool = False,
         before: str = "",
     ) -> None:
-        """Add a known mistake that is told in two texts, most telling first.
+        """Add a known mistake that is described in two texts, most telling first.
 
         Args:
             key: A stable name, explained in ``docs/mistakes.md``.
-            found: Gives what shows the mistake; anything that is false if nothing does.
-            says: What the student is told, with places such as ``{seen.texts[0]}``; ``{}`` stands for what was found.
-            next_step: What to do about it, with the same places.
-            certain: What was seen proves it whatever the machine's load was; or on what that depends.
-            late: A node that hangs or is not spun would show it as well, so that is asked first.
-            before: The key of the common mistake before which it is asked, where its place is neither of the two.
+            found: Returns what shows the mistake; anything false if nothing does.
+            says: What the student is told, with placeholders such as ``{seen.texts[0]}``; ``{}`` is what was found.
+            next_step: What to do about it, with the same placeholders.
+            certain: True if the record proves it whatever the machine's load was; or a function that decides this.
+            late: True if a node that hangs or is not spun would show it as well, so that those are checked first.
+            before: The key of the common mistake before which it is checked, if its place is neither of the two.
         """
 
         def told(seen: View, expected: View) -> Advice | None:
@@ -149,7 +149,7 @@ class Draft(Generic[View]):
         late: bool = False,
         before: str = "",
     ) -> Callable[[Told[View]], Told[View]]:
-        """Add a known mistake whose words the decorated function gives; the arguments are those of :meth:`knows`."""
+        """Add a known mistake whose advice the decorated function returns; the arguments are those of :meth:`knows`."""
 
         def add(told: Told[View]) -> Told[View]:
             def advice(evidence: Evidence) -> Advice | None:
@@ -169,13 +169,13 @@ class Draft(Generic[View]):
         return add
 
     def exercise(self, **more: Any) -> Exercise:
-        """The exercise, once everything is said of it.
+        """Return the exercise, after everything was added.
 
         Args:
             more: Further attributes of :class:`autograder.kit.model.Exercise`.
 
         Raises:
-            ValueError: A mistake is to come before one that the recipe does not know.
+            ValueError: A mistake is to come before one that the recipe does not have.
         """
         before, mistakes = dict(self._before), list[Mistake]()
         for common in self._recipe.ladder:

@@ -1,4 +1,4 @@
-"""What contents are the same, and rules for a subject that says from time to time how things are, by what it was given.
+"""Equality of contents, and rules for a subject that reports a state from time to time, depending on its inputs.
 
 For a subject that answers what it is given, see ``recipes/relay.py`` and ``recipes/machine.py``.
 """

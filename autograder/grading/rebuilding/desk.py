@@ -40,12 +40,12 @@ if TYPE_CHECKING:
 
 MODULE = "autograder.grading.rebuilding.desk_process"
 MEMORY_BYTES = 700_000_000
-"""Limit of a desk's address space. A file of 50 MB with a picture and an emoji in it takes two thirds of that."""
+"""The limit of a desk's address space. A file of 50 MB with a picture and an emoji takes two thirds of that."""
 CPU_SECONDS = 20
 """Limit of a desk's processor time; a file of 50 MB takes two seconds."""
 _SAMPLE = b'{"nbformat": 4, "metadata": {}, "cells": [{"cell_type": "code", "source": "x"}]}'
 _WALL_SECONDS = 600.0
-"""Limit in seconds. A desk cannot sleep, so only a machine that was stopped takes so long."""
+"""The limit in seconds. A desk cannot sleep, so only a machine that was stopped takes so long."""
 _ATTEMPTS = 3
 _AS_SAVED = "Save the notebook in JupyterLab and hand in that file."
 _TOO_LONG = f"To read the file takes far more time than to read a notebook. {_AS_SAVED}"
@@ -53,7 +53,7 @@ _NOT_READ = f"The file is not a notebook: the program that reads notebooks faile
 
 
 class DeskFailed(GradingError):
-    """No file can be read here. It is not the fault of a file; the message says what to do."""
+    """No file can be read on this machine, so the files are not at fault; the message says what to do."""
 
 
 class Desk:
@@ -61,7 +61,7 @@ class Desk:
 
     Args:
         module: The program of a desk.
-        extra: More variables of its environment.
+        extra: More environment variables.
 
     """
 
@@ -84,7 +84,7 @@ class Desk:
 
         Raises:
             UnreadableSubmission: The desk failed, and the file is the reason.
-            ChannelClosed: There is no answer, and the file is not the reason.
+            ChannelClosed: No answer came, and the file is not the reason.
         """
         with contextlib.ExitStack() as stack:
             source, answer = (os.memfd_create(name) for name in ("handed-in", "answer"))
@@ -99,7 +99,7 @@ class Desk:
                 raise ChannelClosed("the process that reads files was lost")
             code = os.waitstatus_to_exitcode(process.status)
             if code == -signal.SIGKILL:
-                # A desk cannot kill itself, so the system has killed it, mostly because memory is short.
+                # A desk cannot kill itself, so the system has killed it, usually because memory is short.
                 raise ChannelClosed("the process that reads files was killed")
             if code:
                 raise UnreadableSubmission(_TOO_LONG if code == -signal.SIGXCPU else _NOT_READ)
@@ -205,6 +205,6 @@ def _forget(desk: Desk | None) -> None:
 
 @atexit.register
 def _close() -> None:
-    """End what was started."""
+    """End the desks that were started."""
     for desk in _desks:
         desk.close()

@@ -35,17 +35,17 @@ _PIECE = 1 << 20
 
 def prepare() -> None:
     """Load what a desk needs: it can open no file itself."""
-    gc.disable()  # nothing that a desk makes can be freed before its end, but the collector would look again and again
+    gc.disable()  # nothing made here can be freed before the end, but the collector would check it again and again
     for data in (SAMPLE, b"[", b"\xff"):
         answer_to(data)
 
 
 def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
-    """Answer.
+    """Parse one file and write the answer.
 
     Args:
-        call: Nothing.
-        descriptors: A file with what was handed in, and an empty one for the answer.
+        call: Unused.
+        descriptors: The submitted file, and an empty file for the answer.
     """
     del call
     source, answer = descriptors

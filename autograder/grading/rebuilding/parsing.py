@@ -1,4 +1,4 @@
-"""Parse a notebook into typed cells, believing nothing but the text of the cells.
+"""Parses a notebook into typed cells, and trusts nothing but the text of the cells.
 
 For the desk, and for the class's own notebooks. What students hand in is parsed by a desk alone
 (:func:`autograder.grading.rebuilding.desk.read_notebook`).
@@ -29,7 +29,7 @@ _CELL_TYPES = tuple(CellType)
 
 
 def parse(data: bytes) -> tuple[list[SubmittedCell], int]:
-    """The cells of a submitted notebook.
+    """Return the cells of a submitted notebook.
 
     Returns:
         The cells, and the number of those that were left out because they had not the form of a cell.
@@ -115,7 +115,7 @@ def _cell(cell: Any) -> SubmittedCell | None:
 
 
 def _pictures(cell: Mapping[str, Any]) -> Iterator[Picture]:
-    """The attached bitmaps; a drawing that may hold a script is none of them."""
+    """Yield the attached bitmaps; drawings, which may contain a script, are skipped."""
     attached = cell.get("attachments")
     for name, kinds in attached.items() if isinstance(attached, Mapping) else ():
         for kind in IMAGES if isinstance(kinds, Mapping) else ():
@@ -131,5 +131,5 @@ def _name(value: Any) -> str:
 
 
 def _text(value: str) -> str:
-    """A text that can be written to a file: a lone surrogate is legal JSON, but it has no UTF-8."""
+    """Return a text that UTF-8 can encode: a lone surrogate is legal in JSON, but not in UTF-8."""
     return value.encode("utf-8", "replace").decode("utf-8")

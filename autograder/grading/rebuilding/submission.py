@@ -19,18 +19,18 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 MAX_BYTES = 50_000_000
-"""A notebook with many pictures in its outputs has a few megabytes."""
+"""The limit for a file in bytes; a notebook with many pictures in its outputs has a few megabytes."""
 MAX_CELLS = 2_000
 MAX_CELL_CHARACTERS = 100_000
 """The limit for the text of one cell in characters; students write a few thousand."""
 MAX_CHARACTERS = 1_000_000
-"""Of all cells together."""
+"""The limit for the text of all cells together."""
 LONGEST_REASON = 300
-"""Limit of a sentence of the desk in characters."""
+"""The limit for a sentence of the desk in characters."""
 LONGEST_NAME = 200
-"""Limit of the name of a cell or a picture in characters."""
+"""The limit for the name of a cell or a picture in characters."""
 HARMLESS_LENGTH = 6_000
-"""Of a notebook's own cells that become a page without a trial: the worst of them take less than a page's budget."""
+"""The limit for a notebook's own cells that are rendered without a trial; the worst stay within a page's budget."""
 _LONGEST_SHOWN = 80
 _KINDS = {
     stat.S_ISLNK: "a link",
@@ -76,7 +76,7 @@ class ReadNotebook(msgspec.Struct, frozen=True, tag=True):
 
     Attributes:
         cells: The cells of the notebook.
-        left_out: The number of cells that were left out because they had not the form of a cell.
+        left_out: The number of cells that were skipped because they are not valid cells.
     """
 
     cells: Annotated[tuple[SubmittedCell, ...], msgspec.Meta(max_length=MAX_CELLS)]

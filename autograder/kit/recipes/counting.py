@@ -1,6 +1,6 @@
-"""What a publisher says and counts: two criteria on its messages, and the mistakes that fail them.
+"""The texts and numbers of a publisher: two criteria on its messages, and the mistakes that fail them.
 
-The reference solution's first messages say what is due: the text around the number, the first number and the step.
+The reference solution's first messages show what is due: the text around the number, the first number and the step.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from autograder.kit.published_texts import Publisher
 
 MANY = 3
-"""Publishers in a row that are too many to be two nodes or two timers."""
+"""The number of publishers in succession that are too many to be two nodes or two timers."""
 _UNFILLED = re2.compile(r"\{[^{}]*\}|%[ds]|\(?\bself\.\w+\)?")
 _FRACTION = re2.compile(r"\d[.,]\d")
 
 
 def says_text(seen: Publisher, expected: Publisher) -> Finding:
-    """Every text is the reference's, the number aside."""
+    """Every text is the reference's, apart from the number."""
     odd = [
         text for text, form in zip(seen.texts, seen.templates, strict=True) if form not in expected.templates
     ]
@@ -80,7 +80,7 @@ class Counting:
     variable: str
 
     def wrong_text(self, seen: Publisher, expected: Publisher) -> Advice | None:
-        """Return advice if messages arrive with another text."""
+        """Return advice if messages arrive with a different text."""
         texts = seen.texts[seen.greetings :]
         odd = next((said for said in texts if template(said) not in expected.templates), None)
         if odd is None:
@@ -122,7 +122,7 @@ class Counting:
         )
 
     def start(self, seen: Publisher, expected: Publisher) -> Advice | None:
-        """Return advice if it counts by the right step, but from another number, or not from its first message on."""
+        """Return advice if it counts by the right step, but from a wrong number, or not from its first message on."""
         steady = len(seen.counters) > 1 and not _slip(seen.counters, expected.step)
         unheard, right = _uncounted(seen, expected), _starts_right(seen, expected)
         if not steady or (right and not seen.greetings):
@@ -183,11 +183,10 @@ class Counting:
 
 
 def _first_number(seen: Publisher, expected: Publisher) -> int | None:
-    """Return the number of its first message, even if that was sent before anybody could hear it; None for none.
+    """Return the number of its first message, even if it came before the judge could receive it; None without one.
 
-    A loop may publish in the moment in which it makes its publisher, which no listener can be quick enough for.
-    What was lost is known by its number in DDS. A number that the reference begins after means that not all of the
-    lost messages counted.
+    A loop may publish in the moment in which it makes its publisher, too early for any listener. Lost messages are
+    known by their numbers in DDS. A number that the reference begins after means that not all lost messages counted.
     """
     first = counters(seen.texts[seen.greetings :][:1])
     return first[0] - expected.step * (seen.number_of_first - 1) if first else None
@@ -198,14 +197,14 @@ def _starts_right(seen: Publisher, expected: Publisher) -> bool:
 
 
 def _uncounted(seen: Publisher, expected: Publisher) -> int:
-    """Return how many of the messages that nobody could hear were too many, for a counter that begins at the start."""
+    """Return how many of the messages lost at the start were too many, for a counter that begins at the start."""
     if _first_number(seen, expected) is None or (place := expected.place(seen.counters[0])) < 0:
         return 0
     return max(0, seen.number_of_first - 1 - place)
 
 
 def _slip(numbers: list[int], step: int) -> int:
-    """Return the place of the first number that does not follow from the one before; 0 if all do."""
+    """Return the index of the first number that does not follow from the one before; 0 if all do."""
     return next((place for place, (a, b) in enumerate(pairwise(numbers), 1) if b - a != step), 0)
 
 
@@ -214,6 +213,6 @@ def _row(numbers: list[int]) -> str:
 
 
 def _around(numbers: list[int], place: int) -> str:
-    """Return the numbers on both sides of a place; the first ones if it is near the beginning."""
+    """Return the numbers around an index; the first ones if it is near the beginning."""
     first = max(0, place - 3)
     return "…, " * bool(first) + _row(numbers[first : first + 6])

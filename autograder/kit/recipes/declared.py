@@ -1,7 +1,7 @@
-"""What the declared exercises share: the author says what is due, and steps, verdict and mistakes follow from that.
+"""The common part of declared exercises: the author says what is due; steps, verdict and mistakes follow from that.
 
-A ``Relay`` hears on one topic and publishes on another. A ``Machine`` has a state that a service changes and a topic
-tells of. A wrong answer that students often give is a variant of the function that says what is due.
+A ``Relay`` listens on one topic and publishes on another. A ``Machine`` has a state that a service changes and a
+topic reports. A common wrong answer is a variant of the function that says what is due.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class Declared:
-    """What the declared exercises share.
+    """The common part of declared exercises.
 
     Args:
         exercise_id: Such as ``"lab_8_1.filter"``.
-        title: For the card: the lab and what the subject is.
-        task: One sentence: what is asked for.
+        title: The title of the card: the lab and the subject.
+        task: One sentence that states the task.
         scenario: Drives the bench.
         roles: The endpoints of the subject, the most telling first.
-        given: The kind of event of an input that the subject has surely received. A subject that received fewer
-            inputs than the reference solution fulfils no criterion on what it made of them.
+        given: The kind of event of an input that the subject has certainly received. A subject with fewer inputs than
+            the reference solution passes no criterion about its outputs.
     """
 
     def __init__(
@@ -55,8 +55,8 @@ class Declared:
 
         Args:
             name: A stable key.
-            points: Points it carries.
-            title: One line for a person.
+            points: The points for it.
+            title: One line for people.
             role: Such as ``"subscription"``.
             words: The words of the task that the criterion judges, as ``lab.md`` has them.
         """
@@ -64,7 +64,7 @@ class Declared:
         self._judges(name, words)
 
     def exercise(self) -> Exercise:
-        """Return the exercise, once everything is said of it."""
+        """Return the exercise, after everything was added."""
         return self._draft.exercise(text=self._text)
 
     def _compares(
@@ -89,7 +89,7 @@ class Declared:
         self._judges(name, words)
 
     def _got_through(self, seen: Part, expected: Part) -> bool:
-        """Return whether the subject was given as much as the reference solution."""
+        """Return True if the subject was given as much as the reference solution."""
         return len(seen.of(self._given)) >= len(expected.of(self._given))
 
     def _judges(self, name: str, words: str) -> None:
@@ -101,7 +101,7 @@ class Declared:
 
 
 def variant(right: Function, changed: Function | Mapping[str, Any]) -> Function | partial[Any]:
-    """Return a wrong function: the one that is given, or the right one with other values of its arguments."""
+    """Return a wrong function: the given one, or the right one with other values of its arguments."""
     return partial(right, **changed) if isinstance(changed, Mapping) else changed
 
 

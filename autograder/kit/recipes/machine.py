@@ -21,25 +21,25 @@ if TYPE_CHECKING:
 __all__ = ["SOME_TEXT", "Machine"]
 
 QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
-"""Seconds of wall time without any event after which the judge waits no longer for an answer or a message."""
+"""Seconds of wall time without any event after which the judge no longer waits for an answer or a message."""
 PAUSE = 0.5
-"""Seconds of the subject's time after each answer in which a timer of the subject may tell of the change."""
+"""Seconds of the subject's time after each answer in which a timer of the subject may report the change."""
 ON_AND_OFF = (False, True, True, False, False, True, True, False, False, True, False)
-"""Requests of a state that is on or off: each change is asked for twice."""
+"""Requests for a state that is on or off: each change is requested twice."""
 
 Step = Callable[..., tuple[Any, Mapping[str, Any]]]
-"""From the state and what is asked for to the new state and the fields of the reply."""
+"""Returns the new state and the fields of the reply for the state and the request."""
 
 
 @dataclass(frozen=True)
 class Call:
-    """One call of a machine's service, as the machine is declared.
+    """One call of a machine's service, with the declared result.
 
     Attributes:
-        asked: What was asked for: the request's field ``data``, or all fields of a request without that one.
+        asked: The request: its field ``data``, or all fields of a request without that one.
         reply: The fields of the reply that is due.
-        state: The state afterwards.
-        changed: Whether the call changed the state.
+        state: The state after the call.
+        changed: True if the call changed the state.
     """
 
     asked: Any
@@ -49,17 +49,17 @@ class Call:
 
 
 class Machine(Declared):
-    """A node with a state that a service changes, and that a topic tells of at each change, to late listeners, too.
+    """A node with a state that a service changes, and that a topic reports at each change, also to late listeners.
 
     Args:
         exercise_id: Such as ``"lab_8_1.mode"``.
-        title: For the card: the lab and what the subject is.
-        task: One sentence: what is asked for.
-        state: The state at first.
-        step: From the state and what is asked for to the new state and the reply; :data:`SOME_TEXT` in a reply stands
+        title: The title of the card: the lab and the subject.
+        task: One sentence that states the task.
+        state: The first state.
+        step: Returns the new state and the reply for the state and the request; :data:`SOME_TEXT` in a reply stands
             for any text.
-        asks: What is asked for, one call after the other, or a function that draws it, as many in each run. A
-            dictionary is a whole request, anything else its field ``data``.
+        asks: The requests, one after the other, or a function that draws them, as many in each run. A dictionary is a
+            whole request, anything else its field ``data``.
         late_after: The number of calls after which the judge subscribes to the topic.
         field: The path of the field of a message that has the state.
     """
@@ -81,12 +81,12 @@ class Machine(Declared):
         self._late_after, self._field = late_after, field
 
     def replies(self, field: str, points: float, title: str, words: str = "") -> None:
-        """Add a criterion, named after a field: that field is as it is due in each reply for which ``step`` says it.
+        """Add a criterion, named after a field: the field is right in each reply in which ``step`` sets it.
 
         Args:
             field: The reply's field.
-            points: Points it carries.
-            title: One line for a person.
+            points: The points for it.
+            title: One line for people.
             words: The words of the task that the criterion judges.
         """
 
@@ -119,7 +119,7 @@ class Machine(Declared):
         self._judges(name, words)
 
     def late_joiner_gets_the_last(self, name: str, points: float, title: str, words: str = "") -> None:
-        """Add a criterion: who subscribes late hears the state as it is then; arguments as in :meth:`asks`."""
+        """Add a criterion: a late subscriber receives the present state; arguments as in :meth:`asks`."""
 
         def due(seen: Part) -> list[Any]:
             return [call.state for call in self._course(seen, self._step)][: self._late_after][-1:]
@@ -207,7 +207,7 @@ class Machine(Declared):
             bench.listen(topic, type_name)
 
     def _course(self, seen: Part, step: Step) -> list[Call]:
-        """Return each call that was made with what a machine with this step makes of it."""
+        """Return each call with the result that a machine with this step gives."""
         state, course = self._state, []
         for asked in map(value, seen.of("asked")):
             new, reply = step(state, asked)

@@ -1,4 +1,4 @@
-"""A node that hears on one topic and publishes on another, declared by what is due after each input."""
+"""A node that listens on one topic and publishes on another, declared by what is due after each input."""
 
 from __future__ import annotations
 
@@ -18,30 +18,30 @@ if TYPE_CHECKING:
 
 NAN = float("nan")
 NUMBER, WHOLE = object(), object()
-"""Stand among the inputs for a number that is drawn, in quarters or whole; none is drawn twice."""
+"""Placeholders in the inputs for a number that is drawn, in quarters or whole; no number is drawn twice."""
 SILENCE = object()
-"""What is due after an input for which nothing is to be published."""
+"""The value after an input for which nothing must be published."""
 PATIENCE = {Pace.FAST: 2.0, Pace.REAL_TIME: 6.0}
-"""Seconds of wall time in which the last message must have come."""
+"""Seconds of wall time within which the last message must have come."""
 
 Due = Callable[..., Any]
-"""From all inputs so far to the value that is due after the last one, or :data:`SILENCE`."""
+"""Returns the value that is due after the last of all inputs so far, or :data:`SILENCE`."""
 
 
 class Relay(Declared):
-    """A node that hears on one topic and publishes on another what follows from all inputs so far.
+    """A node that listens on one topic and publishes on another what follows from all inputs so far.
 
     Args:
         exercise_id: Such as ``"lab_8_1.filter"``.
-        title: For the card: the lab and what the subject is.
-        task: One sentence: what is asked for.
-        field: The path of the field that is heard and published, such as ``"range"`` or ``"pose.position.x"``.
-        due: Says what is due after the last of the inputs so far, or :data:`SILENCE`.
-        gives: The inputs, with :data:`NUMBER` or :data:`WHOLE` for each that is drawn; or a function that draws all of
+        title: The title of the card: the lab and the subject.
+        task: One sentence that states the task.
+        field: The path of the input and output field, such as ``"range"`` or ``"pose.position.x"``.
+        due: Returns what is due after the last of the inputs so far, or :data:`SILENCE`.
+        gives: The inputs, with :data:`NUMBER` or :data:`WHOLE` for each drawn number; or a function that draws all of
             them, as many in each run.
-        copies: The path of a field that each output copies from its input, such as ``"header.stamp"``. A field of
-            another name than ``stamp`` is a text.
-        tolerance: How far a number may differ, absolute or relative.
+        copies: The path of a field that each output copies from its input, such as ``"header.stamp"``. A field not
+            named ``stamp`` is a text.
+        tolerance: The absolute or relative tolerance of a number.
     """
 
     def __init__(
