@@ -210,7 +210,9 @@ def would_change(
                 found.append(Difference(*work.key, row.exercise, before, row.score, "", row.diagnosis, note))
         then = _foreseen(work, entry, by_exercise, due.get(work.submission.assignment))
         if then.is_late or entry.penalty:
-            from autograder.grading.table.late_policy import penalties  # here: nbgrader takes a second
+            from autograder.grading.table.late_policy import (
+                penalties,
+            )  # imported late, because it loads nbgrader
 
             costs = penalties(directory.config, work.submission.student, then)
             then = replace(then, penalties={name: cost or 0.0 for name, cost in costs.items()})

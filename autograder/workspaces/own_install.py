@@ -41,7 +41,7 @@ _BEGAN = "colcon_command_prefix_*.sh"
 _RESULT = "colcon_build.rc"
 """colcon writes the exit code of a package's build into this file."""
 _RECORDS = ("install.log", "install_manifest.txt")
-"""In a package's build folder: what its last build has installed, a path a line, by setuptools and by CMake."""
+"""Files in a package's build folder that list what its last build installed: setuptools' list and CMake's."""
 _OPTIMIZED = re2.compile(r"(?m)^CMAKE_BUILD_TYPE:\w+=(?:Release|RelWithDebInfo|MinSizeRel)$")
 """In CMakeCache.txt where NDEBUG is defined. Without it a value of the wrong type ends the process, as it does not in
 a class (:func:`autograder.workspaces.colcon.command`)."""

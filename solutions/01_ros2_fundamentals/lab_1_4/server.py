@@ -241,7 +241,7 @@ def wrong_feedback(seen: Evidence, _: Evidence) -> Advice | None:
 
 @server.mistake("done_at_once", before="cancel_not_accepted")
 def done_at_once(seen: Evidence, _: Evidence) -> Advice | None:
-    """The long goal was over before anybody could cancel it, or nearly so."""
+    """The long goal was over before it could be canceled, or nearly so."""
     long = to_be_canceled(seen)
     quick = long.status == SUCCEEDED and not long.cancel_accepted and is_quick(long)
     # Whether the cancel got in between, and whether the result was seen, is then up to the machine.

@@ -29,7 +29,7 @@ SLACK = 0.25
 
 
 lamps, goals = values("request"), values("goal")
-"""What the subject asked the lamp for, and where it wanted to walk."""
+"""The subject's requests to the lamp, and the goals of its walks."""
 
 
 def night(bench: Bench) -> None:

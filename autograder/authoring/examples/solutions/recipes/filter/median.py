@@ -1,4 +1,4 @@
-"""A median filter, declared: what is due after each input, and what wrong filters make of it."""
+"""A declared median filter: the output that is due after each input, and the outputs of wrong filters."""
 
 from math import isfinite
 from statistics import fmean, median
