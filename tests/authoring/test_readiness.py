@@ -95,7 +95,7 @@ def test_folded_text_does_not_delay_the_first_task(lab: Path) -> None:
             "docs/mistakes.md: no paragraph about `counted_up`",
         ),
         ("battery.py", '        "every 0.5 s": "rate",\n', "", "text: no words of the task are"),
-        ("battery.py", '": "rate"', '": "rate volts"', "text: there is no criterion volts"),
+        ("battery.py", '": "rate"', '": "rate volts"', "text: the criterion volts does not exist"),
         ("battery.py", '"every 0.5 s"', '"Cows"', "text: lab.md does not say “Cows”"),
         (
             "battery.answers/wrong/answers.toml",
