@@ -274,7 +274,7 @@ def raised_line(traceback: str) -> str:
 
 
 def on_purpose(traceback: str) -> bool:
-    """True if a program ended with an exception that it raised itself, or with one that is no slip."""
+    """True if a program ended with an exception that it raised itself, or with one that is not in :data:`SLIPS`."""
     line = raised_line(traceback)
     return bool(line) and (meant(traceback) or not line.startswith(SLIPS))
 

@@ -1,8 +1,8 @@
 """Inspecting services: a function that finds a service by its type, as `ros2 service find` does.
 
-The judge serves. The names are drawn anew each time, and so are the types that are asked for and the order of the runs.
-Only the type tells the right one from the others: one of these has a tempting name, one comes as late as the one that
-comes late, some have a type of the same name in another package, and once there is none of the type.
+The judge serves. The names, the types that the task asks for and the order of the runs are random. Only the type
+distinguishes the right service from the others: one of these has a tempting name, one comes as late as the late one,
+some have a type of the same name in another package, and in one run no service has the type.
 """
 
 from __future__ import annotations
@@ -343,7 +343,7 @@ question.knows(
 
 @question.mistake("wrong_service", certain=True)
 def wrong_service(seen: Evidence, _: Evidence) -> Advice | None:
-    """It names a service of another type, or only a part of the right one's name."""
+    """The subject names a service of another type, or only a part of the right one's name."""
     for name in (LATE, OTHER):
         end = seen.part(name).inputs.get("right", "").rpartition("/")[2]
         if end and not named(seen.part(name)) and end in " ".join(seen.part(name).said()[-1:]):
