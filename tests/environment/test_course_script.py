@@ -83,7 +83,7 @@ def course(tmp_path: Path) -> Course:
     (root / "environment/requirements/course.lock").write_text("six==1.17.0\n")
     (root / "environment/interfaces/own_interfaces/srv/A.srv").write_text("---\n")
     made = Course(root)
-    for name in ("autograder", "jupyter", "ruff", "mypy", "pytest"):
+    for name in ("autograder", "jupyter", "ruff", "codespell", "mypy", "pytest"):
         made.program(name)
     return made
 
@@ -207,22 +207,25 @@ def test_test_runs_every_check_and_the_tests_last(course: Course, tmp_path: Path
     assert done.returncode == 0
     ran = course.ran()
     ran.remove("mypy")  # beside the others
+    pages = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
+    spelled = ("autograder", "benchmarks", "docs", "environment", "solutions", *pages)
     assert ran == [
         "set-up --token --tests",
         "ruff [check] [.]",
         "ruff [format] [--check] [.]",
+        "codespell " + " ".join(f"[{place}]" for place in spelled),
         "pytest [--numprocesses] [auto] [-x]",
     ]
     assert done.stdout.splitlines()[-1].startswith(f"{course.root}|")
 
 
-@pytest.mark.parametrize("program", ["mypy", "ruff", "pytest"])
+@pytest.mark.parametrize("program", ["mypy", "ruff", "codespell", "pytest"])
 def test_a_failed_check_fails_the_whole_but_the_others_still_run(course: Course, program: str) -> None:
     course.program(program, code=3)
     done = course.run("test")
     assert done.returncode == 1
     assert f"not in order: {program}" in done.stderr
-    assert {line.split()[0] for line in course.ran()} == {"set-up", "ruff", "pytest", "mypy"}
+    assert {line.split()[0] for line in course.ran()} == {"set-up", "ruff", "codespell", "pytest", "mypy"}
 
 
 def test_an_old_python_is_told_to_the_user(course: Course, tmp_path: Path) -> None:
@@ -258,9 +261,9 @@ def test_what_it_starts_finds_no_code_and_no_program_in_the_current_folder(cours
 
 
 def test_the_set_up_and_the_tests_run_as_if_typed_without_it(course: Course) -> None:
-    for name in ("ruff", "mypy", "pytest"):
+    for name in ("ruff", "codespell", "mypy", "pytest"):
         program = course.root / ".venv/bin" / name
         program.write_text('#!/bin/sh\necho "${PYTHONSAFEPATH:-none}"\n')
         program.chmod(0o755)
     done = course.run("test")
-    assert (done.returncode, [*map(str.strip, done.stdout.splitlines())].count("none")) == (0, 4), done.stderr
+    assert (done.returncode, [*map(str.strip, done.stdout.splitlines())].count("none")) == (0, 5), done.stderr
