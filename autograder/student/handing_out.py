@@ -58,7 +58,7 @@ You need Linux on x86-64 (or Windows with WSL 2) and Python 3.11 or newer. Then,
 
 | you want to | |
 | --- | --- |
-{guide}| see how far you are, or begin a notebook anew | that map; or `{command} progress` and `{command} reset` |
+{guide}| see how far you are, or begin a notebook again | that map; or `{command} progress` and `{command} reset` |
 | check a program of your own in a terminal | `{command} check`, which lists the exercises |
 {mistakes}| see what is missing on your machine | `{command} doctor` |
 """
