@@ -49,9 +49,13 @@ def fresh_folder(prefix: str, parent: Path | None = None) -> Path:
     return folder
 
 
-def unnamed_file() -> IO[bytes]:
-    """Open a temporary file without a name; it is gone when it is closed."""
-    return tempfile.TemporaryFile(dir=_base())
+def unnamed_file(parent: Path | None = None) -> IO[bytes]:
+    """Open a temporary file without a name; it is gone when it is closed.
+
+    Args:
+        parent: A folder of this user; the folder of temporary files if None.
+    """
+    return tempfile.TemporaryFile(dir=parent or _base())
 
 
 @contextlib.contextmanager

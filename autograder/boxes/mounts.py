@@ -95,7 +95,7 @@ def box_arguments(scratch: Path, binds: Sequence[Bind | Link], *, scratch_visibl
         "--uid", str(USER_ID), "--gid", str(USER_ID), "--hostname", "box",
         "--cap-drop", "ALL", "--die-with-parent", "--clearenv",
     ]  # fmt: skip
-    words += _system()
+    words += system()
     words += _etc(scratch)
     words += [
         "--proc",
@@ -178,7 +178,8 @@ def _can_be_written_below(folder: Path) -> bool:
     )
 
 
-def _system() -> list[str]:
+def system() -> list[str]:
+    """The programs and libraries of the system, as arguments of bubblewrap."""
     words: list[str] = []
     for name in SYSTEM:
         path = Path(name)

@@ -1,23 +1,27 @@
-"""A box for a command that a person runs by hand: as isolated as a program in a class, without a class."""
+"""Boxes for one command: for a program that a person runs by hand, and for one that reads a single file."""
 
 from __future__ import annotations
 
 import os
+import subprocess
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.boxes import syscalls
+from autograder.boxes.channel import close_all
 from autograder.boxes.entering import take_limits
 from autograder.boxes.environment import box_environment
 from autograder.boxes.guards import BoxGuard
 from autograder.boxes.limits import Limits
-from autograder.boxes.mounts import SYSTEM, Bind, box_arguments, installation
+from autograder.boxes.mounts import SYSTEM, USER_ID, Bind, box_arguments, installation, system
 from autograder.boxes.sandbox import SCRATCH_BYTES, SCRATCH_INODES
 from autograder.boxes.supervisor import bubblewrap, furnish
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+PLACE = Path("/file")
+"""Where the box of a program that reads a single file has that file."""
 _OF_PYTHON = ("PYTHONUNBUFFERED", "PYTHONFAULTHANDLER")
 
 
@@ -87,3 +91,28 @@ class OneCommandBox:
     def close(self) -> None:
         """Remove what is left once every command has ended."""
         self._guard.close()
+
+
+def run_alone(command: Sequence[str], file: Bind, output: int, limits: Limits) -> int:
+    """Run a program in a box without a network and without a place to write to, and return its exit code.
+
+    Args:
+        command: A program of the system, of Python or of the package.
+        file: The only file of the user that it sees.
+        output: A descriptor of a file for standard output.
+        limits: Of its memory, its processes and the size of the output; without a limit on wall time.
+    """
+    guard = BoxGuard(limits)
+    words = ["--unshare-all", "--uid", str(USER_ID), "--gid", str(USER_ID), "--cap-drop", "ALL"]
+    words += ["--die-with-parent", "--new-session", "--clearenv", *system()]
+    words += ["--ro-bind-try", "/etc/ld.so.cache", "/etc/ld.so.cache"]
+    words += [word for bind in (*map(Bind, installation()), file) for word in bind.arguments()]
+    begin, kept = bubblewrap([*words, "--chdir", "/", "--remount-ro", "/"], hidden_memory=guard.hidden_memory)
+    try:
+        return subprocess.run(
+            [*begin, *command], stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.DEVNULL, check=False,
+            pass_fds=kept, preexec_fn=lambda: take_limits(guard.cgroups, guard.rlimits),
+        ).returncode  # fmt: skip
+    finally:
+        close_all(kept)
+        guard.close()

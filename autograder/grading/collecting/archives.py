@@ -1,65 +1,47 @@
-"""Reading zips and folders without believing them: nothing is ever extracted, only read up to a limit.
+"""The files of zips and folders. Archives are unpacked in a box with limits; here only what comes out of it is read.
 
-A zip may name places outside of itself, be a link, want a password, or unpack to more than any disk holds. Here a
-file's name is only text, its bytes are read into memory as far as a notebook may go, and whatever cannot be taken has
-a reason.
+In a box, :mod:`autograder.grading.collecting.unpack` writes all files of an archive into one file on the disk. Here a
+name is only text, bytes are read up to the limit of a notebook, and whatever cannot be taken has a reason.
 """
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import functools
-import hashlib
-import io
 import itertools
 import os
-import stat
-import struct
-import zipfile
-import zlib
 from collections import Counter
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from typing import IO, TYPE_CHECKING, Self
 
+import msgspec
+
+from autograder.boxes.limits import Limits
+from autograder.boxes.mounts import Bind
+from autograder.boxes.one_command import PLACE, run_alone
+from autograder.boxes.sandbox import why_impossible
+from autograder.grading.collecting import unpack
+from autograder.grading.collecting.unpack import LONGEST_LINE, LONGEST_NAME, is_left_by_a_program
 from autograder.grading.rebuilding.submission import MAX_BYTES, UnreadableSubmission, read_bytes
 from autograder.regular_files import name_as_text
+from autograder.temporary_folders import HeldFolder, unnamed_file
+from environment.python_child import python_child
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterator
 
 MOST_FILES = 20_000
 """In one folder of a download: a student whose folder is full, such as a repository, harms nobody else."""
-_LARGEST_LIST = 8_000_000
-"""Bytes of an archive's list of files, which Python reads whole before anybody can count them: 400 a file."""
-_LARGEST_LIST_OF_ONE = 300_000
-"""The same for an archive that a student has handed in."""
-_OTHER_METHODS = {9: "Deflate64", 12: "bzip2", 14: "LZMA", 93: "Zstandard", 95: "xz", 98: "PPMd"}
-_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
-"""Others (bzip2, LZMA) unpack a few hundred bytes to a gigabyte in one step, before anybody can stop them."""
-_BROKEN = (
-    ArithmeticError,
-    EOFError,
-    LookupError,
-    OSError,
-    RuntimeError,
-    ValueError,
-    struct.error,
-    zipfile.BadZipFile,
-    zlib.error,
-)
-"""What Python raises of archives that say what cannot be: a place before the beginning, a name in no letters."""
 _DEEPEST = 3
 """Archives in an archive that a student has handed in, one in the other."""
 _DEEPEST_FOLDER = 100
 """Folders in each other; Python looks into no more than some hundreds."""
-_LEFT_BY_PROGRAMS = ("__MACOSX", ".git", ".ipynb_checkpoints", "__pycache__", ".DS_Store")
-"""Files that systems and editors leave beside a student's work."""
-EMPTY = "holds no file, or only what programs leave beside a work"
-"""Said of an archive or a folder of which nothing is taken."""
+_LIMITS = Limits(processes=20, scratch_bytes=1 << 40)
+"""What the box of one archive may have; the program in it takes closer limits before it reads a byte."""
 _LEADS_OUT = "its name leads out of the archive"
-_LONGEST_NAME = 1_000
-"""Characters of a path; a zip may have paths of 65,535, too many to print."""
-_TOO_LONG = f"its name has more than {_LONGEST_NAME} characters"
+_TOO_LONG = f"its name has more than {LONGEST_NAME} characters"
 
 
 class NotTaken(ValueError):
@@ -76,24 +58,12 @@ class File:
             handed in, the path of that archive.
         read: Reads it, up to the limit of a notebook; raises :class:`NotTaken`.
         inner: The path within an archive that a student has handed in: the student chose it.
-        content: The hash of its bytes; empty where nobody has read them.
     """
 
     source: Path
     parts: tuple[str, ...]
     read: Callable[[], bytes]
     inner: tuple[str, ...] = ()
-    content: str = ""
-
-    @property
-    def label(self) -> str:
-        """Its name in messages."""
-        parts = (*self.parts, *self.inner)
-        return "/".join(parts if self.source.is_dir() else (name_as_text(self.source.name), *parts))
-
-    def holding(self, data: bytes) -> File:
-        """The same file, and what it holds is known."""
-        return replace(self, content=hashlib.sha256(data).hexdigest())
 
     @property
     def name(self) -> str:
@@ -103,106 +73,176 @@ class File:
 
 @dataclass
 class Room:
-    """The room that all archives of one student in a download still have together.
+    """What may be unpacked: by default, of all archives of one student in a download together.
 
     Attributes:
         files: The number of files.
-        unpacked: The number of bytes, as the archives themselves say it.
+        unpacked: The number of bytes.
     """
 
     files: int = 5_000
     unpacked: int = 1_000_000_000
 
-    def take(self, entries: Sequence[zipfile.ZipInfo]) -> str:
-        """Take room for the files of one more archive; the reason why there is none, or an empty text."""
-        size = sum(entry.file_size for entry in entries)
-        if len(entries) > self.files or size > self.unpacked:
-            return (
-                f"it has {len(entries)} files that unpack to {size / 1e6:.0f} MB: with the student's other archives, "
-                f"more than {Room.files} files or {Room.unpacked / 1e6:.0f} MB. Ask for the notebook alone"
-            )
-        self.files -= len(entries)
-        self.unpacked -= size
-        return ""
+
+@dataclass(frozen=True)
+class _Unpacked:
+    """A line that the box has written; see :mod:`autograder.grading.collecting.unpack`."""
+
+    names: tuple[str, ...]
+    size: int
+    reason: str = ""
 
 
-def files_of(source: Path, *, opened: bool = True) -> Iterator[File]:
-    """The files of an archive, of a folder, or the file itself; one that cannot be read says so when it is read.
+class Boxes:
+    """Boxes that unpack archives. The first archive makes what they need; what they wrote is there until the end.
 
     Args:
-        source: A file or folder that the instructor named. It may be a link; nothing below it may.
-        opened: Whether an archive is opened here; otherwise it is a file, as in a download.
+        disk: A folder on the disk that has room for what is unpacked.
+
+    Attributes:
+        has_unpacked: Whether there was an archive.
     """
-    counts: Counter[tuple[str, ...]] = Counter()
-    levels = 2 + _has_one_folder_around_all(source)
-    for file in _of_source(source.absolute(), opened=opened):
-        folder = file.parts[:levels]
-        counts[folder] += 1
-        if counts[folder] <= MOST_FILES:
-            yield file
-        elif counts[folder] == MOST_FILES + 1:
-            reason = f"it has more than {MOST_FILES} files; the others in it were not looked at"
-            yield File(file.source, folder, _refusing(reason))
+
+    def __init__(self, disk: Path) -> None:
+        self._disk = disk
+        self.has_unpacked = False
+        self._stack = contextlib.ExitStack()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()
+
+    @functools.cached_property
+    def _folder(self) -> Path:
+        return self._stack.enter_context(HeldFolder("autograder-unpack-")).path
+
+    def files_of(self, source: Path, *, opened: bool = True) -> Iterator[File]:
+        """The files of an archive, of a folder, or the file itself; one that cannot be read says so when it is read.
+
+        Args:
+            source: A file or folder that the instructor named. It may be a link; nothing below it may.
+            opened: Whether an archive is opened here; otherwise it is a file, as in a download.
+        """
+        counts: Counter[tuple[str, ...]] = Counter()
+        levels = 2 + _has_one_folder_around_all(source)
+        for file in self._of_source(source.absolute(), opened=opened):
+            folder = file.parts[:levels]
+            counts[folder] += 1
+            if counts[folder] <= MOST_FILES:
+                yield file
+            elif counts[folder] == MOST_FILES + 1:
+                reason = f"it has more than {MOST_FILES} files; the others in it were not looked at"
+                yield File(file.source, folder, _refusing(reason))
+
+    def _of_source(self, source: Path, *, opened: bool) -> Iterator[File]:
+        if source.is_dir():
+            yield from _of_folder(source)
+        elif source.suffix.lower() == ".zip" and opened:
+            room = Room(2_000_000, 50_000_000_000)
+            out = self._stack.enter_context(unnamed_file(self._disk))
+            for names, read in self._unpack(source, room, 1, out):
+                parts, read = _path(names[-1], read) if names else ((), read)
+                yield File(source, parts, read)
+        else:
+            yield File(source.parent, (name_as_text(source.name),), functools.partial(_read_file, source))
+
+    def within(self, file: File, data: bytes, room: Room) -> Iterator[File]:
+        """The files of an archive that a student has handed in, those of archives in it, too; read each at once.
+
+        Args:
+            file: The archive.
+            data: Its bytes.
+            room: What the archives of the student may still unpack to, which gets less.
+        """
+        path = self._folder / "archive"
+        path.write_bytes(data)
+        with unnamed_file(self._disk) as out:
+            for names, read in self._unpack(path, room, _DEEPEST, out):
+                inner: tuple[str, ...] = ()
+                for name in names:
+                    parts, read = _path(name, read)
+                    inner += parts
+                yield File(file.source, file.parts, read, inner)
+
+    def _unpack(
+        self, path: Path, room: Room, depth: int, out: IO[bytes]
+    ) -> Iterator[tuple[tuple[str, ...], Callable[[], bytes]]]:
+        """Unpack an archive; the names that lead to each file, and what reads it."""
+        words = [*map(str, (depth, room.files, room.unpacked, MAX_BYTES))]
+        try:
+            code = self._run(path.resolve(), words, out)
+        except OSError as error:
+            yield (), _refusing(f"it cannot be read: {error.strerror}")
+            return
+        if code in (errno.ENOSPC, errno.EDQUOT):
+            raise OSError(code, os.strerror(code))
+        if code:
+            yield (), _refusing("it met a limit of what may be unpacked: unpack it, and collect the folder")
+            return
+        for line, begin in itertools.islice(_lines(out), room.files + 1):
+            room.files -= not line.reason
+            room.unpacked -= line.size
+            read = functools.partial(os.pread, out.fileno(), line.size, begin)
+            yield line.names, _refusing(line.reason) if line.reason else read
+
+    def _run(self, path: Path, words: list[str], out: IO[bytes]) -> int:
+        """Have an archive unpacked into a file; the exit code, and that of a signal if a limit was met."""
+        path.open("rb").close()
+        program = ("-I", "-S", str(Path(unpack.__file__)))
+        self.has_unpacked = True
+        if not why_impossible():
+            child = python_child(*program, str(PLACE), *words)
+            return run_alone(child.command, Bind(path, PLACE), out.fileno(), _LIMITS)
+        with python_child(*program, str(path), *words).start(stdout=out) as process:
+            return process.wait()
+
+
+def _lines(out: IO[bytes]) -> Iterator[tuple[_Unpacked, int]]:
+    """The lines that a box has written, and where the bytes behind each begin."""
+    place, end = 0, os.fstat(out.fileno()).st_size
+    while place < end:
+        line, mark, _ = os.pread(out.fileno(), LONGEST_LINE, place).partition(b"\n")
+        try:
+            found = msgspec.json.decode(line, type=_Unpacked)
+        except msgspec.MsgspecError:
+            found = _Unpacked((), 0, "what came out of the box is not what it was to write")
+        place += len(line) + len(mark)
+        size = min(max(found.size, 0), MAX_BYTES)
+        yield replace(found, size=size), place
+        place += size
+
+
+def _path(name: str, read: Callable[[], bytes]) -> tuple[tuple[str, ...], Callable[[], bytes]]:
+    """The path that a name in an archive means, and what reads the file: nothing, if it leads out or is too long."""
+    parts = tuple(part for part in name.replace("\\", "/").split("/") if part not in ("", "."))
+    is_out = not parts or ".." in parts or name.startswith(("/", "\\")) or parts[0].endswith(":")
+    if not is_out and len(name) <= LONGEST_NAME:
+        return parts, read
+    # The system's own folders in front of it stay what they are.
+    above = itertools.takewhile(lambda part: part != "..", parts[:-1][:2])
+    shown = (*(part[:LONGEST_NAME] for part in above), name[:LONGEST_NAME])
+    return shown, _refusing(_TOO_LONG if len(name) > LONGEST_NAME else _LEADS_OUT)
 
 
 def _has_one_folder_around_all(source: Path) -> bool:
     """True of a folder with a single folder in it: an archive is often unpacked into one of its own name."""
     try:
-        inside = [path for path in source.iterdir() if not _is_left_by_a_program(path.name)]
+        inside = [path for path in source.iterdir() if not is_left_by_a_program(path.name)]
     except OSError:  # also where it is a file
         return False
     return len(inside) == 1 and inside[0].is_dir()
-
-
-def _is_left_by_a_program(name: str) -> bool:
-    return name in _LEFT_BY_PROGRAMS or name.startswith("._")
-
-
-def _of_source(source: Path, *, opened: bool) -> Iterator[File]:
-    if source.is_dir():
-        yield from _of_folder(source)
-        return
-    alone = File(source.parent, (name_as_text(source.name),), functools.partial(_read_file, source))
-    if source.suffix.lower() != ".zip" or not opened:
-        yield alone
-        return
-    try:
-        file = source.open("rb")
-    except OSError as error:
-        yield replace(alone, read=_refusing(f"it cannot be read: {error.strerror}"))
-    else:
-        yield from _of_zip(File(source, (), alone.read), file, _LARGEST_LIST)
-
-
-def within(file: File, data: bytes, room: Room, depth: int = 1) -> Iterator[tuple[File, bytes | NotTaken]]:
-    """The files of an archive that a student has handed in, those of archives in it, too.
-
-    With each comes what it holds, or the reason why that cannot be taken.
-    """
-    holds_a_file = False
-    for inner in _of_zip(file, io.BytesIO(data), _LARGEST_LIST_OF_ONE, room):
-        holds_a_file = True
-        try:
-            held = inner.read()
-        except NotTaken as reason:
-            yield inner, reason
-            continue
-        if is_zip(inner.name, held) and depth < _DEEPEST:
-            yield from within(inner, held, room, depth + 1)
-        else:
-            yield inner, held
-    if not holds_a_file:
-        yield file, NotTaken(f"it {EMPTY}")
 
 
 def _of_folder(source: Path) -> Iterator[File]:
     above = source.parent
     for folder, folders, names in os.walk(source):
         here = tuple(map(name_as_text, Path(folder).relative_to(above).parts))
-        folders[:] = sorted(name for name in folders if name not in _LEFT_BY_PROGRAMS)
+        folders[:] = sorted(name for name in folders if not is_left_by_a_program(name))
         for name in sorted(names):
             path = Path(folder) / name
-            if _is_left_by_a_program(name):
+            if is_left_by_a_program(name):
                 continue
             yield File(above, (*here, name_as_text(name)), functools.partial(_read_file, path))
         for name in folders:
@@ -212,50 +252,6 @@ def _of_folder(source: Path) -> Iterator[File]:
             folders.clear()
             reason = f"more than {_DEEPEST_FOLDER} folders are in each other; the others were not looked at"
             yield File(above, here, _refusing(reason))
-
-
-def _of_zip(outer: File, data: BinaryIO, largest_list: int, room: Room | None = None) -> Iterator[File]:
-    """The files of an archive; one that says why where it cannot be read."""
-    try:
-        bounded = _Bounded(data, largest_list)
-        archive = zipfile.ZipFile(bounded)
-        bounded.most = MAX_BYTES + 1  # from here on, the files themselves
-        entries = [entry for entry in archive.infolist() if not entry.is_dir()]
-    except _BROKEN as error:
-        reason = f"it is no zip file that can be read: {error}"
-        if room is None and isinstance(error, NotTaken):
-            reason += ". Unpack it, and collect the folder"  # one student's many names are no reason to lose all others
-        yield replace(outer, read=_refusing(reason))
-        return
-    if room is not None and (reason := room.take(entries)):
-        yield replace(outer, read=_refusing(reason))
-        return
-    for entry in entries:
-        name = _name_of(entry)
-        parts = tuple(part for part in name.replace("\\", "/").split("/") if part not in ("", "."))
-        if any(map(_is_left_by_a_program, parts)):
-            continue
-        reason = _reason_against(entry, name, parts)
-        # The archive stays open as long as any of its files may be read.
-        read = _refusing(reason) if reason else functools.partial(_read_entry, archive, entry)
-        if reason in (_LEADS_OUT, _TOO_LONG):  # the system's own folders in front of it stay what they are
-            above = itertools.takewhile(lambda part: part != "..", parts[:-1][:2])
-            parts = (*(part[:_LONGEST_NAME] for part in above), name[:_LONGEST_NAME])
-        if outer.parts:
-            yield File(outer.source, outer.parts, read, (*outer.inner, *parts))
-        else:
-            yield File(outer.source, parts, read)
-
-
-def is_zip(name: str, data: bytes) -> bool:
-    """True if a file that was handed in is an archive to be opened, whatever is behind its name.
-
-    Documents of office programs are zips, too, and hold no notebook.
-    """
-    suffixes = [suffix.lower() for suffix in Path(name).suffixes]
-    return ".zip" in suffixes or (
-        data.startswith(b"PK\x03\x04") and suffixes[-1:] in ([], [".txt"], [".bin"])
-    )
 
 
 def _refusing(reason: str) -> Callable[[], bytes]:
@@ -270,74 +266,3 @@ def _read_file(path: Path) -> bytes:
         return read_bytes(path)
     except UnreadableSubmission as error:
         raise NotTaken(str(error)) from error
-
-
-class _Bounded:
-    """A file that gives no more bytes at once than a limit.
-
-    An archive may give several lengths for its list of files, and programs differ in the one that they believe. So the
-    limit is on the bytes that are really read.
-
-    Attributes:
-        most: Bytes that may be read at once.
-    """
-
-    def __init__(self, file: BinaryIO, most: int) -> None:
-        self._file = file
-        self.most = most
-        self.seek, self.tell, self.close = file.seek, file.tell, file.close
-
-    def read(self, size: int = -1) -> bytes:
-        """The content that ``read`` of any file gives.
-
-        Raises:
-            NotTaken: It is more than the limit.
-        """
-        data = self._file.read(self.most + 1 if size < 0 else min(size, self.most + 1))
-        if len(data) > self.most:
-            raise NotTaken(f"its list of files has more than {self.most / 1e6:.1f} MB")
-        return data
-
-    def seekable(self) -> bool:
-        """True: it can be read from any place."""
-        return True
-
-
-def _name_of(entry: zipfile.ZipInfo) -> str:
-    """The name as it was meant: many programs write UTF-8 and do not say so."""
-    if entry.flag_bits & 0x800:
-        return entry.filename
-    try:
-        return entry.filename.encode("cp437").decode("utf-8")
-    except UnicodeError:
-        return entry.filename
-
-
-def _reason_against(entry: zipfile.ZipInfo, name: str, parts: tuple[str, ...]) -> str:
-    mode = entry.external_attr >> 16
-    if len(name) > _LONGEST_NAME:
-        return _TOO_LONG
-    if not parts or ".." in parts or name.startswith(("/", "\\")) or (parts and parts[0].endswith(":")):
-        return _LEADS_OUT
-    if stat.S_IFMT(mode) not in (0, stat.S_IFREG):
-        return "it is a link, or no ordinary file"
-    if entry.flag_bits & 0x1:
-        return "it is encrypted; ask for it without a password"
-    if entry.compress_type not in _METHODS:
-        method = _OTHER_METHODS.get(entry.compress_type, f"method {entry.compress_type}")
-        return f"it is packed with {method}, which is not unpacked here: pack it again as an ordinary zip (deflate)"
-    if entry.file_size > MAX_BYTES:
-        return f"it unpacks to {entry.file_size / 1e6:.0f} MB; the limit is {MAX_BYTES / 1e6:.0f} MB"
-    return ""
-
-
-def _read_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
-    try:
-        with archive.open(entry) as file:
-            # No more than it claims: zipfile unpacks as much as it is asked for, and cuts it afterwards.
-            data = file.read(min(entry.file_size, MAX_BYTES) + 1)
-    except _BROKEN as error:
-        raise NotTaken(f"it cannot be unpacked: {error}") from error
-    if len(data) > MAX_BYTES:
-        raise NotTaken(f"it unpacks to more than {MAX_BYTES / 1e6:.0f} MB")
-    return data

@@ -7,9 +7,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 from zoneinfo import ZoneInfo
 
+from autograder.boxes.sandbox import why_impossible
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.apply import Submitted
-from autograder.grading.collecting.archives import File, NotTaken, Room, files_of, is_zip, within
+from autograder.grading.collecting.archives import Boxes, File, NotTaken, Room
 from autograder.grading.collecting.assignment_of import AssignmentOf
 from autograder.grading.collecting.decide import Decision, decide
 from autograder.grading.collecting.handed_out import HandedOut
@@ -21,6 +22,7 @@ from autograder.grading.collecting.outcomes import CollectReport, Outcome, State
 from autograder.grading.collecting.proposals import Edit, Proposals, entries_of, in_utc, list_trouble
 from autograder.grading.collecting.student_of import StudentOf
 from autograder.grading.collecting.table import Table
+from autograder.grading.collecting.unpack import is_archive
 from autograder.grading.errors import GradingError, check_known
 from autograder.grading.rebuilding.desk import why_unreadable
 from autograder.grading.table.roster import enter_roster, read_roster
@@ -134,21 +136,23 @@ class _Collecting:
     def _receive(self, paths: Sequence[Path]) -> Delivery:
         """Take the files that were named into the inbox."""
         options = self._options
-        with self._inbox.receiving() as receiving:
+        with self._inbox.receiving() as receiving, Boxes(self._directory.state) as boxes:
             student_of = self._knowing([])
             own = own_of(paths, student_of)
             tables = [path for path in paths if path.suffix.lower() == ".csv" and path.is_file()]
             # In Google's names nothing tells a list of the instructor's from a student's.
             lists = [path for path in tables if path not in own and options.form != "google"]
-            arrivals = [self._list(file, receiving) for path in lists for file in files_of(path)]
+            arrivals = [self._list(file, receiving) for path in lists for file in boxes.files_of(path)]
             others = [path for path in paths if path not in lists]
             own = {*own_of(others, self._knowing(self._entries)), *tables}
-            sources = [source_of(path, is_own=path in own) for path in others]
+            sources = [source_of(path, boxes, is_own=path in own) for path in others]
             student_of = self._knowing(self._entries)
             for source in sources:
-                arrivals += self._source(source, student_of, receiving)
+                arrivals += self._source(source, student_of, receiving, boxes)
                 note = note_on(source, student_of, options.form or options.names)
                 self._notes += [note] if note else []
+            if boxes.has_unpacked and (why := why_impossible()):
+                self._notes.append(f"archives were unpacked without a sandbox, with limits alone: {why}")
             unique = {(one.label, one.key): one for one in arrivals}
             ordered = tuple(one for _, one in sorted(unique.items()))
             receiving.delivery = replace(options, arrivals=ordered)
@@ -162,43 +166,32 @@ class _Collecting:
         return StudentOf(self._roster, is_notebook, options.form, options.names, [*known, *own], own)
 
     def _list(self, file: File, receiving: Receiving) -> Arrival:
-        arrival = _arrival(file, is_list=True)
-        try:
-            data = file.read()
-        except NotTaken as error:
-            return replace(arrival, refused=str(error), is_list=False)
-        arrival = replace(arrival, content=receiving.keep(data))
-        if trouble := list_trouble(file.name, data):
+        arrival, data = _taken(_arrival(file, is_list=True), file, receiving)
+        if trouble := arrival.refused or list_trouble(file.name, data):
             return replace(arrival, refused=trouble, is_list=False)
         entries = read_list(file.name, data) or []
         self._told += [one for one in entries if not one.lms]
         self._lists[arrival.content] = entries
         return arrival
 
-    def _source(self, source: Source, student_of: StudentOf, receiving: Receiving) -> Iterator[Arrival]:
+    def _source(
+        self, source: Source, student_of: StudentOf, receiving: Receiving, boxes: Boxes
+    ) -> Iterator[Arrival]:
         for file in source.files:
             if source.is_list(file, self._options.form):
                 yield self._list(file, receiving)
                 continue
-            arrival = _arrival(file, levels=source.levels, is_own=source.is_own)
-            try:
-                data = file.read()
-            except NotTaken as error:
-                yield replace(arrival, refused=str(error))
-                continue
-            arrival = replace(arrival, content=receiving.keep(data))
-            if not is_zip(file.name, data):
+            arrival, data = _taken(
+                _arrival(file, levels=source.levels, is_own=source.is_own), file, receiving
+            )
+            if not is_archive(file.name, data):
                 yield arrival
                 continue
             yield replace(arrival, is_archive=True)
             owners = student_of.owners(file.parts, source.levels, is_alone=source.is_own)
             whose = tuple(one.id for members in owners.members for one in members) or file.parts[:2]
-            for inner, held in within(file, data, self._rooms[source.download, whose]):
-                one = replace(arrival, inner=inner.inner, content="")
-                if isinstance(held, NotTaken):
-                    yield replace(one, refused=str(held))
-                else:
-                    yield replace(one, content=receiving.keep(held))
+            for inner in boxes.within(file, data, self._rooms[source.download, whose]):
+                yield _taken(replace(arrival, inner=inner.inner, content=""), inner, receiving)[0]
 
     @property
     def _entries(self) -> list[Entry]:
@@ -313,6 +306,15 @@ def _arrival(file: File, *, levels: int = 1, is_own: bool = False, is_list: bool
     """The arrival of a file whose bytes nobody has read yet."""
     source = "" if file.source.is_dir() else name_as_text(file.source.name)
     return Arrival(source, file.parts, file.inner, levels=levels, is_own=is_own, is_list=is_list)
+
+
+def _taken(arrival: Arrival, file: File, receiving: Receiving) -> tuple[Arrival, bytes]:
+    """The arrival of a file whose bytes were read and are kept, or the reason why not; and the bytes."""
+    try:
+        data = file.read()
+    except NotTaken as error:
+        return replace(arrival, refused=str(error)), b""
+    return replace(arrival, content=receiving.keep(data)), data
 
 
 def _some(names: Sequence[str]) -> str:

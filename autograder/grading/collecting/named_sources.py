@@ -18,14 +18,16 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.grading.collecting.archives import EMPTY, File, files_of
+from autograder.grading.collecting.archives import Boxes, File
 from autograder.grading.collecting.lists import GRADESCOPE
+from autograder.grading.collecting.unpack import EMPTY
 from autograder.regular_files import name_as_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from autograder.grading.collecting.archives import Boxes, File
     from autograder.grading.collecting.student_of import StudentOf
 
 _EXPORT = re2.compile(r"^assignment_\d+_export(?: ?\(\d+\)|-\d+)?$")
@@ -86,9 +88,9 @@ def own_of(paths: Sequence[Path], student_of: StudentOf) -> set[Path]:
     return (by_system - downloads) | {path for path in paths if beside[path] in chosen}
 
 
-def source_of(path: Path, *, is_own: bool) -> Source:
+def source_of(path: Path, boxes: Boxes, *, is_own: bool) -> Source:
     """A file or folder with all its files."""
-    return Source(path, tuple(files_of(path, opened=not is_own)), is_own)
+    return Source(path, tuple(boxes.files_of(path, opened=not is_own)), is_own)
 
 
 def note_on(source: Source, student_of: StudentOf, form: str) -> str:

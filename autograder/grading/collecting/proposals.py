@@ -29,7 +29,7 @@ PAGES = ("index.html", "grades.csv", GRADESCOPE)
 """Files that a system itself adds to a download."""
 _ONE_NUMBER = ("canvas", "moodle", "brightspace")
 """The systems with one number for each person in a download, in which users may change their names."""
-_OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".tgz", ".tar", ".bz2", ".xz", ".zst")
+_OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".bz2", ".xz", ".zst")
 
 
 @dataclass(frozen=True)

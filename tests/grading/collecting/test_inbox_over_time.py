@@ -12,6 +12,7 @@ import os
 import random
 import shutil
 import sys
+import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -22,6 +23,8 @@ from test_collect import lies, placed, stamp, why, work
 from test_collected_table import edit, read, save
 from test_where_it_goes import other_lab, outcome
 
+from autograder.boxes import syscalls
+from autograder.boxes.sandbox import why_impossible
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting import apply, inbox, table
 from autograder.grading.collecting.collect import collect
@@ -281,6 +284,38 @@ def test_a_full_disk_has_a_sentence_and_the_same_command_goes_on(
     assert not [*klass.path.rglob("*.new")]
     assert collect(klass.path, [archive]).exit_code == 0
     assert (lies(klass, "ada"), lies(klass, "ben")) == (work(klass, 1), work(klass, 2))
+
+
+def test_a_disk_that_really_fills_up_loses_nothing(klass: TinyClass, tmp_path: Path) -> None:
+    """What a box unpacks, and the inbox, do not fit on a disk of 6 MB; what was collected before is still there."""
+    if reason := why_impossible():
+        pytest.skip(reason)
+    small = blackboard(klass, tmp_path, ada=(3, 1))
+    large = write_zip(
+        tmp_path / "large.zip",
+        {f"{DAY.format('ben', 4)[:-6]} {n}.txt": random.Random(n).randbytes(3_000_000) for n in range(4)},
+    )
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    if (child := os.fork()) == 0:
+        code = 1
+        try:
+            syscalls.leave_the_host()
+            syscalls.mount_tmpfs(disk, 6_000_000, 10_000)
+            copy = type(klass)(Path(shutil.copytree(klass.path, disk / "class")))
+            collect(copy.path, [small])
+            before = outcome(copy)
+            with pytest.raises(GradingError, match="is full"):
+                collect(copy.path, [large])
+            assert not [*copy.path.rglob("*.new")]
+            assert collect(copy.path, [small]).exit_code == 0
+            assert outcome(copy) == before
+            code = 0
+        except BaseException:
+            traceback.print_exc()
+        finally:
+            os._exit(code)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
 
 
 def killed_at(klass: Path, archive: Path, moment: int) -> int:

@@ -93,7 +93,7 @@ def test_who_fills_an_archive_harms_nobody_else(klass: TinyClass, tmp_path: Path
     ("name", "words"),
     [
         ("lab_1_2.rar", "unpack it into a folder named ada"),
-        ("lab_1_2.tar.gz", "unpack it into a folder named ada"),
+        ("lab_1_2.tar.gz", "it is not an archive that can be read"),
         ("lab_1_2.7z", "unpack it into a folder named ada"),
         ("lab_1_2.py", "submitted/ada/lab_1_2"),
         ("answer.docx", "it is not a notebook: ask for the notebook"),

@@ -1,0 +1,173 @@
+"""Unpacks one archive. Runs in a box: what an archive says is believed by this process alone.
+
+``python -I -S unpack.py ARCHIVE DEPTH FILES BYTES OF_ONE`` writes at most so many files and bytes to standard
+output. Each file is a line of JSON and its bytes. The line has its size, and its names: one for each archive in
+another. If a file is not taken, the line has the reason. Nothing of the package is imported here.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import resource
+import stat
+import sys
+import tarfile
+import zipfile
+from functools import partial
+from typing import IO, TYPE_CHECKING, BinaryIO, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+_MEMORY = 600_000_000
+"""Bytes; some methods unpack a few hundred bytes to more in one step, which then fails."""
+_CPU_SECONDS = 200
+_TARS = (".tar", ".tgz", ".tar.gz", ".tar.bz2", ".tar.xz")
+_LEFT_BY_PROGRAMS = ("__MACOSX", ".git", ".ipynb_checkpoints", "__pycache__", ".DS_Store")
+"""Files that systems and editors leave beside a student's work."""
+EMPTY = "holds no file, or only what programs leave beside a work"
+"""The reason against an archive or a folder of which nothing is taken."""
+LONGEST_NAME = 1_000
+"""Characters of a path; a zip may have paths of 65,535, too many to print."""
+LONGEST_LINE = 50_000
+"""Bytes of the line of a file, with three names of more than the longest that is taken."""
+
+
+def is_archive(name: str, data: bytes) -> bool:
+    """Return True if a file is an archive to be opened. Documents of office programs are zips, and are not."""
+    lower = name.lower()
+    plain = "." not in lower or lower.endswith((".txt", ".bin"))
+    return ".zip" in lower or lower.endswith(_TARS) or (plain and data.startswith(b"PK\x03\x04"))
+
+
+def is_left_by_a_program(name: str) -> bool:
+    """Return True for a name that no student has given."""
+    return name in _LEFT_BY_PROGRAMS or name.startswith("._")
+
+
+class _Entry(NamedTuple):
+    name: str
+    size: int
+    is_ordinary: bool
+    open: Callable[[], IO[bytes]]
+
+
+def _entries(file: BinaryIO) -> list[_Entry]:
+    """The files of an archive, as it lists them."""
+    if tarfile.is_tarfile(file):
+        file.seek(0)
+        tar = tarfile.open(fileobj=file)  # noqa: SIM115  (its files are read from it)
+        return [
+            _Entry(one.name, one.size, one.isreg(), partial(_opened, tar, one))
+            for one in tar
+            if not one.isdir()
+        ]
+    archive = zipfile.ZipFile(file)
+    return [
+        _Entry(_name_of(one), one.file_size, _is_ordinary(one), partial(archive.open, one))
+        for one in archive.infolist()
+        if not one.is_dir()
+    ]
+
+
+def _opened(tar: tarfile.TarFile, one: tarfile.TarInfo) -> IO[bytes]:
+    return tar.extractfile(one) or io.BytesIO()
+
+
+def _name_of(one: zipfile.ZipInfo) -> str:
+    """The name as it was meant: many programs write UTF-8 and do not say so."""
+    try:
+        return one.filename if one.flag_bits & 0x800 else one.filename.encode("cp437").decode("utf-8")
+    except UnicodeError:
+        return one.filename
+
+
+def _is_ordinary(one: zipfile.ZipInfo) -> bool:
+    return stat.S_IFMT(one.external_attr >> 16) in (0, stat.S_IFREG)
+
+
+class _Unpacking:
+    """What may still be unpacked: files and bytes, and bytes of one file.
+
+    Args:
+        depth: Archives in each other; 1 leaves those that are in it as they are.
+        files: The number of files.
+        unpacked: The number of bytes.
+        of_one: The bytes of one file.
+    """
+
+    def __init__(self, depth: int, files: int, unpacked: int, of_one: int) -> None:
+        self.depth, self.files, self.unpacked, self.of_one = depth, files, unpacked, of_one
+
+    def unpack(self, names: Sequence[str], file: BinaryIO) -> None:
+        try:
+            entries = _entries(file)
+        except Exception as error:
+            _tell(names, reason=f"it is not an archive that can be read: {error or type(error).__name__}")
+            return
+        size = sum(one.size for one in entries)
+        if len(entries) > self.files or size > self.unpacked:
+            _tell(
+                names,
+                reason=f"it has {len(entries)} files that unpack to {size / 1e6:.0f} MB, and {self.files} files of "
+                f"{self.unpacked / 1e6:.0f} MB may still be unpacked: ask for the notebook alone",
+            )
+            return
+        self.files -= len(entries)
+        self.unpacked -= size
+        kept = [
+            one
+            for one in entries
+            if not any(map(is_left_by_a_program, one.name.replace("\\", "/").split("/")))
+        ]
+        if not kept and self.depth > 1:  # of an empty download, its folder says so
+            _tell(names, reason=f"it {EMPTY}")
+        for one in kept:
+            self._take([*names, one.name[: 2 * LONGEST_NAME]], one)
+
+    def _take(self, names: Sequence[str], one: _Entry) -> None:
+        if not one.is_ordinary:
+            _tell(names, reason="it is a link, or not an ordinary file")
+            return
+        if one.size > self.of_one:
+            megabytes = f"{one.size / 1e6:.0f} MB; the limit is {self.of_one / 1e6:.0f} MB"
+            _tell(names, reason=f"it unpacks to {megabytes}")
+            return
+        try:
+            with one.open() as file:
+                data = file.read(one.size + 1)
+        except Exception as error:
+            _tell(names, reason=f"it cannot be unpacked: {error or type(error).__name__}")
+            return
+        if len(names) < self.depth and is_archive(one.name, data):
+            self.unpack(names, io.BytesIO(data))
+        else:
+            _tell(names, data)
+
+
+def _tell(names: Sequence[str], data: bytes = b"", reason: str = "") -> None:
+    """Write a file, or why it is not taken; what cannot be written ends the process with the number of the error."""
+    out = sys.stdout.buffer
+    try:
+        out.write(json.dumps({"names": names, "size": len(data), "reason": reason}).encode() + b"\n" + data)
+        out.flush()
+    except OSError as error:
+        os._exit(error.errno or 1)
+
+
+def main() -> None:
+    """Take the limits, and unpack."""
+    path, *numbers = sys.argv[1:]
+    unpacking = _Unpacking(*map(int, numbers))
+    written = unpacking.unpacked + unpacking.files * LONGEST_LINE
+    limits = {resource.RLIMIT_AS: _MEMORY, resource.RLIMIT_CPU: _CPU_SECONDS, resource.RLIMIT_FSIZE: written}
+    for kind, most in limits.items():
+        resource.setrlimit(kind, (most, most))
+    with open(path, "rb") as file:  # noqa: PTH123  (nothing more is imported)
+        unpacking.unpack([], file)
+
+
+if __name__ == "__main__":
+    main()
