@@ -151,7 +151,11 @@ def collect(tiny: TinyClass, class_: list[Pupil], folder: Path) -> list[Path]:
 
 def check_unplaced(said: str, class_: list[Pupil], waiting: tuple[str, ...] = WAITING) -> None:
     """Each file that waits for a place is named with its student, the reason and what to type."""
-    what_to_type = {"py": "ask for the notebook", "other lab": "say --assignment own"}
+    what_to_type = {
+        "py": "ask for the notebook",
+        "other lab": "say --assignment own",
+        "tar.gz": "it is not an archive that can be read",
+    }
     for pupil in class_:
         if pupil.oddity in waiting:
             words = what_to_type.get(pupil.oddity, f"unpack it into a folder named {pupil.id}")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory
 from autograder.grading.classes.timestamps import TIMESTAMP, timestamp_text
-from autograder.grading.collecting.inbox import BEFORE, BY_HAND, Arrival, Delivery, Inbox
+from autograder.grading.collecting.inbox import BY_HAND, Arrival, Delivery, Inbox
 from autograder.grading.collecting.outcomes import State
 from autograder.grading.collecting.records import Collected, CollectedRecords, History
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
@@ -53,40 +53,26 @@ class Submitted:
         return hashlib.sha256(data).hexdigest() if data is not None else ""
 
     def take_in(self) -> None:
-        """Put into the inbox what a person has put into ``submitted``, and what was collected before inboxes existed.
+        """Put into the inbox what a person has put into ``submitted``.
 
         Raises:
             OSError: A file could not be written.
         """
-        known = {(one.form, file) for one in self._inbox.deliveries.values() for file in one.arrivals}
+        known = {
+            file for one in self._inbox.deliveries.values() if one.form == BY_HAND for file in one.arrivals
+        }
         for submission in self._directory.submissions()[0]:
             student, assignment = submission.student, submission.assignment
             history = self._records.get(assignment, student) or History({})
-            found: list[tuple[str, str, bytes | None, Collected | None]] = []
             for notebook in self._directory.notebooks(assignment):
                 place = (student, assignment, notebook)
-                content, ours = self.content(place), history.now.get(notebook)
-                is_ours = content in history.written(notebook)
-                if content and not (is_ours and content in self._inbox):
-                    facts = ours if ours and ours.content == content else None
-                    if ours and not facts and ours.content not in self._inbox:
-                        facts = Collected(notebook, content, when=ours.when)
-                    form = BEFORE if is_ours else BY_HAND
-                    found.append((notebook, form, read_bytes(self.path(place)), facts))
-            found += [
-                (one.notebook, BEFORE, self._records.kept(assignment, student, one.content), one)
-                for one in history.before
-                if one.content not in self._inbox
-            ]
-            for notebook, form, data, facts in found:
-                if data is None:
-                    continue
-                content = hashlib.sha256(data).hexdigest()
+                content = self.content(place)
                 arrival = Arrival("submitted", (student, assignment, f"{notebook}{SUFFIX}"), content=content)
-                if (form, arrival) not in known:
+                is_ours = content in history.written(notebook) and content in self._inbox
+                if content and not is_ours and arrival not in known:
                     with self._inbox.receiving() as receiving:
-                        receiving.keep(data)
-                        receiving.delivery = Delivery((arrival,), form=form, known=facts)
+                        receiving.keep(read_bytes(self.path(place)))
+                        receiving.delivery = Delivery((arrival,), form=BY_HAND)
 
     def bring(
         self, counts: Mapping[Place, Line], decisions: Iterable[Decision]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING
-from zoneinfo import ZoneInfo
 
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.classes.class_directory import ClassDirectory
@@ -15,7 +14,7 @@ from autograder.grading.collecting.assignment_of import AssignmentOf
 from autograder.grading.collecting.decide import Decision, decide
 from autograder.grading.collecting.handed_out import HandedOut
 from autograder.grading.collecting.inbox import Arrival, Delivery, Inbox
-from autograder.grading.collecting.lists import Entry, is_unread, read_list
+from autograder.grading.collecting.lists import Entry, read_list
 from autograder.grading.collecting.named_sources import Source, note_on, own_of, source_of
 from autograder.grading.collecting.naming import check_names
 from autograder.grading.collecting.outcomes import CollectReport, Outcome, State
@@ -32,6 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
     from datetime import datetime
     from pathlib import Path
+    from zoneinfo import ZoneInfo
 
     from autograder.grading.collecting.decide import Place
     from autograder.grading.collecting.inbox import Receiving
@@ -54,7 +54,7 @@ def collect(
 
     Args:
         path: The class directory.
-        sources: Zips, folders, notebooks, and lists that say who a number is or when work was handed in.
+        sources: Zips, folders, notebooks, and a system's lists that say who a number is, and when work was handed in.
         assignment: The assignment that all of it is for; told from names and contents by default.
         zone: The time zone of times in names and lists; the time zone of the class by default.
         form: The system that it is from, as in ``--from``; told from the names by default.
@@ -91,7 +91,6 @@ class _Collecting:
         self._table = Table(directory)
         self._handed_out = HandedOut(directory)
         self._notes: list[str] = []
-        self._told: list[Entry] = []
         self._lists: dict[str, list[Entry]] = {}
         self._rooms: dict[object, Room] = defaultdict(Room)
 
@@ -102,11 +101,6 @@ class _Collecting:
         self._submitted.take_in()
         delivery = self._receive(sources)
         decisions, counts = self._decide(edits)
-        if self._told:
-            told = self._as_edits(edits, counts)
-            notes += told
-            self._table.put_edits(edits)
-            decisions, counts = self._decide(edits)
         results = {place: (state, why) for place, state, why in self._submitted.bring(counts, decisions)}
         decisions = [self._with_trouble(one, results) for one in decisions]
         before = {one.label for one in self._table.waiting()}
@@ -170,7 +164,6 @@ class _Collecting:
         if trouble := arrival.refused or list_trouble(file.name, data):
             return replace(arrival, refused=trouble, is_list=False)
         entries = read_list(file.name, data) or []
-        self._told += [one for one in entries if not one.lms]
         self._lists[arrival.content] = entries
         return arrival
 
@@ -198,35 +191,6 @@ class _Collecting:
         """The entries of the lists that come now."""
         return [entry for entries in self._lists.values() for entry in entries]
 
-    # -- the instructor's own list of times
-
-    def _as_edits(self, edits: dict[str, Edit], counts: dict[Place, Line]) -> list[str]:
-        """Write the times of the instructor's own list into the lines that count, as a person would do."""
-        student_of, notes = self._knowing([]), []
-        for entry in self._told:
-            when = in_utc(entry.when, self._zone)
-            student = student_of.student(entry)
-            if student is None:
-                who = str(entry.members[0][0]) if entry.members and entry.members[0] else "?"
-                notes.append(f"{who} is in the list of times, and nobody is called so")
-                continue
-            assignment = entry.assignment or self._options.assignment
-            for (id_, name, _), line in sorted(counts.items()):
-                is_meant = name == assignment or (not assignment and (line.when is None or self._is_only))
-                if when and id_ == student.id and is_meant and line.when != when:
-                    edit = replace(edits.get(line.key, Edit()), handed_in=when.isoformat())
-                    edits[line.key] = edit
-                    notes.append(f"{id_}/{name} was handed in {when:%Y-%m-%d %H:%M} UTC")
-        return notes
-
-    @property
-    def _is_only(self) -> bool:
-        return len(self._directory.assignments()) == 1
-
-    @property
-    def _zone(self) -> ZoneInfo:
-        return ZoneInfo(self._options.zone) if self._options.zone else self._directory.time_zone
-
     # -- what became of it
 
     def _with_trouble(self, one: Decision, results: dict[Place, tuple[State, str]]) -> Decision:
@@ -245,7 +209,7 @@ class _Collecting:
         before: set[str],
     ) -> CollectReport:
         labels = {one.key: one.label for one in delivery.arrivals}
-        outcomes, unread = [], []
+        outcomes = []
         for one in decisions:
             place = (one.student, one.line.assignment, one.line.notebook)
             changed = (
@@ -254,9 +218,6 @@ class _Collecting:
             waits = one.state == State.NOT_PLACED and f"{one.line.label} {one.line.key}" not in before
             if one.line.key in labels or changed or waits or (not delivery.arrivals and _waits(one)):
                 outcomes.append(self._outcome(one, labels.get(one.line.key, one.line.label), results))
-            if one.line.key in labels and one.line.unread_time:
-                unread.append(one.line.unread_time)
-        unread += [entry.time for entry in self._entries if is_unread(entry)]
         counting = [one for one in decisions if one.state == State.PLACED]
         here = {one.line.assignment for one in counting if one.line.key in labels or not labels}
         work = {(one.student, one.assignment) for one in self._directory.submissions()[0]}
@@ -279,7 +240,6 @@ class _Collecting:
         return CollectReport(
             self._directory.path,
             tuple(sorted(outcomes, key=lambda one: one.label)),
-            tuple(dict.fromkeys(unread)),
             {name: tuple(dict.fromkeys(students)) for name, students in untimed.items()},
             {name: students for name, students in missing.items() if students},
             sum(map(_waits, decisions)),

@@ -45,7 +45,6 @@ class Found:
         late: True if the LMS marks it as late.
         readings: If the name can be read in several ways, the student of each, the longest name first; the first one
             who is in the class is meant. Empty if there is only one way.
-        time: The time as the name has it, even if it is not readable.
         assignment: The assignment, if the instructor's pattern finds one.
     """
 
@@ -55,7 +54,6 @@ class Found:
     order: int = 0
     late: bool = False
     readings: tuple[Identity, ...] = ()
-    time: str = ""
     assignment: str = ""
 
 
@@ -258,7 +256,7 @@ def _in_one_part(pattern: str, who: _Who, *, says_file: bool = False) -> _Reader
         file, time = found.get("file") if is_file else parts[-1], found.get("when") or ""
         order, late = int(found.get("order") or 0), bool(found.get("late"))
         file = parts[place] if file is None else file
-        return Found(identity, file, read_time(time), order, late, readings, time)
+        return Found(identity, file, read_time(time), order, late, readings)
 
     return read
 

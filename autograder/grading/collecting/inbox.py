@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.grading.collecting.records import Collected  # noqa: TC001
 from autograder.regular_files import keep_whole
 
 if TYPE_CHECKING:
@@ -26,8 +25,6 @@ if TYPE_CHECKING:
 FOLDER = "inbox"
 BY_HAND = "by hand"
 """The form of files that a person has put into ``submitted``."""
-BEFORE = "collected before"
-"""The form of files that were collected before inboxes existed."""
 _LIST = "delivery.json"
 _KEY_LENGTH = 10
 
@@ -91,7 +88,6 @@ class Delivery:
         zone: The time zone of ``--timezone``; empty for that of the class.
         assignment: The assignment of ``--assignment``.
         handed_in: The time of ``--handed-in``.
-        known: The record of the only file, if it was collected before inboxes existed.
     """
 
     arrivals: tuple[Arrival, ...]
@@ -100,7 +96,6 @@ class Delivery:
     zone: str = ""
     assignment: str = ""
     handed_in: datetime | None = None
-    known: Collected | None = None
 
     @property
     def id(self) -> str:

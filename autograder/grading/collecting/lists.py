@@ -23,7 +23,6 @@ GRADESCOPE = "submission_metadata.yml"
 LARGEST_OF_GRADESCOPE = 4_000_000
 """The limit on its bytes: two thousand for each of two thousand students; parsed, a byte takes a hundred."""
 _NUMBER = re2.compile(r"(\d+)(?:\.\w+)?$")
-_NO_TIME = ("", "-")
 
 
 @dataclass(frozen=True)
@@ -31,20 +30,16 @@ class Entry:
     """A list's entry about one submission, or one person.
 
     Attributes:
-        lms: The system that made the list; empty for an instructor's own.
+        lms: The system that made the list.
         number: The number or login that is also in file names; empty if they have none.
         members: The names of each member of the group that handed in, the most certain first.
         when: The time of handing in, in the LMS's own time if it has no zone; None if the list does not have it.
-        time: The same as in the list.
-        assignment: The assignment's name; empty if the list does not have it.
     """
 
     lms: str
     number: str
     members: tuple[tuple[Identity, ...], ...]
     when: datetime | None = None
-    time: str = ""
-    assignment: str = ""
 
 
 @dataclass(frozen=True)
@@ -121,8 +116,6 @@ _FORMS = (
         ("first name", "last name"),
         "submission time",
     ),
-    # An instructor's own list of times.
-    _Form("", ("id", "handed_in"), "", ("id",), (), "handed_in"),
 )
 
 
@@ -158,11 +151,8 @@ def _entries(form: _Form, records: list[dict[str, str]]) -> Iterator[Entry]:
         names = [Identity(form.lms, login=login) for name in form.logins if (login := record.get(name, ""))]
         if called := " ".join(filter(None, (record.get(name, "") for name in form.names))):
             names.append(Identity(form.lms, name=called))
-        time = record.get(form.time, "")
         if names and (number or form.time):
-            yield Entry(
-                form.lms, number, (tuple(names),), read_time(time), time, record.get("assignment", "")
-            )
+            yield Entry(form.lms, number, (tuple(names),), read_time(record.get(form.time, "")))
 
 
 def _of_gradescope(text: str) -> list[Entry] | None:
@@ -179,10 +169,9 @@ def _of_gradescope(text: str) -> list[Entry] | None:
         number = _NUMBER.search(_word(folder))
         if number is not None and isinstance(about, dict):
             members = tuple(_member(one) for one in about.get(":submitters") or () if isinstance(one, dict))
-            created = _word(about.get(":created_at"))
-            when = read_time(created)
+            when = read_time(_word(about.get(":created_at")))
             when = when.replace(tzinfo=UTC) if when and when.tzinfo is None else when
-            entries.append(Entry("gradescope", number[1], members, when, created))
+            entries.append(Entry("gradescope", number[1], members, when))
     return entries
 
 
@@ -195,8 +184,3 @@ def _member(submitter: Mapping[str, Any]) -> tuple[Identity, ...]:
 def _word(value: object) -> str:
     """Return a word of the list; empty for a list in its place, which a few bytes can make longer than any memory."""
     return value.strip() if isinstance(value, str) else ""
-
-
-def is_unread(entry: Entry) -> bool:
-    """True if a list has an unreadable time."""
-    return entry.when is None and entry.time not in _NO_TIME

@@ -99,11 +99,9 @@ def _found(said: dict[str, str], file: str) -> Found:
     column = next((one for one in word if one not in WORDS), "")
     number = word.get(column, "")
     identity = Identity(column, number, login, name)
-    time = word.get("time", "")
     return Found(
         identity,
         word.get("file") or file,
-        when=read_time(time),
-        time=time,
+        when=read_time(word.get("time", "")),
         assignment=base_and_number(word.get("assignment", ""))[0],
     )

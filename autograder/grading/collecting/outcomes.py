@@ -62,7 +62,6 @@ class CollectReport:
     Attributes:
         path: The class.
         outcomes: The outcome of each file.
-        unread_times: Times in names and lists that could not be read.
         untimed: Students with work collected now whose time of handing in is unknown; by assignment.
         missing: Students who have handed in nothing, by assignment.
         waiting: The number of lines in the table that wait for a person.
@@ -72,7 +71,6 @@ class CollectReport:
 
     path: Path
     outcomes: tuple[Outcome, ...] = ()
-    unread_times: tuple[str, ...] = ()
     untimed: dict[str, tuple[str, ...]] = field(default_factory=dict)
     missing: dict[str, tuple[str, ...]] = field(default_factory=dict)
     waiting: int = 0

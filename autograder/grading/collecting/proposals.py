@@ -11,9 +11,9 @@ from zoneinfo import ZoneInfo
 
 from autograder.grading.classes.class_directory import SUFFIX, reason_against_name
 from autograder.grading.collecting.assignment_of import AssignmentOf, NoTarget, is_notebook, stem_of
-from autograder.grading.collecting.inbox import BEFORE, BY_HAND
+from autograder.grading.collecting.inbox import BY_HAND
 from autograder.grading.collecting.lists import GRADESCOPE, LARGEST_OF_GRADESCOPE, Entry, read_list
-from autograder.grading.collecting.records import Collected, repository_in
+from autograder.grading.collecting.records import repository_in
 from autograder.grading.collecting.student_of import Owners, StudentOf
 from autograder.grading.table.roster import Identity, Roster, Student
 
@@ -76,7 +76,6 @@ class Line:
         readings: The ways in which the name of the file identifies the student.
         repository: The repository on GitHub that contained it.
         came_in: The downloads that contained it.
-        unread_time: The time in the name, if it could not be read.
         rank: Lower if the command named the system, higher if it named the assignment; decides which line is shown.
     """
 
@@ -103,7 +102,6 @@ class Line:
     readings: tuple[Identity, ...] = ()
     repository: str = ""
     came_in: frozenset[str] = field(default_factory=frozenset)
-    unread_time: str = ""
     rank: int = 0
 
     @property
@@ -253,33 +251,11 @@ class _Reading:
         line = Line(arrival.key, arrival.label, arrival.content, use=edit.use, rank=rank)
         if arrival.is_list:
             return replace(line, reason="it was read as a list", is_soft=True, lms="list")
-        if self._delivery.form in (BY_HAND, BEFORE):
-            line = self._by_hand(line, arrival)
-        else:
-            line = self._collected(line, arrival, edit)
+        by_hand = self._delivery.form == BY_HAND
+        line = _by_hand(line, arrival) if by_hand else self._collected(line, arrival, edit)
         if edit.handed_in:
             line = replace(line, when=datetime.fromisoformat(edit.handed_in))
         return line
-
-    def _by_hand(self, line: Line, arrival: Arrival) -> Line:
-        """Return the line of a file from ``submitted``, with what was recorded before inboxes existed."""
-        student, assignment, name = arrival.parts
-        notebook = name.removesuffix(SUFFIX)
-        known = self._delivery.known or Collected(notebook, arrival.content)
-        return replace(
-            line,
-            students=(student,),
-            assignment=assignment,
-            notebook=notebook,
-            lms=BY_HAND if self._delivery.form == BY_HAND else known.lms,
-            number=known.number,
-            name=known.name,
-            file=known.file or arrival.path,
-            when=known.when,
-            order=known.order,
-            late=known.late,
-            is_sure=True,
-        )
 
     def _collected(self, line: Line, arrival: Arrival, edit: Edit) -> Line:
         owners, found = self.owners(arrival), None
@@ -300,7 +276,6 @@ class _Reading:
                 name=identity.name or identity.login,
                 file="/".join(arrival.parts),
                 when=when or self._delivery.handed_in,
-                unread_time=found.time if found.time and found.when is None else "",
                 order=found.order,
                 late=found.late,
                 is_sure=owners.is_sure or bool(written),
@@ -376,6 +351,20 @@ class _Reading:
         return in_utc(when, self._zone)
 
 
+def _by_hand(line: Line, arrival: Arrival) -> Line:
+    """The line of a file that a person has put into ``submitted``."""
+    student, assignment, name = arrival.parts
+    return replace(
+        line,
+        students=(student,),
+        assignment=assignment,
+        notebook=name.removesuffix(SUFFIX),
+        lms=BY_HAND,
+        file=arrival.path,
+        is_sure=True,
+    )
+
+
 def in_utc(when: datetime | None, zone: tzinfo) -> datetime | None:
     """Return a time in UTC; None for one that cannot be converted, such as a time in the year 1 or 9999."""
     if when is None:
@@ -415,7 +404,7 @@ def list_trouble(name: str, data: bytes) -> str:
     if read_list(name, data) is None:
         return (
             "it is none of the lists that are known: Moodle's grading worksheet, Canvas's gradebook or its "
-            "submissions, GitHub Classroom's grades, Gradescope's scores, or one with the columns id and handed_in. "
-            "A list of your students belongs into students.csv of the class"
+            "submissions, GitHub Classroom's grades or Gradescope's scores. Times belong into the column handed_in of "
+            "collected.csv, a list of your students into students.csv of the class"
         )
     return ""

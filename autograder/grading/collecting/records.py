@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import gzip
-import zlib
 from dataclasses import dataclass, field
 from datetime import datetime  # noqa: TC003  (msgspec reads the annotations)
 from typing import TYPE_CHECKING
@@ -114,23 +112,6 @@ class CollectedRecords:
             OSError: The record could not be written.
         """
         write_whole(self._path(assignment, student), msgspec.json.encode(history))
-
-    def kept(self, assignment: str, student: str, content: str) -> bytes | None:
-        """Return an earlier notebook that a version without an inbox has kept here; None if there is none."""
-        try:
-            return gzip.decompress(
-                (self._folder / assignment / f"{student}.kept" / f"{content[:16]}.ipynb.gz").read_bytes()
-            )
-        except (OSError, EOFError, zlib.error):
-            return None
-
-    def waiting(self) -> list[str]:
-        """The names of files that an older version, without an inbox, could not place and did not keep."""
-        try:
-            listed = msgspec.json.decode((self._folder / "not_placed.json").read_bytes())
-            return [str(one["label"]) for one in listed]
-        except (OSError, msgspec.MsgspecError, LookupError, TypeError):
-            return []
 
     def all(self) -> list[tuple[str, str]]:
         """The students and assignments that have a record."""

@@ -51,13 +51,7 @@ def _lines(report: CollectReport) -> Iterator[str]:
         yield (
             "note         nothing says when that was handed in"
             + (", though the LMS marks some of it as late" if marked else "")
-            + ", so nothing is taken off for being late: write it under handed_in in "
-            "collected.csv, or collect a list with the columns id and handed_in"
-        )
-    for time in report.unread_times:
-        yield (
-            f"note         the time “{time}” in a name or a list could not be read, so nothing says when that work was "
-            "handed in: have the system show itself in English, and download again"
+            + ", so nothing is taken off for being late: write it under handed_in in collected.csv"
         )
     for note in report.notes:
         yield f"note         {note}"

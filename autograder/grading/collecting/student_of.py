@@ -254,11 +254,6 @@ class StudentOf:
         """Return the numbers for which lists have several times, so that none counts."""
         return sorted({number for (_, number), times in self._timed[0].items() if len(times) > 1})
 
-    def student(self, entry: Entry) -> Student | None:
-        """Return the student of an entry in the instructor's own list; None if it matches no student of the class."""
-        hit = self._first(entry.members[0]) if entry.members else None
-        return hit[0] if hit else None
-
 
 def _times(entries: Iterable[Entry]) -> dict[tuple[str, str], set[datetime]]:
     times: dict[tuple[str, str], set[datetime]] = defaultdict(set)

@@ -20,7 +20,6 @@ from autograder.grading.collecting.forms import read_time
 from autograder.grading.collecting.inbox import FOLDER
 from autograder.grading.collecting.outcomes import State
 from autograder.grading.collecting.proposals import Edit, in_utc
-from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.reporting.spreadsheet import defused, original
 from autograder.regular_files import write_whole
 
@@ -97,7 +96,6 @@ class Table:
         self.path = directory.path / NAME
         self._copies = directory.state / FOLDER / "tables"
         self._edits_file = directory.state / FOLDER / "edits.json"
-        self._records = CollectedRecords(directory.state)
         self._zone = directory.time_zone
         self._locale = _locale_of(self._zone.key)
 
@@ -284,15 +282,12 @@ class Table:
         return _rows(self._read_copy(self._newest), whole=True)[0] or []
 
     def waiting(self) -> list[Waiting]:
-        """Return the waiting lines, as ``collect`` last wrote them, and those recorded by an older version."""
-        lines = self.lines()
-        named = {row["file"].rpartition(" ")[0] for row in lines}
-        again = "it was collected with a version that did not keep such files: collect it again"
+        """Return the waiting lines, as ``collect`` last wrote them."""
         return [
             Waiting(row["file"], row["reason"], row["student"], row["assignment"], number)
-            for number, row in enumerate(lines, 2)
+            for number, row in enumerate(self.lines(), 2)
             if row["counts"] == WAITS
-        ] + [Waiting(label, again, "", "", 0) for label in self._records.waiting() if label not in named]
+        ]
 
 
 def _rows(data: bytes, *, whole: bool = False) -> tuple[list[dict[str, str]] | None, int]:

@@ -229,7 +229,8 @@ def test_a_table_beside_files_that_students_have_named_is_no_list(
     klass: TinyClass, tmp_path: Path, form: str
 ) -> None:
     collect(klass.path, [write_zip(tmp_path / "c.zip", {"barben_102_9002_lab_1_2.ipynb": work(klass)})])
-    files = {"Ada Lovelace - lab_1_2.ipynb": work(klass), "times.csv": "id,handed_in\nben,2030-01-01\n"}
+    listed = "user_id,submitted_at,login_id\n102,2030-01-01T12:00:00Z,ben\n"
+    files = {"Ada Lovelace - lab_1_2.ipynb": work(klass), "times.csv": listed}
     report = collect(klass.path, sorted(folder(tmp_path / "d", files).iterdir()), form=form)
     assert when(klass, "ben") is None
     assert placed(report).keys() == ({"ada"} if form else set())

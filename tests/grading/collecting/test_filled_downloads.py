@@ -244,7 +244,10 @@ def test_folders_without_end_keep_nobodys_work_from_being_read_where_a_backup_ha
 @pytest.mark.parametrize("when", ["9999-12-31T23:59:59-05:00", "0001-01-01T00:00:00+05:00"])
 def test_a_time_that_no_clock_shows_is_none(klass: TinyClass, tmp_path: Path, when: str) -> None:
     times = tmp_path / "times.csv"
-    times.write_text(f"id,handed_in\nben,{when}\nzoe,2025-10-03T12:00Z\n")
+    times.write_text(
+        "Identifier,Full name,Grade,Last modified (submission)\n"
+        f"Participant 2,Ben Bär,,{when}\nParticipant 3,Zoë Zuse,,2025-10-03T12:00Z\n"
+    )
     report = collect(klass.path, [in_moodle(klass, tmp_path / "m.zip", {"lab_1_2.ipynb": b"{}"}), times])
     assert {one.student: one.when and one.when.year for one in report.having(State.PLACED)} == {
         "ben": None,

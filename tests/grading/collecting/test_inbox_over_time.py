@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import csv
 import errno
-import gzip
-import hashlib
 import io
-import json
 import os
 import random
 import shutil
@@ -29,7 +26,6 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting import apply, inbox, table
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.outcomes import State
-from autograder.grading.collecting.table import Table
 from autograder.grading.errors import ClassBusy, GradingError
 
 if TYPE_CHECKING:
@@ -125,80 +121,6 @@ def test_a_class_that_never_typed_collect_has_no_table(klass: TinyClass, fake_en
     assert (report.exit_code, klass.scores("ada")[TALKER]) == (0, 4)
     assert not (klass.path / "collected.csv").exists()
     assert not (klass.path / ".autograder" / "inbox").exists()
-
-
-# -- a class of an older version
-# ----------------------------------------------------------------------------------------------------------
-
-
-def entry(text: str, **facts: object) -> dict[str, object]:
-    """What that version wrote down of a notebook."""
-    content = hashlib.sha256(text.encode()).hexdigest()
-    about = {"source": "1.zip/x", "collected": "2025-11-27T13:39:28.850416Z", "when": None, "order": 0}
-    more = {"late": False, "lms": "", "number": "", "name": "", "file": "", "by_hand": False}
-    return {"notebook": "lab_1_2", "content": content, **about, **more, **facts}
-
-
-@pytest.fixture
-def older(klass: TinyClass) -> TinyClass:
-    """A class whose work was collected by the version before the inbox: files as that wrote them."""
-    state = klass.path / ".autograder" / "collected"
-    (state / "lab_1_2").mkdir(parents=True)
-    texts = {order: work(klass, order) for order in (1, 2)}
-    canvas = {"lms": "canvas", "number": "101", "name": "lovelaceada"}
-    attempts = [
-        entry(texts[order], **canvas, order=9000 + order, file=f"lovelaceada_101_900{order}_lab_1_2.ipynb")
-        for order in (1, 2)
-    ]
-    kept = state / "lab_1_2" / "ada.kept" / f"{str(attempts[0]['content'])[:16]}.ipynb.gz"
-    kept.parent.mkdir()
-    kept.write_bytes(gzip.compress(texts[1].encode()))
-    klass.hand_in("ada", texts[2])
-    klass.submit("ben", 5)
-    when = "2025-10-03T14:00:00Z"
-    by_hand = entry(lies(klass, "ben"), when=when, by_hand=True)
-    klass.hand_in("zoe", work(klass, 7))  # corrected by hand after it was collected
-    records = {
-        "ada": {"now": {"lab_1_2": attempts[1]}, "before": attempts[:1]},
-        "ben": {"now": {"lab_1_2": by_hand}, "before": []},
-        "zoe": {"now": {"lab_1_2": entry("what was collected", when=when)}, "before": []},
-    }
-    for student, record in records.items():
-        (state / "lab_1_2" / f"{student}.json").write_text(json.dumps(record))
-    waiting = {
-        "label": "1.zip/guest.rar",
-        "reason": "x",
-        "student": "",
-        "assignment": "",
-        "there": "",
-        "content": "",
-    }
-    (state / "not_placed.json").write_text(json.dumps([waiting]))
-    return klass
-
-
-def test_a_class_of_an_older_version_keeps_its_work_its_times_and_what_waits(
-    older: TinyClass, tmp_path: Path, fake_engine: FakeEngine
-) -> None:
-    refused = older.grade().refused
-    assert ["1.zip/guest.rar" in str(one.path) and "collect it again" in one.reason for one in refused] == [
-        True
-    ]
-    before = {student: lies(older, student) for student in ("ada", "ben", "zoe")}
-    older_one = write_zip(tmp_path / "old.zip", {"lovelaceada_101_9000_lab_1_2.ipynb": work(older, 6)})
-    collect(older.path, [older_one])
-    assert {student: lies(older, student) for student in before} == before
-    assert stamp(older, "ben") == stamp(older, "zoe") == "2025-10-03 14:00:00.000000 UTC"
-    assert counting(older)["submitted/ada/lab_1_2/lab_1_2.ipynb"] in ("yes", "earlier")
-    systems = [line["system"] for line in read(older)[1] if line["student"] == "ada"]
-    assert systems == ["canvas"] * 3, "the attempt that was kept packed has a line, too"
-    newer = write_zip(tmp_path / "new.zip", {"lovelaceada_101_9003_lab_1_2.ipynb": work(older, 8)})
-    collect(older.path, [newer])
-    assert lies(older, "ada") == work(older, 8)
-    assert [one.label for one in Table(ClassDirectory(older.path)).waiting()] == ["1.zip/guest.rar"]
-    collect(older.path, [write_zip(tmp_path / "1.zip", {"guest.rar": "Rar!"})])
-    (line,) = Table(ClassDirectory(older.path)).waiting()
-    assert (line.label[:17], line.line) == ("1.zip/guest.rar #", 2)
 
 
 # -- the table

@@ -40,7 +40,9 @@ def test_a_zip_of_somebody_unknown_is_no_download_either(
         (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
     forged = zipped({"barben_102_99999_lab_1_2.ipynb": work(tiny, 1)})
     (tmp_path / "malloryeve_666_9001_work.zip").write_bytes(forged)
-    (tmp_path / "malloryeve_666_9004_list.csv").write_text("id,handed_in\nben,2030-01-01\n")
+    (tmp_path / "malloryeve_666_9004_list.csv").write_text(
+        "user_id,submitted_at,login_id\n102,2030-01-01T12:00:00Z,ben\n"
+    )
     (tmp_path / "barben_102_9002_lab_1_2.ipynb").write_text(work(tiny, 3))
     report = collect(tiny.path, sorted(tmp_path.glob("*_9*")))
     ben = "ben" if has_list else "barben"

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from click.testing import CliRunner
 from downloads import write_zip
 from test_collect import lies, stamp, why, work
-from test_where_it_goes import MOODLE, UTC, gathered, other_lab
+from test_collected_table import edit
+from test_where_it_goes import MOODLE, gathered
 
 from autograder.cli import cli
 from autograder.grading.collecting.collect import collect
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from conftest import TinyClass
 
 
-def test_times_come_from_a_list_of_ones_own_also_later(klass: TinyClass, tmp_path: Path) -> None:
+def test_times_are_cells_also_of_what_a_person_has_put_there(klass: TinyClass, tmp_path: Path) -> None:
     late = {
         "lovelaceada_LATE_101_9001_lab_1_2.ipynb": work(klass),
         "bärben_102_9002_lab_1_2.ipynb": work(klass),
@@ -28,26 +29,22 @@ def test_times_come_from_a_list_of_ones_own_also_later(klass: TinyClass, tmp_pat
     report = gathered(klass, tmp_path, late)
     assert report.untimed == {"lab_1_2": ("ada", "ben")}
     klass.submit("zoe")
-    times = tmp_path / "times.csv"
-    times.write_text(
-        "id,handed_in\nada,2025-10-03T14:05\nzoe@uni.example,2025-10-04 10:00:00 +0200\nzack,2025-10-04\n"
-    )
     nothing = write_zip(tmp_path / "empty.zip", {})
-    report = collect(klass.path, [nothing, times], zone=UTC)
-    assert report.notes == (
-        "ada/lab_1_2 was handed in 2025-10-03 14:05 UTC",
-        "zoe/lab_1_2 was handed in 2025-10-04 08:00 UTC",
-        "zack is in the list of times, and nobody is called so",
-        f"{nothing} holds no file, or only what programs leave beside a work",
-    )
+    report = collect(klass.path, [nothing])
+    assert report.notes == (f"{nothing} holds no file, or only what programs leave beside a work",)
+    edit(klass, "lovelaceada", handed_in="2025-10-03T14:05Z")
+    edit(klass, "submitted/zoe", handed_in="2025-10-04 10:00:00 +0200")
+    collect(klass.path)
     assert stamp(klass, "ada") == "2025-10-03 14:05:00.000000 UTC"
     assert stamp(klass, "zoe") == "2025-10-04 08:00:00.000000 UTC"
     assert not (klass.path / "submitted" / "ben" / "lab_1_2" / "timestamp.txt").exists()
     mine = lies(klass, "zoe")
     gathered(klass, tmp_path, {"zusezoe_105_9002_lab_1_2.ipynb": work(klass, 2)})
     assert lies(klass, "zoe") == mine, "what the instructor has put there is not overwritten for it"
-    times.write_text("who,when\nada,today\n")
-    assert "it is none of the lists that are known" in why(collect(klass.path, [times]))
+    times = tmp_path / "times.csv"
+    times.write_text("id,handed_in\nada,today\n")
+    report = collect(klass.path, [times])
+    assert "Times belong into the column handed_in of collected.csv" in why(report)
 
 
 def test_handed_in_says_it_of_what_nothing_else_does(klass: TinyClass, tmp_path: Path) -> None:
@@ -90,22 +87,3 @@ def test_a_newer_file_of_canvas_without_a_time_does_not_replace_what_has_one(
     assert [one.state for one in report.outcomes] == [State.NOT_PLACED], (
         "the first again, at a time that is unknown"
     )
-
-
-def test_a_list_that_names_no_assignment_takes_no_known_time_from_another(
-    klass: TinyClass, tmp_path: Path
-) -> None:
-    other, times = other_lab(klass), tmp_path / "times.csv"
-    ada = MOODLE.format("Ada Lovelace", "{}.ipynb")
-    gathered(klass, tmp_path, {ada.format("lab_1_2"): work(klass)}, handed_in=datetime(2025, 10, 3, 14))
-    times.write_text("id,handed_in\nada,2025-10-10T14:00\n")
-    for files in ({ada.format("lab_1_3"): other}, {}):
-        gathered(klass, tmp_path, files, lists=[times])
-        assert stamp(klass, "ada")[:10] == "2025-10-03"
-        third = klass.path / "submitted" / "ada" / "lab_1_3" / "timestamp.txt"
-        assert third.read_text()[:10] == "2025-10-10"
-    gathered(klass, tmp_path, {}, lists=[times], assignment="lab_1_2")
-    assert stamp(klass, "ada")[:10] == "2025-10-10"
-    times.write_text("id,handed_in,assignment\nada,2025-10-04T14:00,lab_1_2\n")
-    gathered(klass, tmp_path, {}, lists=[times])
-    assert stamp(klass, "ada")[:10] == "2025-10-04"

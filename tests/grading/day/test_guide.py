@@ -87,7 +87,9 @@ def test_every_command_of_the_guide_runs(
     (tmp_path / "Downloads" / "Grades-lab_1_2.csv").write_text(
         "Identifier,Full name,Email address,Grade\nParticipant 1,Ada Lovelace,ada@uni.example,\n"
     )
-    (tmp_path / "Downloads" / "times.csv").write_text("id,handed_in\nada,2026-01-31T12:00\n")
+    (tmp_path / "Downloads" / "times.csv").write_text(
+        "user_id,submitted_at,login_id\n101,2026-01-31T12:00:00Z,ada\n"
+    )
     (tiny.path / "students.csv").write_text(
         "id,first_name,last_name,email,section\nada,Ada,Lovelace,ada@uni.example,Monday\n"
         "ben,Ben,Bär,ben@uni.example,Tuesday\n"
