@@ -1,8 +1,9 @@
-"""Boxes for one command: for a program that a person runs by hand, and for one that reads a single file."""
+"""Boxes for one command: for a program that a user runs by hand, and for one that reads a single file."""
 
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 PLACE = Path("/file")
-"""Where the box of a program that reads a single file has that file."""
+"""The path of the file in the box of a program that reads a single file."""
 _OF_PYTHON = ("PYTHONUNBUFFERED", "PYTHONFAULTHANDLER")
 
 
@@ -96,11 +97,13 @@ class OneCommandBox:
 def run_alone(command: Sequence[str], file: Bind, output: int, limits: Limits) -> int:
     """Run a program in a box without a network and without a place to write to, and return its exit code.
 
+    If a limit was met, that is the negative number of a signal, or what the program makes of it.
+
     Args:
         command: A program of the system, of Python or of the package.
         file: The only file of the user that it sees.
         output: A descriptor of a file for standard output.
-        limits: Of its memory, its processes and the size of the output; without a limit on wall time.
+        limits: Of its memory, its processes, the size of the output and the time.
     """
     guard = BoxGuard(limits)
     words = ["--unshare-all", "--uid", str(USER_ID), "--gid", str(USER_ID), "--cap-drop", "ALL"]
@@ -111,8 +114,11 @@ def run_alone(command: Sequence[str], file: Bind, output: int, limits: Limits) -
     try:
         return subprocess.run(
             [*begin, *command], stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.DEVNULL, check=False,
-            pass_fds=kept, preexec_fn=lambda: take_limits(guard.cgroups, guard.rlimits),
+            timeout=limits.longest, pass_fds=kept,
+            preexec_fn=lambda: take_limits(guard.cgroups, guard.rlimits),
         ).returncode  # fmt: skip
+    except subprocess.TimeoutExpired:
+        return -signal.SIGKILL
     finally:
         close_all(kept)
         guard.close()

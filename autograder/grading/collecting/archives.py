@@ -39,7 +39,7 @@ _DEEPEST = 3
 _DEEPEST_FOLDER = 100
 """Folders in each other; Python looks into no more than some hundreds."""
 _LIMITS = Limits(processes=20, scratch_bytes=1 << 40)
-"""What the box of one archive may have; the program in it takes closer limits before it reads a byte."""
+"""Limits of the box of one archive; the program in it takes closer ones before it reads a byte."""
 _LEADS_OUT = "its name leads out of the archive"
 _TOO_LONG = f"its name has more than {LONGEST_NAME} characters"
 
@@ -73,7 +73,7 @@ class File:
 
 @dataclass
 class Room:
-    """What may be unpacked: by default, of all archives of one student in a download together.
+    """Limits of unpacking: by default, those of all archives of one student in a download together.
 
     Attributes:
         files: The number of files.
@@ -154,7 +154,7 @@ class Boxes:
         Args:
             file: The archive.
             data: Its bytes.
-            room: What the archives of the student may still unpack to, which gets less.
+            room: The limits that are left to the archives of the student; it gets less.
         """
         path = self._folder / "archive"
         path.write_bytes(data)
@@ -200,14 +200,14 @@ class Boxes:
 
 
 def _lines(out: IO[bytes]) -> Iterator[tuple[_Unpacked, int]]:
-    """The lines that a box has written, and where the bytes behind each begin."""
+    """The lines that a box has written, each with the offset of the bytes behind it."""
     place, end = 0, os.fstat(out.fileno()).st_size
     while place < end:
         line, mark, _ = os.pread(out.fileno(), LONGEST_LINE, place).partition(b"\n")
         try:
             found = msgspec.json.decode(line, type=_Unpacked)
         except msgspec.MsgspecError:
-            found = _Unpacked((), 0, "what came out of the box is not what it was to write")
+            found = _Unpacked((), 0, "the output of the box is not a list of files")
         place += len(line) + len(mark)
         size = min(max(found.size, 0), MAX_BYTES)
         yield replace(found, size=size), place

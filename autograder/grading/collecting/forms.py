@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import functools
 import itertools
-import unicodedata
 from collections import defaultdict
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from datetime import datetime
 from typing import TYPE_CHECKING
 
@@ -57,29 +56,21 @@ class Found:
     assignment: str = ""
 
 
-def read_path(parts: Sequence[str], form: str, is_notebook: Callable[[str], bool]) -> Found | None:
-    """Return the facts in a path of one LMS, from its topmost name of that form; None if it has none.
+def read_at(parts: Sequence[str], place: int, form: str, is_notebook: Callable[[str], bool]) -> Found | None:
+    """Return the facts in one name of a path, of the form of one LMS; None if it has another form.
 
     Args:
-        parts: The path's folders and the file; none of them leads upwards.
+        parts: The path's folders and the file, none of them leads upwards; their accents are composed.
+        place: The place of the name in the path.
         form: One of :data:`FORMS`.
         is_notebook: True for the name of a notebook of the class, for forms that resemble other names.
     """
-    parts = [unicodedata.normalize("NFC", part) for part in parts]
-    ways = (read_at(parts, place, form, is_notebook) for place in range(len(parts)))
-    return next((way for way in ways if way is not None), None)
-
-
-def read_at(parts: Sequence[str], place: int, form: str, is_notebook: Callable[[str], bool]) -> Found | None:
-    """Return the same from one name of the path alone; its accents are composed."""
     is_folder = place < len(parts) - 1
     found = _READERS[form](parts, place)
     if found is None or form not in ("canvas", "google"):
         return found
     if form == "google" and is_folder:
         return None
-    if form == "google" and is_notebook(found.identity.name):
-        found = _with_the_name_last(found)
     if found.file != parts[-1] and is_notebook(parts[-1]):
         return None  # lab_1_2_3.ipynb and "lab_1_2 - Copy.ipynb" are a student's own names
     if form == "canvas" and is_folder:
@@ -286,13 +277,6 @@ def _github(parts: Sequence[str], place: int) -> Found | None:
     logins = dict.fromkeys((login, base_and_number(login)[0]))
     readings = tuple(Identity("github", login=one) for one in logins)
     return Found(readings[0], parts[-1], readings=readings)
-
-
-def _with_the_name_last(found: Found) -> Found:
-    """``lab_1_2 - Ada Lovelace.ipynb``, as Google Classroom called copies that it made for each student."""
-    stem, dot, suffix = found.file.rpartition(".")
-    identity, _ = _google({"name": base_and_number(stem)[0]})
-    return replace(found, identity=identity, file=f"{found.identity.name}{dot}{suffix}") if stem else found
 
 
 _STUDENT_NUMBER = re2.compile(r"[A-Za-z]{0,4}\d[\dA-Za-z]{2,}")

@@ -10,6 +10,7 @@ from autograder.cards.readable import printable
 from autograder.grading.collecting.outcomes import State
 from autograder.grading.errors import course_command
 from autograder.grading.running.progress import plain_line
+from autograder.kit.in_words import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -61,9 +62,9 @@ def _lines(report: CollectReport) -> Iterator[str]:
     yield ", ".join(f"{count} {state}" for state, count in counts.items())
     if counts[State.NOT_PLACED]:
         yield (
-            f"note         {report.waiting} lines of {report.path / 'collected.csv'} wait: write the student or the "
-            "assignment, or yes or no under use, and type "
-            f"{course_command('collect', report.path)}"
+            f"note         {counted(report.waiting, 'line')} of {report.path / 'collected.csv'} to decide: write the "
+            f"student or the assignment, or yes or no under use, and type {course_command('collect', report.path)}. "
+            "If many names have one form, --names tells it"
         )
     if counts[State.PLACED]:
         yield f"Then         {course_command('grade', report.path)}"

@@ -235,13 +235,9 @@ class StudentOf:
         number = identity.number or identity.login
         known = self._by_number.get((identity.lms, number))
         called = " and ".join(str(names[-1]) for names in known.members if names) if known else str(identity)
-        unknown = f"no student in the class is called {called or number}: add a line to students.csv,"
-        if not identity.lms:
-            return f"{unknown} or {_WRITE_IT}"
-        if identity.lms in _LIST_OF and known is None:
-            return f"{unknown} or {_with_list(identity)}"
-        column = f"put the id that {identity.lms.capitalize()} uses ({number}) into the column {identity.lms}"
-        return f"{unknown} or {_WRITE_IT if identity.lms in _LIST_OF else column}"
+        is_listed = identity.lms in _LIST_OF and known is None
+        what_to_do = _with_list(identity) if is_listed else f"{_WRITE_IT}, or add a line to students.csv"
+        return f"no student in the class is called {called or number}: {what_to_do}"
 
     def time(self, identity: Identity) -> datetime | None:
         """Return the only time of handing in that lists have for this number; None if they have none, or several."""

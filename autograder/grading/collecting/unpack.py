@@ -89,7 +89,7 @@ def _is_ordinary(one: zipfile.ZipInfo) -> bool:
 
 
 class _Unpacking:
-    """What may still be unpacked: files and bytes, and bytes of one file.
+    """Unpacks an archive and those in it, within limits that they share.
 
     Args:
         depth: Archives in each other; 1 leaves those that are in it as they are.
@@ -105,7 +105,10 @@ class _Unpacking:
         try:
             entries = _entries(file)
         except Exception as error:
-            _tell(names, reason=f"it is not an archive that can be read: {error or type(error).__name__}")
+            _tell(
+                names,
+                reason=f"it is not an archive that can be read: {error or type(error).__name__}; get it again",
+            )
             return
         size = sum(one.size for one in entries)
         if len(entries) > self.files or size > self.unpacked:
@@ -161,7 +164,7 @@ def main() -> None:
     """Take the limits, and unpack."""
     path, *numbers = sys.argv[1:]
     unpacking = _Unpacking(*map(int, numbers))
-    written = unpacking.unpacked + unpacking.files * LONGEST_LINE
+    written = max(unpacking.unpacked, 0) + max(unpacking.files, 0) * LONGEST_LINE + LONGEST_LINE
     limits = {resource.RLIMIT_AS: _MEMORY, resource.RLIMIT_CPU: _CPU_SECONDS, resource.RLIMIT_FSIZE: written}
     for kind, most in limits.items():
         resource.setrlimit(kind, (most, most))

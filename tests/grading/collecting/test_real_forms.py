@@ -35,12 +35,11 @@ from typing import TYPE_CHECKING
 from zoneinfo import ZoneInfo
 
 import pytest
-from downloads import ROSTER, write_zip
+from downloads import ROSTER, read_path, write_zip
 from test_collect import lies, stamp, why, work
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.forms import read_path
 from autograder.grading.collecting.lists import read_list
 from autograder.grading.collecting.outcomes import State
 from autograder.grading.table.roster import read_students_csv

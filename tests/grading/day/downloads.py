@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import io
+import unicodedata
 import zipfile
 from typing import TYPE_CHECKING
 
+from autograder.grading.collecting.forms import read_at
+
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
+
+    from autograder.grading.collecting.forms import Found
 
 ROSTER = """\
 id,first_name,last_name,email,canvas,github
@@ -28,6 +33,13 @@ class Link(str):
 
 BOMB = b" " * 60_000_000
 """What unpacks to more than a notebook may have."""
+
+
+def read_path(parts: Sequence[str], form: str, is_notebook: Callable[[str], bool]) -> Found | None:
+    """The facts in a path of the form of one system, by its topmost name of that form."""
+    parts = [unicodedata.normalize("NFC", part) for part in parts]
+    ways = (read_at(parts, place, form, is_notebook) for place in range(len(parts)))
+    return next((way for way in ways if way is not None), None)
 
 
 def zipped(files: Mapping[str, bytes | str]) -> bytes:

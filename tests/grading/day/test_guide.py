@@ -88,7 +88,7 @@ def test_every_command_of_the_guide_runs(
         "Identifier,Full name,Email address,Grade\nParticipant 1,Ada Lovelace,ada@uni.example,\n"
     )
     (tmp_path / "Downloads" / "times.csv").write_text(
-        "user_id,submitted_at,login_id\n101,2026-01-31T12:00:00Z,ada\n"
+        "user_id,submitted_at,login_id\n1,2026-01-31T12:00:00Z,ada\n"
     )
     (tiny.path / "students.csv").write_text(
         "id,first_name,last_name,email,section\nada,Ada,Lovelace,ada@uni.example,Monday\n"

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from click.testing import CliRunner
-from downloads import ROSTER, write_zip
+from downloads import ROSTER, read_path, write_zip
 from instructor import by_person, due, penalty
 from nbgrader.api import Gradebook
 from own_assignment import EngineWithAsserts, write_assignment
@@ -20,7 +20,6 @@ from test_true_table import DUE, nbgraders_total
 
 from autograder.cli import cli
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.forms import read_path
 from autograder.grading.errors import GradingError
 from autograder.grading.exporting.export_files import export
 from autograder.grading.report_page.page import write_report
