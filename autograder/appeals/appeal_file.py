@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 FORMAT = "ros2-course-appeal-1"
 ABOUT = (
-    f"One check of one student. To judge it again: {COMMAND} replay FILE. This file proves nothing by itself: anybody "
-    "can write one. Only the class that it names has the grade and what the judge saw."
+    f"One check of one student. To judge it again: {COMMAND} replay FILE. This file proves nothing by itself: any "
+    "person can write one. Only the class that it names has the grade and what the judge saw."
 )
 """The text at the top of each file."""
 MAX_BYTES = 64_000_000

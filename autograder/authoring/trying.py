@@ -100,7 +100,7 @@ def try_exercise(
         only: Parts of the names of answers; all answers where empty. If given, only these answers are looked at.
         jobs: Answers that are judged at once.
         repeat: How many times each answer is judged, each time with other random inputs.
-        transcript: A folder that gets what was seen of each answer, the last time; None where nobody wants it.
+        transcript: A folder that gets what was seen of each answer, the last time; None to write none.
         tell: Called with each line, or card, for the author.
 
     Returns:

@@ -288,7 +288,7 @@ def _main_guard(evidence: Evidence) -> Advice | None:
         return Advice(f"{_AT_ONCE} its main() makes none.", f"{_what_main_does(evidence)} {_BEGIN_AT_TODO}")
     return Advice(
         f"{_AT_ONCE} main() makes none, or nothing calls main().",
-        f"{_what_main_does(evidence)} Python calls main() only where the file ends with "
+        f"{_what_main_does(evidence)} Python calls main() only if the file ends with "
         "`if __name__ == '__main__':` (two underscores on each side) and, indented below it, `main()`; `ros2 run` "
         "calls it in any case. "
         f"{_BEGIN_AT_TODO}",

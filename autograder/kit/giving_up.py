@@ -179,7 +179,7 @@ def silent_end(part: Part, others: Sequence[Part], noun: str) -> Advice | None:
         return None
     if value := returned_answer(part):
         return Advice(
-            f"When the {noun} is not there, your function returns {value}: who calls it takes that for the answer.",
+            f"When the {noun} is not there, your function returns {value}: its caller takes that for the answer.",
             "Raise TimeoutError instead, with a message that contains the words `not available`.",
         )
     if not _unsaid(part, others):
@@ -314,7 +314,7 @@ def not_forgotten(
     return mistake(
         "not_forgotten",
         lambda evidence: _gives_up_where_served(served(evidence), evidence.part(absent), role, asked),
-        f"Your client says “{{}}” where the {noun} is there, and does not say it where there is none: the condition is "
+        f"Your client says “{{}}” if the {noun} is there, and does not say it if there is none: the condition is "
         "the wrong way round.",
         f"{wait} returns True when the {noun} is there. Write `if not your_{role}.{wait}(timeout_sec=5.0):` above what "
         f"your client does without a {noun}.",

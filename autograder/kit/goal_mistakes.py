@@ -136,7 +136,7 @@ RESULT_OF_REJECTED_GOAL = mistake(
     lambda evidence: evidence.part(REFUSED).first("result_request"),
     "The goal was rejected, and your client asked for its result all the same: there is none, and the status that "
     "comes back is 0, UNKNOWN.",
-    "Look at `accepted` of the goal handle first. Where it is False, say so and stop.",
+    "Look at `accepted` of the goal handle first. If it is False, say so and stop.",
 )
 
 
@@ -148,7 +148,7 @@ def crashed_by_refusal(evidence: Evidence) -> Advice | None:
     return Advice(
         "The goal was rejected, and your client went on as if it had been accepted, until an exception stopped it: "
         f"{what_and_where(crashed[0].traceback)}",
-        "Look at `accepted` of the goal handle as soon as the answer to the goal is there. Where it is False, say so, "
+        "Look at `accepted` of the goal handle as soon as the answer to the goal is there. If it is False, say so, "
         "as the task asks, and stop: there is no result to wait for.",
         crashed[0].traceback,
     )
@@ -172,7 +172,7 @@ def _refusal_not_reported(evidence: Evidence) -> Advice | None:
         part,
         others,
         "The goal was rejected",
-        "Look at `accepted` of the goal handle when the answer to the goal is there. Where it is False, log an error "
+        "Look at `accepted` of the goal handle when the answer to the goal is there. If it is False, log an error "
         "with the word `rejected`, and stop: there is no result to wait for.",
     )
 

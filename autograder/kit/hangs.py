@@ -155,8 +155,8 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
         "rate_never_spun",
         lambda found: any(map(_sleeps_on_rate, found)),
         "The sleep() of your rate{slept} waits for ever: a rate is a timer, and no thread is free to let it fire.",
-        "Use create_timer and rclpy.spin in place of the loop. Where the loop has to stay, spin the node in a second "
-        "thread; where it is inside a callback, with a MultiThreadedExecutor.",
+        "Use create_timer and rclpy.spin instead of the loop. If the loop has to stay, spin the node in a second "
+        "thread; if the loop is inside a callback, use a MultiThreadedExecutor.",
     ),
     (
         "callback_never_returns",

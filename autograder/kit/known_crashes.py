@@ -99,7 +99,7 @@ KNOWN = (
     Crash(
         "qos_arguments_swapped",
         r"Expected QoSProfile or int",
-        "Where the depth belongs, a number such as 10, rclpy got something else: a string, or another argument.",
+        "In the place of the depth, a number such as 10, rclpy got something else: a string, or a different argument.",
         "Write create_publisher(Type, 'topic', 10) or create_subscription(Type, 'topic', callback, 10), in this order, "
         "the 10 without quotation marks.",
     ),
@@ -127,7 +127,7 @@ KNOWN = (
         "callback_signature",
         rf"{_CALLED_BY_RCLPY}TypeError: (?P<what>.*positional argument.*)",
         "A callback takes the wrong number of arguments: {what}.",
-        "Change what is between its parentheses where it is defined. First comes self; besides, a timer's callback "
+        "Change what is between the parentheses of its def. First comes self; besides, a timer's callback "
         "takes nothing, a service's takes request and response, and any other takes one thing: the message, the goal, "
         "the future.",
     ),
@@ -165,7 +165,7 @@ KNOWN = (
         "raw_value_published",
         r"TypeError: Expected <class '[\w.]+\.msg\.\w+\.(?P<type>\w+)'>, got <class '(?:\w+\.)*(?P<got>\w+)'>"
         r"|(?:publish(?:_feedback)?|send_goal(?:_async)?|call(?:_async)?)\((?:.*\n)+TypeError:?\s*\z",
-        "A bare value was sent, or the type itself, where a {type:message, request or goal} is expected.",
+        "A bare value was sent, or the type itself, instead of a {type:message, request or goal}.",
         "Make the object first, with parentheses, fill its field, and send that: message = String(), request = "
         "AddTwoInts.Request(), goal = Fibonacci.Goal() or feedback = Fibonacci.Feedback().",
     ),
@@ -173,7 +173,7 @@ KNOWN = (
         "result_missing",
         r"The 'result' field must be a sub message of type '\w+_Result'",
         "The execute callback of an action server returned no result.",
-        "End it with `return result`, a Fibonacci.Result() with its field filled, also where the goal is canceled.",
+        "End it with `return result`, a Fibonacci.Result() with its field filled, even if the goal is canceled.",
     ),
     Crash(
         "field_type",
@@ -265,8 +265,8 @@ KNOWN = (
         r"|get_result_async)'",
         "{owner:What is before the dot} is None: nothing has kept the handle of the goal there, or it was kept before "
         "the answer had arrived, or the function that should give it returns nothing.",
-        "Wait until the future of send_goal_async is done, then keep its result in {owner:it}. Where another function "
-        "keeps the handle, such as the send_goal of a lab, call that one first, and read the handle where it keeps it.",
+        "Wait until the future of send_goal_async is done, then keep its result in {owner:it}. If a different function "
+        "keeps the handle, such as the send_goal of a lab, call that one first, and read the handle there.",
     ),
     Crash(
         "result_read_too_early",

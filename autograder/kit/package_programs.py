@@ -131,7 +131,7 @@ def _again(evidence: Evidence) -> str:
 
 
 def _unknown_module(tracebacks: str, entry: Entry, again: str) -> Advice | None:
-    """The entry point names its module in another way than with the package before it."""
+    """Return advice if the entry point names its module without the package before it."""
     found = _LED_NOWHERE.search(tracebacks)
     if found is None or found["module"] == entry.package:
         return None
@@ -177,7 +177,7 @@ def wrong_folder(evidence: Evidence, entry: Entry) -> Advice | None:
     if lost is None or any(_module(named) == _dotted(lost) for named in own.programs):
         return None
     return Advice(
-        f"{file} is in another folder than the package's modules: it is src/{package}/{lost}.",
+        f"{file} is not in the folder of the package's modules: it is src/{package}/{lost}.",
         f"Move it to src/{package}/{package}/{file}, into the inner one of the two folders {package}, and check "
         "again: the judge builds.",
     )

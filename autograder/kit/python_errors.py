@@ -142,14 +142,14 @@ RUNNING: Sequence[Row] = (
     (
         r"'(?:builtin_function_or_method|function|method)' object (?:has no attribute|is not)",
         "{owner:A value of this line} is a method that was not called, and not what it returns.",
-        "Write parentheses after the method's name, where it stands or where the value is set, as in "
+        "Write parentheses after the method's name, in this line or in the line that sets the value, as in "
         "self.get_logger().info(...).",
     ),
     (
         rf"AttributeError: '(?P<class>{_NOT_STUDENTS})' object has no attribute '(?P<name>\w+)'",
         "{owner:The value before .{name}} is of the type {class} here, which has nothing called {name}.",
-        "Look at the line that sets it: it may be another value than you mean. If it is the right one, compare the "
-        "name, letter by letter. If {name} is a function of the notebook or the program, write it alone: {name}(...).",
+        "Look at the line that sets it: the value may not be the one that you mean. If it is the right one, compare "
+        "the name, letter by letter. If {name} is a function of the notebook or program, write it alone: {name}(...).",
     ),
     (
         r"^AttributeError: '(?P<class>\w+)' object has no attribute '(?P<name>\w+)'\. Did you mean: '(?P<meant>\w+)'",
@@ -211,8 +211,8 @@ RUNNING: Sequence[Row] = (
     ),
     (
         r"^TypeError: '(?P<kind>\w+)' object is not (?:subscriptable|iterable)",
-        "A value of the type {kind} is no list and no dictionary.",
-        "Of a message take the field, with a dot, as in message.data or answer.result.sequence. Where a list is "
+        "A value of the type {kind} is neither a list nor a dictionary.",
+        "Of a message take the field, with a dot, as in message.data or answer.result.sequence. If a list is "
         "needed, give the whole list. Two numbers are added with +, and not with sum.",
     ),
     (

@@ -64,7 +64,7 @@ SAID = {
     "TypeError: descriptor '__init__' requires a 'super' object": "super().__init__('your_node_name') its first line",
     "TypeError: Expected QoSProfile or int, but received <class 'str'>: 10": "the 10 without quotation marks",
     "TypeError: Expected <class 'std_msgs.msg._string.String'>, got <class 'std_msgs.msg._string.Metaclass_String'>": (
-        "where a String is expected"
+        "instead of a String"
     ),
     "AttributeError: type object 'type' has no attribute '_TYPE_SUPPORT'": "Python's own str is not String",
     "AssertionError: The 'linear' field must be a sub message of type 'Vector3'": "one by one: command.linear.x = 0.5",

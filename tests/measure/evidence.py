@@ -112,6 +112,8 @@ def _line(record: Record) -> str:
     text = json.dumps(plain(msgspec.to_builtins(record)), ensure_ascii=False)
     for place, name in _places().items():
         text = text.replace(place, name)
+        for cut in range(1, len(place) + 1):  # the end of a log may begin in the middle of a path
+            text = text.replace(f'"{place[cut:]}/.venv/', f'"{name}/.venv/')
     content = json.loads(text)
     return json.dumps({"mark": _mark(content), **content}, ensure_ascii=False)
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 MOST_FILES = 20_000
-"""In one folder of a download: a student whose folder is full, such as a repository, harms nobody else."""
+"""In one folder of a download: a student whose folder is full, such as a repository, harms no other student."""
 _DEEPEST = 3
 """Archives in an archive that a student has handed in, one in the other."""
 _DEEPEST_FOLDER = 100
@@ -230,7 +230,7 @@ def _has_one_folder_around_all(source: Path) -> bool:
     """True of a folder with a single folder in it: an archive is often unpacked into one of its own name."""
     try:
         inside = [path for path in source.iterdir() if not is_left_by_a_program(path.name)]
-    except OSError:  # also where it is a file
+    except OSError:  # such as a file
         return False
     return len(inside) == 1 and inside[0].is_dir()
 

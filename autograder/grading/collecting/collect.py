@@ -153,7 +153,7 @@ class _Collecting:
         return receiving.delivery
 
     def _knowing(self, entries: Iterable[Entry]) -> StudentOf:
-        """Who is who, by the roster, by the lists of the inbox and by those that come now."""
+        """Return what is known of students: from the roster, the lists in the inbox, and the lists that come now."""
         options, own = self._options, list(entries)
         known = [entry for entries in entries_of(self._inbox).values() for entry in entries]
         is_notebook = AssignmentOf(self._directory).is_notebook
@@ -263,7 +263,7 @@ def _waits(one: Decision) -> bool:
 
 
 def _arrival(file: File, *, levels: int = 1, is_own: bool = False, is_list: bool = False) -> Arrival:
-    """The arrival of a file whose bytes nobody has read yet."""
+    """Return the arrival of a file whose bytes were not read yet."""
     source = "" if file.source.is_dir() else name_as_text(file.source.name)
     return Arrival(source, file.parts, file.inner, levels=levels, is_own=is_own, is_list=is_list)
 

@@ -1,12 +1,12 @@
-"""What an instructor names is a list, a download or one student's own: so it is known which names may say a student.
+"""Decide which paths of a command are downloads, and which are the work of one student.
 
-This is decided here alone, by what is named and never by what lies within:
+Only the names on the command line decide, never the content:
 
-- **One student's own** is what a system or its own name says to be a student's, and every file that is no zip and no
-  list. Its own name says whose it is, and nothing in it does. So it is with several folders that are named beside each
-  other, as with ``repositories/*``, and with all zips and folders beside a name that a student may have chosen.
-- **A download** is every other zip and folder. The names at its top say students, or, where one folder is around all,
-  that one and those in it. Below them students have chosen the names.
+- **One student's own**: a file or folder whose name, or whose system, identifies one student, and every file that
+  is neither a zip nor a list. Names inside it identify no student. Several folders in one place, as with
+  ``repositories/*``, and zips and folders next to a name that a student may have chosen, are one student's own, too.
+- **A download**: every other zip and folder. The names at its top identify students; if one folder contains all
+  others, so do the names in that folder. Students have chosen all names below these.
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ _DOWNLOAD = re2.compile(r"^(?:gradebook_.*_\d{4}(?:-\d\d){5}(?: ?\(\d+\))?|\D+_\
 
 @dataclass(frozen=True)
 class Source:
-    """A download, or what is one student's own, with its files.
+    """A download, or the files of one student.
 
     Attributes:
         path: The file or folder that was named.
-        files: All files in it; the file itself where it is one student's own.
-        is_own: Whether it is one student's own.
+        files: All files in it, or the file itself.
+        is_own: True if all files belong to one student.
     """
 
     path: Path
@@ -53,10 +53,10 @@ class Source:
 
     @functools.cached_property
     def levels(self) -> int:
-        """The number of names, from the top of each path, that may say a student."""
+        """The number of names, from the top of each path, that may identify a student."""
         if self.is_own:
             return 1
-        above = 1 if self.path.is_dir() else 0  # its own name, which says nobody
+        above = 1 if self.path.is_dir() else 0  # the folder's own name, which identifies no student
         return above + (2 if len({file.parts[above : above + 1] for file in self.files} - {()}) == 1 else 1)
 
     @property
@@ -74,7 +74,7 @@ class Source:
 
 
 def own_of(paths: Sequence[Path], student_of: StudentOf) -> set[Path]:
-    """Those of the files and folders of one command that are one student's own."""
+    """Return the paths of one command that are one student's own each."""
     beside = {path: path.absolute().parent for path in paths}
     by_system, loose = set(filter(student_of.has_form, paths)), set(filter(_is_loose, paths))
     # Beside a student's own file, such a name is one that a student may have chosen.
@@ -94,22 +94,22 @@ def source_of(path: Path, boxes: Boxes, *, is_own: bool) -> Source:
 
 
 def note_on(source: Source, student_of: StudentOf, form: str) -> str:
-    """What a file or folder was taken for, where its name leaves that open; empty where nobody has to know."""
+    """Return a note on what a path was taken for, if its name leaves that open; otherwise an empty text."""
     if not source.files:
         return f"{source.path} {EMPTY}"
     if not source.is_own and not form:
         return (
-            f"{source.path} was taken for a download, in which names say whose work it is: if one student sent it, "
+            f"{source.path} was taken for a download, in which names identify the students: if one student sent it, "
             "rename it to the student's id"
         )
     if source.is_own and not _is_loose(source.path) and not student_of.is_called(source.path):
         return (
-            f"{source.path} was taken for one student's work, as its name or those beside it are: if it is a download "
+            f"{source.path} was taken for one student's work because of its name or its neighbors: if it is a download "
             "or a list, rename it to submissions.zip or list.csv, and name it in a command of its own"
         )
     return ""
 
 
 def _is_loose(path: Path) -> bool:
-    """True of a file that is neither a download nor a list, whoever has named it."""
+    """Return True for a file that is neither a download nor a list."""
     return path.is_file() and path.suffix.lower() not in (".zip", ".csv")

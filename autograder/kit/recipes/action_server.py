@@ -100,7 +100,7 @@ class SendsGoals(SeenAsItIs):
         if long.cancel_accepted is not False or unread or is_quick(long):
             return None
         return Advice(
-            "Your server refuses to cancel: rclpy does so where the ActionServer has no cancel_callback, or one that "
+            "Your server refuses to cancel: rclpy does so if the ActionServer has no cancel_callback, or one that "
             "returns anything but CancelResponse.ACCEPT.",
             "Write cancel_callback=... in the ActionServer, with a method that returns CancelResponse.ACCEPT, and look "
             "at is_cancel_requested of the goal handle in the loop.",
@@ -132,7 +132,7 @@ class SendsGoals(SeenAsItIs):
         return Advice(
             "Your server accepted the cancel request, but the goal was not canceled "
             f"(status {status_text(long.status)}).",
-            "In each turn of the loop look at is_cancel_requested of the goal handle; where it is True call its "
+            "In each turn of the loop look at is_cancel_requested of the goal handle; if it is True, call its "
             "canceled() and return the result so far.",
         )
 

@@ -168,7 +168,7 @@ class Machine(Declared):
         self._knows(
             key,
             lambda seen: any(event.data["policy"] == "durability" for event in seen.of("mismatch")),
-            "Your publisher keeps no message: who subscribes after it was published hears nothing.",
+            "Your publisher keeps no message: a subscription that is made later hears nothing.",
             "Give create_publisher QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) in place of 10.",
         )
 

@@ -139,7 +139,7 @@ class Program:
         report = workspace.build_report(evidence.main)
         ends = ("constructed", "returned", "raised")
         if any(part.of("subject", name) for part in evidence for name in ends):
-            return Finding(False, expected, "something from a notebook, which is no package")
+            return Finding(False, expected, "something from a notebook, which is not a package")
         if report is not None and not report.built:
             return Finding(False, expected, workspace.seen_of_build(report))
         if report is not None and report.missing:

@@ -352,8 +352,8 @@ def _ignores_ctrl_c(program: Program, evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         f"After Ctrl-C {program.name} went on running.",
-        "Ctrl-C raises KeyboardInterrupt where the program is: catch it outside of the loop or of rclpy.spin, so that "
-        "main comes to its end.",
+        "Ctrl-C raises KeyboardInterrupt in the line that the program has reached: catch it outside of the loop or of "
+        "rclpy.spin, so that main comes to its end.",
     )
 
 

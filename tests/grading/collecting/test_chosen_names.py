@@ -103,8 +103,8 @@ def test_a_folder_that_may_be_one_students_is_said_to_be_taken_for_a_download(
     report = collect(klass.path, [source])
     assert placed(report).keys() == {"ada", "ben"}
     assert report.notes == (
-        f"{source} was taken for a download, in which names say whose work it is: if one student sent it, rename it to "
-        "the student's id",
+        f"{source} was taken for a download, in which names identify the students: if one student sent it, rename it "
+        "to the student's id",
     )
 
 

@@ -148,7 +148,7 @@ def can_write(name):
         return bool(open(name, "wb"))
     except OSError:
         return False
-seen = [name for name in (sys.argv[1], "/etc/passwd", "/home", "/tmp") if os.path.exists(name)]
+seen = [name for name in (sys.argv[1], "/etc/passwd", "/home") if os.path.exists(name)]
 written = [name for name in ("/x", "/tmp/x", "/dev/shm/x", "/file") if can_write(name)]
 print(json.dumps({"names": ["seen"], "size": 0, "reason": str(seen + written)}))
 """

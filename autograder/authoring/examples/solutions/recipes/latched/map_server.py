@@ -69,14 +69,14 @@ def text(seen: Part, expected: Part) -> Finding:
 map_server.knows(
     "not_latched",
     lambda seen, _: any(event.data["policy"] == "durability" for event in seen.of("mismatch")),
-    "Your publisher keeps no message: who subscribes after it was published hears nothing.",
+    "Your publisher keeps no message: a subscription that is made later hears nothing.",
     "Give create_publisher QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) in place of 10.",
     certain=True,
 )
 map_server.knows(
     "wrong_text",
     lambda seen, expected: bool(messages(seen)) and not text(seen, expected).passed,
-    "Who comes late hears something else than the name of the map.",
+    "A late subscription does not hear the name of the map.",
     "Publish the text kitchen, once. A depth of 1 keeps the last message alone.",
     certain=True,
 )

@@ -6,7 +6,7 @@ from autograder.kit.recipes.machine import SOME_TEXT, Machine
 
 
 def step(mode: bool, asked: bool, refusal: Any = SOME_TEXT) -> tuple[bool, dict[str, Any]]:
-    """Return the new mode and the reply: what is no change is refused, with any text."""
+    """Return the new mode and the reply: a request without a change is refused, with any text."""
     return asked, {"success": True} if asked != mode else {"success": False, "message": refusal}
 
 
@@ -30,8 +30,8 @@ task.not_latched()
 task.wrong(
     "never_refused",
     lambda _, asked: (asked, {"success": True}),
-    "Your node says success where the mode is already so.",
-    "Compare request.data with self.mode first; where they are equal, let success be False.",
+    "Your node says success although the mode does not change.",
+    "Compare request.data with self.mode first; if they are equal, let success be False.",
 )
 REASON = "Say why: response.message = …"
 task.wrong("refused_without_message", {"refusal": ""}, "Your node refuses without a message.", REASON)
@@ -39,7 +39,7 @@ task.wrong(
     "success_forgotten",
     lambda _, asked: (asked, {"success": False}),
     "Your node never says success.",
-    "Where the mode was changed, response.success = True.",
+    "If the mode was changed, write response.success = True.",
 )
 task.told_too_often("told_without_change")
 EXERCISE = task.exercise()
