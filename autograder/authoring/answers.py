@@ -47,12 +47,12 @@ class Answer:
 
     @property
     def name(self) -> str:
-        """Such as ``lab_1_2.talker/wrong/topic_name.py``."""
+        """The name of the answer, such as ``lab_1_2.talker/wrong/topic_name.py``."""
         return f"{self.exercise}/{self.short_name}"
 
     @property
     def short_name(self) -> str:
-        """The same without the exercise: ``wrong/topic_name.py``."""
+        """The name without the exercise: ``wrong/topic_name.py``."""
         return f"{self.file.parent.name}/{self.file.name}"
 
     @property

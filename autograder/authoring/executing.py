@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from autograder.boxes.execution import Cell, Execution
 
 REPORTS = "execution-reports"
-"""The folder, in the course, of the pages about notebooks that failed."""
+"""The course's folder for the pages about notebooks that failed."""
 
 
 @dataclass(frozen=True)

@@ -122,7 +122,7 @@ def memberships(procs: Iterable[str]) -> list[int]:
 
 
 def join(opened: Iterable[int]) -> None:
-    """Join groups, with everything that this process starts later; the descriptors are closed."""
+    """Move this process, and so all that it starts later, into the groups; then close the descriptors."""
     for group in opened:
         os.write(group, b"0")  # cgroups(7): 0 stands for the process that writes
         os.close(group)

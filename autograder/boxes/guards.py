@@ -1,9 +1,9 @@
 """The guards of a box's limits: cgroups if the host allows them, otherwise regular checks of the processes.
 
 With cgroups the operating system itself refuses a process, or ends one, at a limit. Without them a watch reads the
-box's ``/proc`` several times a second and ends the box; limits on each single process contain whatever is faster than
-that. The watch can also see later how much memory a process once had, so the result does not depend on which of the
-two limits a process meets first. The watch always enforces the limit on processor time, because being late does no
+box's ``/proc`` several times a second and ends the box; limits on each single process stop what is faster than
+the watch. The watch also reads the most memory that a process ever had, so the verdict is the same, whichever limit a
+process reaches first. The watch always enforces the limit on processor time, because being late does no
 harm there.
 """
 

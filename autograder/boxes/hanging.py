@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 AGAIN_SECONDS = 10.0
 """Seconds for a cell without points that uses a name that hung before."""
 _SHARE_OF_A_CHECK = 0.25
-"""Share of the judge's limit for a check of a name that hung before; a check normally takes a twentieth of the
-limit.
+"""The share of the judge's time limit for a check whose earlier check under the same name hung. A check normally
+takes a twentieth of the limit.
 """
 
 

@@ -1,4 +1,4 @@
-"""The verdict on a check cell that the judge does not decide: by plain tests, or zero points with a reason and advice.
+"""Give verdicts on check cells without the judge: from plain tests, or zero points with a reason and advice.
 
 A cell of plain tests follows nbgrader's rules. It runs in the student's own kernel, so a student can make it print
 anything; the judge's checks in the same notebook are not affected. One rule differs from nbgrader: a line on standard

@@ -185,7 +185,7 @@ def _rows(xs: Sequence[float]) -> list[int]:
 
 
 def _labels(part: TrafficPart) -> list[str]:
-    """Return the labels to draw: short, and in a full lane without the words of the label before."""
+    """Return the labels to draw, shortened; in a full lane, words that repeat the previous label are left out."""
     counts = {lane: sum(moment.lane == lane for moment in part.moments) for lane in part.lanes}
     before: dict[tuple[str, str], str] = {}
     labels = []

@@ -141,7 +141,7 @@ def try_exercise(
     type=click.Choice(["self", "class"]),
     default="self",
     show_default=True,
-    help="self: solutions are folded; class: there are none.",
+    help="self: for learning alone, solutions are folded; class: without solutions.",
 )
 @click.option(
     "--to",

@@ -202,7 +202,7 @@ class _Batch:
         )
 
     def plan(self, again: bool) -> None:
-        """Find the submissions whose grades are in the gradebook already; the others are graded."""
+        """Find the submissions whose grades are in the gradebook already; the others remain to be graded."""
         self._entries = read_entries(self._directory.gradebook_url)
         self._entered = self._store.entered()
         for work in self._others:

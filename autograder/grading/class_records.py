@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Attempt:
-    """One grading of a submission that was entered.
+    """One grading of a submission, whose results were entered into the gradebook.
 
     Attributes:
         at: The time in UTC.
         assignment: The assignment's name.
-        work: A hash of what was handed in and everything it was graded with: equal if neither has changed.
+        work: A hash of the submission and of everything it was graded with; the same as long as both are unchanged.
         course: The version of the course.
         rows: The judge's results.
     """

@@ -189,7 +189,7 @@ def went_deaf(role: str) -> Mistake:
 
     def recognise(evidence: Evidence) -> Advice | None:
         part = evidence.main
-        # Its first actions may have happened before the judge could see them; but a spinning node always shows.
+        # The subject's first actions may come before the judge can see them; a spinning node is always on the graph.
         if not _silent_node(evidence, role) or not (_worked(part, role) or something_spins(part)):
             return None
         return Advice(

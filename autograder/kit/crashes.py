@@ -107,7 +107,7 @@ def _exception_in_callback(evidence: Evidence) -> Advice | None:
 
 
 def _was_spun(evidence: Evidence) -> bool:
-    """True if a node of a notebook was made, and raised an exception later; its traceback has no line of rclpy."""
+    """True if a notebook's node raised its exception after it was made; the traceback alone does not show that."""
     return any(p.first("subject", "constructed") for p in evidence if p.ending and p.ending.name == "raised")
 
 

@@ -105,7 +105,7 @@ def says_that_it_waits(part: Part) -> bool:
 
 
 def _moments(part: Part, outcome: Outcome) -> set[int]:
-    """Return the moments at which the subject said the word of an outcome."""
+    """Return the times at which a line with the word of an outcome came."""
     return {
         int(event.t / MOMENT)
         for event in part.events

@@ -58,7 +58,7 @@ KNOWN = (
     ),
     Crash(
         ASKS_FOR_INPUT.key,
-        # In a class's kernel; and in a program, whose standard input is empty.
+        # input() raises the first error in the kernel of a class, and the second one in a program without a keyboard.
         r"^(?:IPython\.core\.error\.)?StdinNotImplementedError\b|^EOFError: EOF when reading a line",
         ASKS_FOR_INPUT.text,
         ASKS_FOR_INPUT.next_step,

@@ -103,7 +103,7 @@ def missed_a_result(part: Part) -> bool:
 def _waited_since(part: Part, beginning: Event | None, seconds: float) -> bool:
     if beginning is None or part.ending is None:
         return False
-    # A process may take time to end; its last words come before that.
+    # A process may need time to end, so its last output can come well before its end.
     last = next((event for event in reversed(part.events) if event.kind in ("output", "log")), part.ending)
     return last.t - beginning.t >= seconds
 

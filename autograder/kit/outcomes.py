@@ -30,12 +30,12 @@ _NUMBERS = re2.compile(r"[\pL\pN_.+-]*\pN[\pL\pN_.+-]*|[\[\](){},;\s]+")
 
 @dataclass(frozen=True)
 class Outcome:
-    """An outcome, with the word that the task names for it.
+    """An outcome, and the word in the task that reports it.
 
     Attributes:
         word: The word; upper or lower case does not matter. A goal's status number after the word ``status`` also
             counts.
-        other: Another spelling, or a second word that the task names.
+        other: A second spelling, or a second word in the task.
     """
 
     word: str

@@ -31,7 +31,7 @@ SIMULATED_JITTER = 0.1
 SLOWER, FASTER = 0.18, 0.1
 """The shares of the reference's interval by which the real median may differ: load makes a talker only slower."""
 AT_ONCE = 0.1
-"""The share of the period within which one message follows another in a burst."""
+"""Two messages form a burst if the time between them is less than this share of the period."""
 UNEVEN = 0.3
 """The share of the period above which an interval in real time is too long or too short."""
 ON_THE_WAY = 0.3

@@ -225,7 +225,7 @@ def cut_short(client: Client) -> str:
 
 
 def ended_before_its_answer(part: Part) -> bool:
-    """True if the subject had ended when an answer was sent, or before a call had left it."""
+    """True if the subject ended before an answer was sent, or before a call of it was sent."""
     if part.ending is None:
         return False
     asked = max(len(requests(part)), len(part.of("called")))

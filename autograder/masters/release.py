@@ -84,7 +84,7 @@ def release_text(source: NotebookNode) -> str:
     """Return the chapter notebook of ``source`` as the text of its file."""
     config = Config()
     config.Exporter.default_preprocessors = []
-    # As in `nbgrader generate_assignment --no-db`: the step only writes to the gradebook.
+    # Left out, as with `nbgrader generate_assignment --no-db`, because this step only writes to the gradebook.
     config.SaveCells.enabled = False
     exporter = NotebookExporter(config=config)
     for step in release_preprocessors():

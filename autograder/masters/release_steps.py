@@ -11,10 +11,10 @@ if TYPE_CHECKING:
 
 
 class ReleaseSteps(DeferredConfig):
-    """The value of ``c.GenerateAssignment.preprocessors`` in a class.
+    """The value of ``c.GenerateAssignment.preprocessors`` in the configuration of a class.
 
-    The steps themselves come from :func:`autograder.masters.release.release_preprocessors` once nbgrader makes a
-    release: importing them takes a second, and other commands, such as ``grade``, read the configuration, too.
+    The steps are imported (:func:`autograder.masters.release.release_preprocessors`) only when nbgrader makes a
+    release, because that takes a second, and other commands, such as ``grade``, read the configuration, too.
     """
 
     def get_value(self, trait: Any) -> list[type[NbGraderPreprocessor]]:  # noqa: ARG002  (traitlets' signature)

@@ -100,7 +100,7 @@ class Program(Protocol):
     """A running program."""
 
     pid: int
-    """The process, as the host counts, that is an ancestor of all its processes."""
+    """The number, outside the sandbox, of the first process of the job: all others descend from it."""
 
     def read(self, within: float) -> bytes | None:
         """Return the output since the last call; None for nothing yet, b"" at its end.

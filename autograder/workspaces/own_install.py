@@ -97,7 +97,7 @@ def _changed(workspace: Path, package: Package) -> Iterator[Path]:
 
 
 def _left_over(workspace: Path, package: Package) -> Iterator[Path]:
-    """What is installed of a package and is not in the sources like that, or that the last build did not install."""
+    """Return the installed files that differ from the package's sources, or that the last build did not install."""
     build, prefix = _folders(workspace, package)
     recorded = {path for record in _RECORDS for path in _text(build / record).splitlines()}
     launches = [prefix / file for file in launch_files(prefix)]

@@ -95,7 +95,7 @@ class Package:
 
     @cached_property
     def cmake_lists(self) -> str | None:
-        """The text of its CMakeLists.txt without comments; empty if it does not exist, None if it is too long."""
+        """The package's CMakeLists.txt without comments; empty if it does not exist, None if it is too long."""
         text = _text(self.folder / "CMakeLists.txt")
         if len(text) > MAX_CMAKE_LISTS:
             return None

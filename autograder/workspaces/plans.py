@@ -102,7 +102,7 @@ def _launch_plan(package: str, file: str, arguments: Sequence[str]) -> Plan:
         return [path for path in found if path.name == found[0].name]
 
     def command(made: Build) -> Sequence[str]:
-        # By its path: if the student's package lacks the programs, the course's package of this name comes first.
+        # Launch by path: by name, ros2 finds the course's package first if the student's package lacks the programs.
         paths = installed(made)
         name = [str(paths[0])] if len(paths) == 1 else [package, paths[0].name]
         return alone(arguments) or [ros2(), "launch", *name]

@@ -156,7 +156,7 @@ def _people(place: Place, pool: Sequence[Line], _: Looks) -> list[tuple[Line, st
 
 
 def _unreadable(place: Place, pool: Sequence[Line], looks: Looks) -> list[tuple[Line, str]]:
-    """Return the unreadable files, if others are readable: an incomplete file never replaces work."""
+    """Return the unreadable files; none if all are. An incomplete file must not replace readable work."""
     if len({one.content for one in pool}) < 2:
         return []
     reasons = [(one, reason) for one in pool if (reason := looks.why_unreadable(one))]

@@ -336,7 +336,7 @@ class _Reading:
         return replace(line, assignment=asked, notebook=notebook, number_of_copy=stem_of(name)[1])
 
     def _no_notebook(self, line: Line, name: str, named: str, *, is_inner: bool) -> Line:
-        """Return the line of a file that is not a notebook: a picture, a system's page, or work in another format."""
+        """Return the table's line for a file that is not a notebook, such as a picture, or a page of the LMS."""
         if name in PAGES and not is_inner and not line.students:
             return replace(line, reason="it is a page of the LMS", is_soft=True, lms="list")
         student = line.students[0] if len(line.students) == 1 else "STUDENT"

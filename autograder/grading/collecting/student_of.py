@@ -109,7 +109,7 @@ class StudentOf:
             return Owners(found, (tuple(meant.values()),) if meant else ())
         forms = [self._form] if self._form else TOLD_APART
         names = [*parts[:-1], PurePath(parts[-1]).stem if is_alone and self._form != "google" else ""]
-        # Google's names may be chosen by a student at any level.
+        # In a download from Google Classroom, students may have chosen the name of any folder, at any depth.
         for place in range(len(parts) if self._form == "google" else min(levels, len(parts))):
             if ways := [way for form in forms if (way := read_at(parts, place, form, self._is_notebook))]:
                 return self._undisputed(self._agreed(ways), parts[place])

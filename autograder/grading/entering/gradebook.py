@@ -228,7 +228,7 @@ def _enter_scores(book: Connection, notebook: str, cells: _Cells, entry: Noteboo
             "n": notebook,
             "cell": cell,
             "score": scores.get(name, 0.0),
-            # As in nbgrader's SaveAutoGrades: a cell needs a person if a person graded it before, or has to grade it.
+            # As in nbgrader's SaveAutoGrades: look at a cell that has points by hand, or has to get some.
             "look": by_hand.get(cell) is not None or scores.get(name, 0.0) is None or name in entry.unchecked,
         }
         for cell, name in cells.graded

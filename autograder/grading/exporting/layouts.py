@@ -1,9 +1,9 @@
-"""The file formats of gradebooks for import into learning management systems, one table row each.
+"""The files that learning management systems (LMS) import into their gradebooks, one row of a table each.
 
 Canvas reads ``Student, ID, SIS User ID, SIS Login ID, Section``, then a column for each assignment, and in the second
 line the points possible (https://community.canvaslms.com, "How do I import grades in the Gradebook?"). Moodle's
 gradebook reads any columns, of which one identifies the student (https://docs.moodle.org, "Grade import").
-Brightspace reads ``OrgDefinedId`` or ``Username``, ``… Points Grade`` and a mark at the end
+Brightspace reads ``OrgDefinedId`` or ``Username``, ``… Points Grade`` and a marker for the end of the line
 (https://community.d2l.com, "Importing grades"). Gradescope imports no grades, but programs for its lists read this
 format. The formats of Blackboard and Sakai are from memory.
 """

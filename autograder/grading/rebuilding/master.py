@@ -86,7 +86,7 @@ def _rubrics(source: NotebookNode) -> dict[str, dict[str, Any]]:
 
 
 def _given_part(source: str) -> str:
-    """Return the lines of a source's cell outside its solution; empty if nbgrader replaces the whole cell."""
+    """Return the lines of a cell that are not part of its solution; empty if nbgrader replaces the whole cell."""
     lines = source.splitlines()
     begin = next((place for place, line in enumerate(lines) if "BEGIN SOLUTION" in line), len(lines))
     end = next((place for place, line in enumerate(lines) if "END SOLUTION" in line), 0)

@@ -49,7 +49,7 @@ APPEAR = 12.0
 Generous: a slow start is not wrong, and a program needs a quarter of a second.
 """
 AT_WORK = 2
-"""The number of times in a run that a subject gets that patience again while it keeps starting processes: a command
+"""How often in a run the waiting time is renewed because the subject has started more processes: a command
 may build its package before it runs the program. Limited, because a program may fork without end.
 """
 MATCH = 5.0

@@ -109,10 +109,10 @@ class Wire:
         return True
 
     def _take_one_of_each(self, patience: Patience) -> bool:
-        """Let the executor take one message or call of each endpoint that has any. Return True if it did, in time.
+        """Let the executor take one message or call of each endpoint that has any. Return False if there was no time.
 
         An executor begins each of its rounds with its tasks and then takes what has arrived (rclpy/executors.py,
-        _wait_for_ready_callbacks), so a round is between two tasks.
+        _wait_for_ready_callbacks), so one whole round lies between two tasks.
         """
         for _ in range(2):
             done = threading.Event()

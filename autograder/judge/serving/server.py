@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 REFUSE_LIMIT = 0.5
 """Seconds to wait for the request of a notebook that will be refused."""
 CLOSE_LIMIT = 10.0
-"""Seconds that a check may still take after its cell has ended; its kernel has ended then or is about to."""
+"""Seconds that a check may still take after its cell has ended: the kernel has ended by then, or will soon."""
 
 
 class JudgeServer:

@@ -34,9 +34,9 @@ class CommandNotFound(LookupError):
 LAUNCH_FILES = (".py", ".xml", ".yaml", ".yml")
 """File name extensions of launch files."""
 FOR_BUILDS = 150.0
-"""Seconds that are added to an exercise's time limit because a command may build its package first. In the first part
-of each of the two looks, the judge waits for it twice as long as usual, and up to three times as long on an
-overloaded machine (`autograder/judge/bench/presence.py`)."""
+"""Seconds that are added to an exercise's time limit because a command may build its package first. A failed
+command is judged twice. In the first part of each, the judge waits for the program twice as long as usual, and up to
+three times as long on an overloaded machine (`autograder/judge/bench/presence.py`)."""
 SPARE = 10.0
 """Seconds after an exercise's own time limit at which its judge counts as dead."""
 

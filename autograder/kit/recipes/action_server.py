@@ -56,7 +56,7 @@ class SendsGoals(SeenAsItIs):
                 "Make one ActionServer only, and one node.",
             ),
             Mistake("result_missing", _result_missing, certain=True),
-            # Before any crash: a goal that should have been refused may cause one.
+            # Asked before all crashes, because a goal that should have been refused may cause a crash.
             OWN,
             *common.CRASHES,
             common.endpoint_name("action_server"),

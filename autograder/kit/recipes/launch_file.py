@@ -236,7 +236,7 @@ class Launched:
 
     @cached_property
     def _programs(self) -> list[tuple[str, str]]:
-        """The modules of the workspace's programs, with slashes for dots, and the ends of the programs' paths."""
+        """The module of each program of the workspace, with slashes for dots, and the end of the program's path."""
         report = report_of(self._part)
         packages = report.packages if report is not None else ()
         named = [(package.name, entry.partition("=")) for package in packages for entry in package.programs]
@@ -362,7 +362,7 @@ _TODO = (
     (r"keyword argument", "Compare the names of the arguments with those in the example, letter by letter."),
     (r"^NameError", "Compare the name with the imports at the top of the file, letter by letter."),
 )
-"""The next steps for a launch's own messages, the most telling first."""
+"""The advice for each message of ``ros2 launch`` itself, the most specific first."""
 _COMPARE = "Compare the file with the example, first the line that is named."
 
 

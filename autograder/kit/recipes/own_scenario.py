@@ -90,7 +90,7 @@ class OwnScenario:
         self.scenario = scenario
 
     def seen(self, evidence: Evidence) -> Part:
-        """The subject, as it was seen."""
+        """The judge's evidence of the subject."""
         return evidence.main
 
     def expected(self, evidence: Evidence) -> Part:

@@ -29,7 +29,7 @@ Due = Callable[..., Any]
 
 
 class Relay(Declared):
-    """A node that listens on one topic and publishes on another what follows from all inputs so far.
+    """A node that listens on one topic and publishes on a second one a value that it computes from all inputs so far.
 
     Args:
         exercise_id: Such as ``"lab_8_1.filter"``.

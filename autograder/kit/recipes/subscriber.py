@@ -405,7 +405,7 @@ def _put_it_there(line: str) -> str:
 
 
 def _write_f(line: str) -> str:
-    """Return the next step if a line has a name in braces, which Python did not fill in; else empty."""
+    """Return the advice to write an f, if a line of output has a name in braces; else empty."""
     braces = re2.search(r"\{[\w.]+\}", line)
     if braces is None:
         return ""

@@ -58,7 +58,7 @@ _after_a_check: list[Callable[[Verdict, Any], None]] = []
 
 
 def after_each_check(then: Callable[[Verdict, Any], None]) -> None:
-    """Have something done with the verdict and the subject of each check that a cell makes."""
+    """Register a function that is called with the verdict and the subject of each check in a cell."""
     _after_a_check.append(then)
 
 
@@ -178,7 +178,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: CardPlace) -> V
                         link.say(messages.Stacks(number, captured.stacks()))
                     case messages.Stop() if run is not None:
                         if not run.stop():
-                            place.renew()  # a run that does not end keeps the old context and is no longer heard
+                            place.renew()  # a run that does not end keeps the old context, and the judge ignores it
                         link.say(messages.Stopped(number))
                         card.doing(f"the judge looks at run {number}")
                         run = None

@@ -67,7 +67,7 @@ class SubjectRun:
         self._released.set()
         self._thread.join(timeout=END_LIMIT if self._spinning else END_LIMIT / 5)
         if self._thread.is_alive() and self._thread.ident is not None:
-            raise_in_thread(self._thread.ident, SystemExit)  # it may be in an endless loop
+            raise_in_thread(self._thread.ident, SystemExit)  # the student's code may be in an endless loop
             self._thread.join(timeout=END_LIMIT)
         return not self._thread.is_alive()
 

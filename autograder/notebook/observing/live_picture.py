@@ -140,7 +140,7 @@ class LivePicture:
             self._handle.update(picture)
 
     def __repr__(self) -> str:
-        """One line for the end of a cell."""
+        """The line that a notebook shows if the picture is the last expression of a cell."""
         if self.running:
             return f"The picture is kept up to date for {self._minutes:g} minutes. .stop() ends it."
         return "The picture is no longer kept up to date: run the cell again."
