@@ -65,7 +65,7 @@ def split_lines(text: AnyStr) -> list[AnyStr]:
 
 
 def short_lines(stream: Chunks, limit: int) -> Iterator[bytes]:
-    """Yield the lines of a stream as they come, each with its end; of a longer one only the beginning.
+    """Yield the lines of a stream as they come, each with its end. A line that is longer than the limit is cut.
 
     A carriage return ends a line, as in :func:`split_lines`.
 

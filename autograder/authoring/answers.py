@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 _PROGRAMS = {name: str(installed_program(name)) for name in ("python3", "ros2")}
-"""The programs of this environment with which answers are run."""
+"""The programs of this environment that run the answers."""
 
 
 @dataclass(frozen=True)

@@ -147,7 +147,7 @@ class Running:
         self._kept = bytearray()
         self._cut = False
         self.pid = box.pid
-        """The first process of the box, as the host counts."""
+        """The number, outside the box, of the box's first process."""
 
     def read(self, within: float) -> bool:
         """Read available output. Return False once the command has ended.

@@ -85,7 +85,7 @@ class BoxGuard:
         """Start checking the processes of a box.
 
         Args:
-            first: The box's first process, as the host counts.
+            first: The number, outside the box, of the box's first process.
         """
         self._first = first
 

@@ -51,8 +51,8 @@ def prepare(*interfaces: str) -> None:
     Args:
         interfaces: The modules with the course's own interfaces. The process sees nothing else of the course.
     """
-    # JupyterLab's debugger is useless without a user, and a seventh of a kernel's imports. ipykernel works without it
-    # if it is not installed (ipykernel/debugger.py).
+    # JupyterLab's debugger is useless without a user, and it is a seventh of all that a kernel imports. ipykernel works
+    # without it if it is not installed (ipykernel/debugger.py).
     sys.modules.setdefault("debugpy", None)  # type: ignore[arg-type]
     preload((*RCLPY, *_PRELOADED, *_rehearsed()))
     for name in _PREPARED:

@@ -162,7 +162,7 @@ _COROUTINE = re2.compile(
 
 
 def _never_awaited(evidence: Evidence) -> Advice | None:
-    """A function of the student made a coroutine, as its value or Python's warning shows, that was never awaited."""
+    """Return advice if a coroutine of the student was never awaited: its value or Python's warning shows that."""
     said = [line for part in evidence for line in part.said()]
     found = next(filter(None, map(_COROUTINE.search, said)), None)
     name = (found["returned"] or found["warned"]).rpartition(".")[2] if found else ""

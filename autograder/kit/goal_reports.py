@@ -162,7 +162,7 @@ _SEQUENCE = re2.compile(r"[\[(]|[a-z.]+\((?:'\w', )?[\[(]|[a-z.]+\((?:'\w')?\)")
 
 
 def returned_instead(part: Part, wanted: Sequence[int]) -> str:
-    """Return what a function returned instead of these numbers; empty if it is right, or no function returned.
+    """Return a function's wrong value, in words; empty if the value is right, or if no function returned.
 
     Any kind of sequence counts as a list, such as a tuple or an array; a message that contains one does not.
     """

@@ -89,7 +89,7 @@ def something_spins(part: Part) -> bool:
 
 
 def _spins_in_callback(stack: Stack) -> bool:
-    """True if the stack contains a spin, student's code outside it, and an executor outside that."""
+    """True if the stack has a spin, which the student's code has called, which an executor has called."""
     spins = [i for i, frame in enumerate(stack) if frame.rclpy and frame.function in _SPINS]
     if not spins:
         return False

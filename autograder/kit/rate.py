@@ -33,7 +33,7 @@ SLOWER, FASTER = 0.18, 0.1
 AT_ONCE = 0.1
 """Two messages form a burst if the time between them is less than this share of the period."""
 UNEVEN = 0.3
-"""The share of the period above which an interval in real time is too long or too short."""
+"""An interval in real time is too long or too short if it differs from the period by more than this share of it."""
 ON_THE_WAY = 0.3
 """Seconds that a message may travel; if it seems to take longer, or less than nothing, its time of sending is not
 used.

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 CONFIG_NAME = "nbgrader_config.py"
 STATE_NAME = ".autograder"
 COURSE_NAME = "course"
-"""The file in the class's state with the course's top folder: an installed package is not inside the course."""
+"""The file in the class's state that names the top folder of the course. An installed package cannot find it itself."""
 SUFFIX = ".ipynb"
 _LONGEST_NAME = 100
 _STUDENTS_FILES = ("submitted", "autograded", "feedback", "downloaded")

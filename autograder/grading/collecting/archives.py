@@ -33,13 +33,15 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 MOST_FILES = 20_000
-"""In one folder of a download: a student whose folder is full, such as a repository, harms no other student."""
+"""The limit of the files in one student's folder of a download. It is counted for each folder, so that a folder with a
+whole repository takes nothing from other students.
+"""
 _DEEPEST = 3
 """Archives in an archive that a student has handed in, one in the other."""
 _DEEPEST_FOLDER = 100
 """Folders in each other; Python looks into no more than some hundreds."""
 _LIMITS = Limits(processes=20, scratch_bytes=1 << 40)
-"""Limits of the box of one archive; the program in it takes closer ones before it reads a byte."""
+"""Limits of the box of one archive. The program in the box sets itself stricter limits before it reads a byte."""
 _LEADS_OUT = "its name leads out of the archive"
 _TOO_LONG = f"its name has more than {LONGEST_NAME} characters"
 
@@ -73,7 +75,7 @@ class File:
 
 @dataclass
 class Room:
-    """Limits of unpacking: by default, those of all archives of one student in a download together.
+    """Limits of unpacking. The defaults hold for all archives of one student in a download together.
 
     Attributes:
         files: The number of files.
@@ -188,7 +190,7 @@ class Boxes:
             yield line.names, _refusing(line.reason) if line.reason else read
 
     def _run(self, path: Path, words: list[str], out: IO[bytes]) -> int:
-        """Have an archive unpacked into a file; the exit code, and that of a signal if a limit was met."""
+        """Unpack an archive into a file. Return the exit code, which is negative if a limit ended the program."""
         path.open("rb").close()
         program = ("-I", "-S", str(Path(unpack.__file__)))
         self.has_unpacked = True

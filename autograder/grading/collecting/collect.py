@@ -194,7 +194,7 @@ class _Collecting:
     # -- what became of it
 
     def _with_trouble(self, one: Decision, results: dict[Place, tuple[State, str]]) -> Decision:
-        """The same decision; one that waits if something else is at the place of the file."""
+        """Return the decision; if something else is in the place of the file, return a decision that waits."""
         place = (one.student, one.line.assignment, one.line.notebook)
         state, reason = results.get(place, (State.UNCHANGED, ""))
         is_hindered = one.state == State.PLACED and state == State.NOT_PLACED

@@ -281,7 +281,7 @@ def _github(parts: Sequence[str], place: int) -> Found | None:
 
 _STUDENT_NUMBER = re2.compile(r"[A-Za-z]{0,4}\d[\dA-Za-z]{2,}")
 _READERS = {
-    # Ada Lovelace_12345_assignsubmission_file_lab_1_2.ipynb; since 4.1, and with folders before, it is a folder's name.
+    # Ada Lovelace_12345_assignsubmission_file_lab_1_2.ipynb: since Moodle 4.1, earlier with folders, a folder's name.
     "moodle": _in_one_part(
         r"^(?P<name>[^_]+)_(?P<number>\d+)_assignsubmission_(?:file|onlinetext)_?(?P<file>.*)$", _moodle
     ),

@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 GRADESCOPE = "submission_metadata.yml"
 """The list that Gradescope puts into its export."""
 LARGEST_OF_GRADESCOPE = 4_000_000
-"""The limit on its bytes: two thousand for each of two thousand students; parsed, a byte takes a hundred."""
+"""The limit in bytes of Gradescope's list: two thousand for each of two thousand students. To parse a byte takes a
+hundred bytes of memory.
+"""
 _NUMBER = re2.compile(r"(\d+)(?:\.\w+)?$")
 
 

@@ -89,7 +89,7 @@ def known_there(records: CollectedRecords, assignment: str, student: str, lms: s
 
 
 def gradebook(lms: str, table: ClassTable, records: CollectedRecords, assignments: Sequence[str]) -> str:
-    """Return the file for the gradebook of a system."""
+    """Return the file to import into the gradebook of an LMS."""
     layout = LAYOUTS[lms]
     header: list[str | float] = [*layout.columns]
     possible: list[str | float] = [layout.possible, *[""] * (len(layout.columns) - 1)]

@@ -42,7 +42,7 @@ MODULE = "autograder.grading.rebuilding.desk_process"
 MEMORY_BYTES = 700_000_000
 """The limit of a desk's address space. A file of 50 MB with a picture and an emoji takes two thirds of that."""
 CPU_SECONDS = 20
-"""Limit of a desk's processor time; a file of 50 MB takes two seconds."""
+"""The limit in seconds of the processor time of one desk. A file of 50 MB takes two seconds."""
 _SAMPLE = b'{"nbformat": 4, "metadata": {}, "cells": [{"cell_type": "code", "source": "x"}]}'
 _WALL_SECONDS = 600.0
 """The limit in seconds. A desk cannot sleep, so only a machine that was stopped takes so long."""

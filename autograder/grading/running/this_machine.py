@@ -92,7 +92,7 @@ class WorkerProcesses:
 
     @contextlib.contextmanager
     def _process(self, key: str, judge: str, *, boxed: bool) -> Iterator[WorkerProcess]:
-        """Hold a process for one order. A process whose order is canceled is not kept."""
+        """Reserve a worker process for one order. If the order is canceled, the process is not used again."""
         with self._changing:
             idle = self._idle.setdefault((judge, boxed), [])
             process = idle.pop() if idle else self._new(judge, boxed=boxed)

@@ -90,7 +90,7 @@ class RemoteSubject:
         self._fresh = True
 
     def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
-        """Ask the notebook, which looks through its own participant."""
+        """Ask the notebook whether its own participant has discovered these endpoints, and lost the others."""
         self._answered.clear()
         self._seen_as_told = False
         fresh, self._fresh = self._fresh, False
@@ -117,7 +117,7 @@ class RemoteSubject:
             recorder.record("subject", "never_constructed")
 
     def interrupt(self) -> None:
-        """Have the notebook send Ctrl-C to the process of a path. A class or function in the kernel goes on."""
+        """Have the notebook send Ctrl-C to a program. A class or function in the kernel goes on."""
         self._tell(checks.Interrupt(self._run))
 
     def release(self) -> None:

@@ -68,7 +68,7 @@ GOAL_LIMIT = 15.0
 END_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 8.0}
 """Seconds within which a client must request the result, must have reported it, must have ended after a refusal."""
 AFTERMATH = 1.0
-"""Seconds in which a client that has reported may end, or say more."""
+"""Seconds to wait, after a client has reported, for its end or for more output."""
 
 
 def scenario(bench: Bench) -> None:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 AT_ONCE = 0.3
 """Seconds within which only a server that takes no time per number computes many numbers."""
 MANY = 2
-"""Successive feedback messages that show that a server reads no request while it works."""
+"""The number of feedback messages in a row that show that a server reads no request while it works."""
 
 
 class SendsGoals(SeenAsItIs):

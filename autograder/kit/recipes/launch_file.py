@@ -134,7 +134,7 @@ class Launched:
 
     @property
     def moved_by_rules(self) -> bool:
-        """True if all programs under the new name got such a rule.
+        """True if each program that uses the new name was given a rule for it.
 
         If an endpoint does not tell its process, any process with a rule may own it. Other subscribers there, such as
         ``ros2 topic echo``, need no rule.

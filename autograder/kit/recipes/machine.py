@@ -207,7 +207,7 @@ class Machine(Declared):
             bench.listen(topic, type_name)
 
     def _course(self, seen: Part, step: Step) -> list[Call]:
-        """Return each call with the result that a machine with this step gives."""
+        """Return the calls, each with the result of a machine that uses this step function."""
         state, course = self._state, []
         for asked in map(value, seen.of("asked")):
             new, reply = step(state, asked)

@@ -53,7 +53,7 @@ class Server:
 
     @property
     def singly(self) -> list[Event]:
-        """The calls one by one."""
+        """The calls that are sent one at a time, each after the answer to the one before."""
         return self.asked[: self.calls - AT_ONCE - 1]
 
     @property
