@@ -32,7 +32,7 @@ GOES_ON = "assert graph.running and robot is not None"
 
 @dataclass(frozen=True)
 class Cost:
-    """What was open, and its costs.
+    """The costs of the pictures that were open.
 
     Attributes:
         what: In words.

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from autograder.cards.readable import printable
+from autograder.cli.instructors import class_folder
 from autograder.cli.results import as_json_option, fail, grading_errors, print_json
 from environment.installation import COMMAND
 
@@ -33,7 +34,7 @@ def _fail(message: str) -> NoReturn:
 
 
 @click.command()
-@click.argument("folder", type=click.Path(path_type=Path))
+@class_folder
 @click.argument("student")
 @as_json_option
 def attempts(folder: Path, student: str, as_json: bool) -> None:
@@ -53,7 +54,7 @@ def attempts(folder: Path, student: str, as_json: bool) -> None:
 
 
 @click.command()
-@click.argument("folder", type=click.Path(path_type=Path))
+@class_folder
 @click.argument("student")
 @click.argument("exercise")
 @click.option(

@@ -60,8 +60,8 @@ def plan_for(
 
     Args:
         runner: What the exercise runs.
-        arguments: Of this start; where there are several programs, the first one says which. A launch's may name
-            a program that is run in its place.
+        arguments: The arguments of this start; if there are several programs, the first argument is the name of one.
+            Those of a launch may name a program that runs instead.
     """
     match runner:
         case RunsProgram(package=package, program=program):

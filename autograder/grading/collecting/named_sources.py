@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.grading.collecting.archives import Boxes, File
 from autograder.grading.collecting.lists import GRADESCOPE
 from autograder.grading.collecting.unpack import EMPTY
 from autograder.regular_files import name_as_text
