@@ -24,7 +24,7 @@ class State(StrEnum):
 
 
 @dataclass(frozen=True)
-class Criterion:
+class CriterionResult:
     """One requirement, and whether it was met.
 
     Attributes:
@@ -118,7 +118,7 @@ class Verdict:
     state: State
     score: float
     max_score: float
-    criteria: tuple[Criterion, ...] = ()
+    criteria: tuple[CriterionResult, ...] = ()
     diagnosis: Diagnosis | None = None
     remarks: tuple[str, ...] = ()
     timeline: tuple[Moment, ...] = ()

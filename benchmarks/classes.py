@@ -10,7 +10,7 @@ from autograder import course
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory
 from autograder.grading.classes.new_class import new_class
 from autograder.grading.classes.sample_class import BANK, SampleNotebook, made_notebook
-from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding import nbformat_nodes
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -74,7 +74,7 @@ def make_class(path: Path, students: int, assignments: tuple[str, ...] = ()) -> 
             wanted = SampleNotebook(student, assignment, "", {}, bank=files)
             folder = path / "submitted" / student / assignment
             folder.mkdir(parents=True)
-            text = nodes.text(made_notebook(path, wanted))
+            text = nbformat_nodes.text(made_notebook(path, wanted))
             (folder / f"{assignment}{SUFFIX}").write_text(text, encoding="utf-8")
     return BenchmarkClass(path, names, frozenset(honest))
 

@@ -7,7 +7,7 @@ import re
 from dataclasses import fields
 from pathlib import Path
 
-from autograder.verdict import Criterion, Diagnosis, Moment, State, Verdict, to_json
+from autograder.verdict import CriterionResult, Diagnosis, Moment, State, Verdict, to_json
 
 PAGE = (Path(__file__).resolve().parents[1] / "docs/your-own-repository.md").read_text(encoding="utf-8")
 SAMPLE = Verdict(
@@ -17,7 +17,7 @@ SAMPLE = Verdict(
     score=6.0,
     max_score=10.0,
     criteria=(
-        Criterion(
+        CriterionResult(
             "charge",
             "Counts down from 100",
             4.0,
@@ -44,7 +44,7 @@ def test_the_sample_on_the_page_is_made_from_the_types() -> None:
 
 def test_each_field_has_its_row_and_no_row_is_of_another_field() -> None:
     known = {field.name for field in fields(Verdict)}
-    for name, kind in (("criteria[]", Criterion), ("diagnosis", Diagnosis), ("timeline[]", Moment)):
+    for name, kind in (("criteria[]", CriterionResult), ("diagnosis", Diagnosis), ("timeline[]", Moment)):
         known |= {f"{name}.{field.name}" for field in fields(kind)}
     table = PAGE.partition("## What `check --json` prints")[2].partition("\n## ")[0]
     rows = re.findall(r"^\| (`.+?`) \|", table, re.MULTILINE)

@@ -31,7 +31,7 @@ class BadAppeal(ValueError):
     """The file is not a whole appeal file; the message says what to do."""
 
 
-class Cell(msgspec.Struct, frozen=True):
+class AppealedCell(msgspec.Struct, frozen=True):
     """The student's text of one cell.
 
     Attributes:
@@ -62,7 +62,7 @@ class Appeal(msgspec.Struct, frozen=True):
     notebook: str
     task: str
     course: str
-    solution: list[Cell]
+    solution: list[AppealedCell]
     expected: Any
     seen: Kept
 

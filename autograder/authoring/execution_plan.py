@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from autograder.boxes.limits import Limits
-from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.task_making import cells_of
 from autograder.grading.task import Task
 from autograder.masters.layout import chapter_path, lab_name, masters
@@ -85,7 +85,7 @@ def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
         if not chapter.is_file():
             raise NothingToExecuteError(f"{chapter.relative_to(root)} is not there: run `{COMMAND} build`.")
         try:
-            built = nodes.read(chapter.read_text(encoding="utf-8"))
+            built = nbformat_nodes.read(chapter.read_text(encoding="utf-8"))
         except Exception as error:  # nbformat's libraries may raise any error
             raise NothingToExecuteError(
                 f"{chapter.relative_to(root)} is not a notebook: run `{COMMAND} build`."

@@ -11,7 +11,7 @@ from nbconvert import HTMLExporter
 
 from autograder.authoring.execution_plan import NotebookKind
 from autograder.boxes.execution import CellType, Ended
-from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding import nbformat_nodes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -140,11 +140,11 @@ def write_report(folder: Path, planned: Planned, execution: Execution, found: Se
 
 
 def _with_outputs(planned: Planned, execution: Execution, found: Sequence[Problem]) -> NotebookNode:
-    notebook = nodes.copied(planned.notebook)
+    notebook = nbformat_nodes.copied(planned.notebook)
     cells = []
     for index, cell in enumerate(notebook.cells):
         if cell.cell_type == CellType.CODE and index < len(execution.cells):
-            cell.outputs = [nodes.output(**output) for output in execution.cells[index].outputs]
+            cell.outputs = [nbformat_nodes.output(**output) for output in execution.cells[index].outputs]
             cell.execution_count = None
         wrong = [problem.text for problem in found if problem.cell == index]
         if wrong:
@@ -172,4 +172,4 @@ def _join(texts: Sequence[str]) -> str:
 
 def _box(text: str) -> NotebookNode:
     style = "border-left: 6px solid #c62828; padding: 0.5em 1em; background: #fdecea; color: #5f1414"
-    return nodes.cell(CellType.MARKDOWN, f'<div style="{style}">\n{text}\n</div>')
+    return nbformat_nodes.cell(CellType.MARKDOWN, f'<div style="{style}">\n{text}\n</div>')

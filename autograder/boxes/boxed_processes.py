@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from autograder.boxes.box import Box
-    from autograder.boxes.entering import Entrance
+    from autograder.boxes.enter_box import Entrance
 
 _START_SECONDS = 60.0
 _CLOSING_SECONDS = 10.0

@@ -18,7 +18,7 @@ class CellType(StrEnum):
 
 
 @dataclass(frozen=True)
-class Check:
+class CellCheck:
     """The check that a check cell makes.
 
     Attributes:
@@ -52,7 +52,7 @@ class Cell:
 
     source: str
     kind: CellType = CellType.CODE
-    check: Check | None = None
+    check: CellCheck | None = None
     name: str = ""
     own: bool = False
 

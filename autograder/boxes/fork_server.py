@@ -2,7 +2,7 @@
 
 ``python -P -m autograder.boxes.fork_server MODE MODULE DESCRIPTOR [WORD...]``: ``MODULE`` has ``prepare``, called
 once with the words, and ``run``, called in each child. In the mode ``inside`` the child first enters the box named in
-the request (:mod:`autograder.boxes.entering`); in the mode ``beside`` ``run`` gets the connection itself.
+the request (:mod:`autograder.boxes.enter_box`); in the mode ``beside`` ``run`` gets the connection itself.
 
 A fork is safe because this process starts with a clean environment and makes no thread and no ROS context (LTTng,
 which rclpy loads, has two threads that sleep until there is a tracing daemon). It never reads a request: the child
@@ -28,7 +28,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from autograder.boxes.channel import Channel
-from autograder.boxes.entering import enter
+from autograder.boxes.enter_box import enter
 from autograder.boxes.environment import base_environment
 from autograder.boxes.limits import raise_own
 from autograder.process_trees import end_soon

@@ -65,7 +65,7 @@ class Bind:
 
 
 @dataclass(frozen=True)
-class Link:
+class SymbolicLink:
     """A symbolic link that exists only in the box.
 
     Attributes:
@@ -81,7 +81,9 @@ class Link:
         return ["--symlink", str(self.target), str(self.place)]
 
 
-def box_arguments(scratch: Path, binds: Sequence[Bind | Link], *, scratch_visible: bool = True) -> list[str]:
+def box_arguments(
+    scratch: Path, binds: Sequence[Bind | SymbolicLink], *, scratch_visible: bool = True
+) -> list[str]:
     """Return the arguments of bubblewrap for a box.
 
     Args:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from autograder.boxes import syscalls
 from autograder.boxes.channel import close_all
-from autograder.boxes.entering import take_limits
+from autograder.boxes.enter_box import take_limits
 from autograder.boxes.environment import box_environment
 from autograder.boxes.guards import BoxGuard
 from autograder.boxes.limits import Limits

@@ -10,8 +10,8 @@ import contextlib
 import time
 from typing import TYPE_CHECKING, Any, Protocol
 
-from autograder.boxes.execution import Cell, CellRun, CellType, Check, Ended, Execution
-from autograder.boxes.hanging import Hangs, seconds_again
+from autograder.boxes.execution import Cell, CellCheck, CellRun, CellType, Ended, Execution
+from autograder.boxes.hang_limits import Hangs, seconds_again
 from autograder.boxes.kernel import Kernel, KernelFailed, Start
 from autograder.boxes.limits import Patient, first_of, wall_time
 from autograder.boxes.outputs import Budget, OutputCollector
@@ -204,7 +204,7 @@ class _Run:
         if verdict is not None and (verdict.passed or self._ended[index] not in LIMITS):
             self._count(index, cell.check, verdict)
 
-    def _count(self, index: int, check: Check, verdict: Verdict) -> None:
+    def _count(self, index: int, check: CellCheck, verdict: Verdict) -> None:
         if verdict.exercise != check.exercise:
             self._judge_failed(index, check, ValueError(f"it judged {verdict.exercise} instead"))
             return
@@ -212,7 +212,7 @@ class _Run:
         if verdict.state is State.NOT_CHECKED:
             self._trouble = verdict.diagnosis.text if verdict.diagnosis else "the judge could not check"
 
-    def _judge_failed(self, index: int, check: Check, error: Exception) -> None:
+    def _judge_failed(self, index: int, check: CellCheck, error: Exception) -> None:
         self._trouble = f"the judge failed: {type(error).__name__}: {error}"
         self._verdicts[index] = grader_trouble(check, self._trouble)
 

@@ -24,10 +24,10 @@ from typing import TYPE_CHECKING, Any, Self
 from autograder.boxes.box import Box, NoSandbox, Supervision
 from autograder.boxes.boxed_processes import Finished, ForkedProcess, Running, WarmCommand
 from autograder.boxes.channel import close_all
-from autograder.boxes.entering import Entrance
+from autograder.boxes.enter_box import Entrance
 from autograder.boxes.environment import box_environment
 from autograder.boxes.fork_server import BESIDE, SUPERVISOR_MODULE, ForkServer, library_folders
-from autograder.boxes.mounts import HOME, WORK, Bind, Link, box_arguments
+from autograder.boxes.mounts import HOME, WORK, Bind, SymbolicLink, box_arguments
 from autograder.temporary_folders import HeldFolder, write_files
 
 if TYPE_CHECKING:
@@ -80,7 +80,12 @@ class Enclosure:
         )
 
     def box(
-        self, name: str, binds: Sequence[Bind | Link] = (), *, scratch: bool = True, guarded: bool = False
+        self,
+        name: str,
+        binds: Sequence[Bind | SymbolicLink] = (),
+        *,
+        scratch: bool = True,
+        guarded: bool = False,
     ) -> Box:
         """Make an empty box, which a child of a fork server can enter.
 
@@ -226,7 +231,7 @@ class Enclosure:
             cwd: The working folder.
         """
         libraries = _own_libraries(environment)
-        links = [Link(*pair) for pair in zip(library_folders(programs), libraries, strict=False)]
+        links = [SymbolicLink(*pair) for pair in zip(library_folders(programs), libraries, strict=False)]
         box = self.box(self._next_name(), [*binds, *links], scratch=False, guarded=True)
         reading, writing = os.pipe()
         try:

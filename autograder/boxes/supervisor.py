@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.boxes import syscalls
 from autograder.boxes.channel import Channel, ChannelClosed, close_all
-from autograder.boxes.entering import take_limits
+from autograder.boxes.enter_box import take_limits
 from autograder.boxes.mounts import ETC, ETC_FOLDERS, TERMINALS, etc_files
 from autograder.boxes.seccomp_filter import filter_for_boxes
 from autograder.process_trees import die_with_parent

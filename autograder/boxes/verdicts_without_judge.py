@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import re2
 
-from autograder.boxes.execution import CellRun, Check, Ended
+from autograder.boxes.execution import CellCheck, CellRun, Ended
 from autograder.verdict import ASKS_FOR_INPUT, Diagnosis, State, Verdict, failed, not_checked
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ _SHORTAGES = {
 """Limits that reach a program as an error: how the error begins, then diagnosis, message and advice."""
 
 
-def zero_points(check: Check, key: str, reason: str, next_step: str, detail: str = "") -> Verdict:
+def zero_points(check: CellCheck, key: str, reason: str, next_step: str, detail: str = "") -> Verdict:
     """A failed check without criteria.
 
     Args:
@@ -82,7 +82,7 @@ def zero_points(check: Check, key: str, reason: str, next_step: str, detail: str
     return failed(check.exercise, check.title, check.points, Diagnosis(key, reason, next_step), detail)
 
 
-def grader_trouble(check: Check, reason: str) -> Verdict:
+def grader_trouble(check: CellCheck, reason: str) -> Verdict:
     """A failure of the grader itself: not the student's fault, and worth another run."""
     return not_checked(
         check.exercise,
@@ -94,7 +94,7 @@ def grader_trouble(check: Check, reason: str) -> Verdict:
 
 
 def without_verdict(
-    check: Check,
+    check: CellCheck,
     run: CellRun,
     before: list[tuple[str, CellRun]],
     limit: float,
@@ -140,7 +140,7 @@ def without_verdict(
             return _limit_exceeded(check, limit_exceeded, "this check cell")
 
 
-def _kernel_gone(check: Check, run: CellRun, before: list[tuple[str, CellRun]]) -> Verdict:
+def _kernel_gone(check: CellCheck, run: CellRun, before: list[tuple[str, CellRun]]) -> Verdict:
     if run.ended is Ended.KERNEL_DIED:
         place = "while this check cell was running"
     else:
@@ -160,14 +160,14 @@ def _kernel_gone(check: Check, run: CellRun, before: list[tuple[str, CellRun]]) 
     )
 
 
-def _limit_exceeded(check: Check, ended: Ended, place: str) -> Verdict:
+def _limit_exceeded(check: CellCheck, ended: Ended, place: str) -> Verdict:
     what, next_step = LIMITS[ended]
     return zero_points(
         check, str(ended), f"In {place}, the notebook {what}. It was stopped there.", next_step
     )
 
 
-def _out_of_time(check: Check, before: list[tuple[str, CellRun]]) -> Verdict:
+def _out_of_time(check: CellCheck, before: list[tuple[str, CellRun]]) -> Verdict:
     slow = [title for title, cell in before if cell.ended is Ended.TIMED_OUT]
     reason = "The notebook's time was up before this check cell had its turn."
     if slow:
@@ -182,7 +182,7 @@ def _out_of_time(check: Check, before: list[tuple[str, CellRun]]) -> Verdict:
     )
 
 
-def _stopped_by_error(check: Check, run: CellRun, before: list[tuple[str, CellRun]]) -> Verdict:
+def _stopped_by_error(check: CellCheck, run: CellRun, before: list[tuple[str, CellRun]]) -> Verdict:
     """Say which error stopped the cell; often an earlier cell that should have defined a name is the cause."""
     title, cause = next(
         ((title, cell) for title, cell in before if cell.ended in (Ended.RAISED, Ended.TIMED_OUT, *LIMITS)),
@@ -240,7 +240,7 @@ def _end_of_traceback(run: CellRun) -> str:
     return ""
 
 
-def verdict_by_tests(check: Check, run: CellRun) -> Verdict | None:
+def verdict_by_tests(check: CellCheck, run: CellRun) -> Verdict | None:
     """Return the verdict on a cell of plain tests.
 
     Args:
@@ -278,6 +278,6 @@ def _partial_credit(outputs: Iterable[Mapping[str, Any]], most: float) -> float:
     return score if score >= 0 else most
 
 
-def _tested(check: Check, score: float, diagnosis: Diagnosis | None) -> Verdict:
+def _tested(check: CellCheck, score: float, diagnosis: Diagnosis | None) -> Verdict:
     state = State.FAILED if diagnosis else State.PASSED
     return Verdict(check.exercise, check.title, state, score, check.points, diagnosis=diagnosis)

@@ -12,7 +12,7 @@ from autograder.cards.tracebacks import TRACEBACK, TracebackPlace, place
 from autograder.cards.traffic import Traffic, traffic
 
 if TYPE_CHECKING:
-    from autograder.verdict import Criterion, State, Verdict
+    from autograder.verdict import CriterionResult, State, Verdict
 
 UNFOLDED = 16
 """Longest traceback that is shown unfolded, in lines."""
@@ -98,7 +98,7 @@ class CriterionRow:
     difference: tuple[TextPiece, ...]
 
     @classmethod
-    def of(cls, criterion: Criterion, form: Form) -> CriterionRow:
+    def of(cls, criterion: CriterionResult, form: Form) -> CriterionRow:
         """Return the row of a criterion."""
         earned = criterion.points if criterion.passed else 0.0
         pieces = difference(criterion)
@@ -141,7 +141,7 @@ class Card:
     max_score: str
     unit: str
     notice: str
-    advice: wording.Advice
+    advice: wording.AdviceBlock
     place: TracebackPlace | None
     criteria: tuple[CriterionRow, ...]
     remarks: tuple[str, ...]
@@ -180,7 +180,7 @@ class Card:
             max_score=wording.points(verdict.max_score),
             unit=wording.unit(verdict.max_score),
             notice=one_line(notice, 200, mark=mark),
-            advice=wording.Advice(
+            advice=wording.AdviceBlock(
                 advice.heading,
                 paragraph(advice.text, 1200, mark=mark),
                 paragraph(advice.next_step, 1200, mark=mark),

@@ -12,7 +12,7 @@ import re2
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from autograder.verdict import Criterion
+    from autograder.verdict import CriterionResult
 
 ALIKE = 0.5
 """Least similarity of two texts, from 0 to 1; a difference between unlike texts does not help."""
@@ -48,7 +48,7 @@ class TextPiece:
         return f"[{text}]" if self.kind is DiffTag.MISSING else f"{{{text}}}"
 
 
-def difference(criterion: Criterion) -> tuple[TextPiece, ...]:
+def difference(criterion: CriterionResult) -> tuple[TextPiece, ...]:
     """Return the difference between the first quoted text that was seen and the first one that was expected.
 
     It is empty if the criterion holds, if either has no such text, or if the texts are equal or unlike.

@@ -12,7 +12,7 @@ from autograder.verdict import State
 
 if TYPE_CHECKING:
     from autograder.cards.traffic import Traffic, TrafficPart
-    from autograder.verdict import Criterion, Moment, Verdict
+    from autograder.verdict import CriterionResult, Moment, Verdict
 
 STATE_WORDS = {
     State.PASSED: "Passed",
@@ -43,7 +43,7 @@ _TRY_AGAIN = "Run the check again. If this card comes back, show it to your inst
 
 
 @dataclass(frozen=True)
-class Advice:
+class AdviceBlock:
     """The prominent block of a card: what happened, and what to do now.
 
     Attributes:
@@ -57,22 +57,22 @@ class Advice:
     next_step: str = ""
 
 
-def advice(verdict: Verdict) -> Advice:
+def advice(verdict: Verdict) -> AdviceBlock:
     """Return the advice that a student should read first, even if the judge knows no name for the mistake."""
     if verdict.state is State.PASSED:
-        return Advice("", "Well done: your code did everything that was asked for.")
+        return AdviceBlock("", "Well done: your code did everything that was asked for.")
     diagnosis = verdict.diagnosis
     if verdict.state is State.NOT_CHECKED:
         reason = f"{diagnosis.text.rstrip()} " if diagnosis and diagnosis.text.strip() else ""
         next_step = diagnosis.next_step.strip() if diagnosis else ""
-        return Advice("Why there is no result", reason + _BLAMELESS, next_step or _TRY_AGAIN)
+        return AdviceBlock("Why there is no result", reason + _BLAMELESS, next_step or _TRY_AGAIN)
     first = next((criterion for criterion in verdict.criteria if not criterion.passed), None)
     if diagnosis:
-        return Advice("What happened", diagnosis.text, diagnosis.next_step.strip() or _start_with(first))
-    return Advice("What happened", "Not everything that was asked for was seen.", _start_with(first))
+        return AdviceBlock("What happened", diagnosis.text, diagnosis.next_step.strip() or _start_with(first))
+    return AdviceBlock("What happened", "Not everything that was asked for was seen.", _start_with(first))
 
 
-def _start_with(criterion: Criterion | None) -> str:
+def _start_with(criterion: CriterionResult | None) -> str:
     if criterion is None:
         return "Read the details below, change your code and run the check again."
     title = criterion.title.rstrip(". ")

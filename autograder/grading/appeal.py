@@ -6,7 +6,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from autograder import exercises
-from autograder.appeals.appeal_file import Appeal, Cell, dump
+from autograder.appeals.appeal_file import Appeal, AppealedCell, dump
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.errors import GradingError, clear_disk_errors, clear_place_errors, course_command
@@ -81,13 +81,13 @@ def _appeal(
     )
 
 
-def _before(cells: list[RunCell], exercise_id: str) -> Iterator[Cell]:
+def _before(cells: list[RunCell], exercise_id: str) -> Iterator[AppealedCell]:
     """Yield the student's cells above the check: all of them ran in the same kernel before it."""
     for cell in cells:
         if cell.checks == exercise_id:
             return
         if not cell.checks:
-            yield Cell(cell.name, cell.text.splitlines())
+            yield AppealedCell(cell.name, cell.text.splitlines())
 
 
 def _expected(exercise_id: str, digest: str) -> Any:

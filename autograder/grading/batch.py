@@ -18,32 +18,32 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
+from autograder.grading.batch_work import AskedFor, Work, find_work, without_grade, would_change
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, RefusedFile, Submission
 from autograder.grading.classes.configuration import check_configuration, limits_of
 from autograder.grading.classes.origins import news
 from autograder.grading.classes.timestamps import handed_in_at
 from autograder.grading.collecting.beside_its_place import beside_their_place, put_right
-from autograder.grading.entering.gradebook_reading import (
+from autograder.grading.errors import MasterUnusable, is_disk_full
+from autograder.grading.gradebooks.gradebook_reading import (
     SubmissionEntry,
     gradebook_file,
     read_due_dates,
     read_entries,
     read_entry,
 )
-from autograder.grading.errors import MasterUnusable, is_disk_full
 from autograder.grading.rebuilding.course_version import course_version
 from autograder.grading.rebuilding.fingerprints import Fingerprints
 from autograder.grading.rebuilding.source_points import check_release, read_released
 from autograder.grading.reporting.report import GradeReport
 from autograder.grading.reporting.rows import rows_of, write_csv
 from autograder.grading.running import backends, sandboxing
+from autograder.grading.running.batch_times import Timings
 from autograder.grading.running.progress import BatchProgress, plain_line
-from autograder.grading.running.timings import Timings
 from autograder.grading.table.roster import enter_roster, read_roster
 from autograder.grading.table.true_rows import true_rows
 from autograder.grading.table.what_counts import read_what_counts
-from autograder.grading.work import AskedFor, Work, find_work, without_grade, would_change
 from environment.installation import COMMAND
 
 # Modules that only grading needs are imported inside functions: importing nbgrader takes a second.
@@ -54,8 +54,8 @@ if TYPE_CHECKING:
 
     from autograder.boxes.execution import Execution
     from autograder.grading.class_records import Entered
-    from autograder.grading.entering.gradebook_reading import Entries
-    from autograder.grading.entering.writer import Writer
+    from autograder.grading.gradebooks.gradebook_reading import Entries
+    from autograder.grading.gradebooks.writer import Writer
     from autograder.grading.rebuilding.source_points import GradedCell
     from autograder.grading.running.backends import Execute
     from autograder.grading.table.point_differences import Difference
@@ -169,7 +169,7 @@ class _Batch:
 
     @functools.cached_property
     def _writer(self) -> Writer:
-        from autograder.grading.entering.writer import Writer
+        from autograder.grading.gradebooks.writer import Writer
 
         return Writer(self._directory, self._store)
 
@@ -379,7 +379,7 @@ class _Batch:
             work.rows = rows
             work.results.clear()
             return
-        from autograder.grading.entering.writer import NotWritten
+        from autograder.grading.gradebooks.writer import NotWritten
 
         try:
             with self._timings.measure("gradebook"):

@@ -14,7 +14,7 @@ from autograder.grading.reporting.rows import Row  # noqa: TC001  (the same)
 
 if TYPE_CHECKING:
     from autograder.boxes.execution import Execution
-    from autograder.grading.entering.gradebook_reading import SubmissionEntry
+    from autograder.grading.gradebooks.gradebook_reading import SubmissionEntry
     from autograder.grading.task import Task
 
 

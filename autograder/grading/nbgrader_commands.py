@@ -22,8 +22,8 @@ from autograder.grading.batch import grade
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Submission, reason_against_name
 from autograder.grading.classes.configuration import check_configuration
-from autograder.grading.entering.writer import Writer
 from autograder.grading.errors import GradingError, check_known
+from autograder.grading.gradebooks.writer import Writer
 from autograder.grading.reporting.rows import remarks_on
 from autograder.grading.returning.page_exporter import PageExporter
 

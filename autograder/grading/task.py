@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import msgspec
 
-from autograder.boxes.execution import Cell, Check, Execution
+from autograder.boxes.execution import Cell, CellCheck, Execution
 from autograder.boxes.limits import Limits
 from autograder.boxes.verdicts_without_judge import grader_trouble, zero_points
 from autograder.verdict import State, Verdict
@@ -86,7 +86,7 @@ class Task:
         return Execution(cells=(), verdicts=verdicts, trouble=reason)
 
 
-def points(check: Check, verdict: Verdict) -> float:
+def points(check: CellCheck, verdict: Verdict) -> float:
     """Return the points for a verdict: the judge's share of the cell's points."""
     share = verdict.score / verdict.max_score if verdict.max_score > 0 else 0.0
     return round(min(1.0, max(0.0, share)) * check.worth, 4)

@@ -14,7 +14,7 @@ from autograder.masters.master_errors import MasterError
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from autograder.masters.parsing import Cell
+    from autograder.masters.parsing import MasterCell
 
 FORM = (
     "A check cell is one line such as: "
@@ -41,7 +41,7 @@ class CheckCall:
     is_path: bool = False
 
 
-def read_check(master: Path, cell: Cell) -> CheckCall:
+def read_check(master: Path, cell: MasterCell) -> CheckCall:
     """Read a check cell.
 
     Raises:
@@ -66,7 +66,7 @@ def read_check(master: Path, cell: Cell) -> CheckCall:
     return CheckCall(master, cell.line, exercise, subject, is_path)
 
 
-def _call(master: Path, cell: Cell) -> tuple[str, str, bool]:
+def _call(master: Path, cell: MasterCell) -> tuple[str, str, bool]:
     try:
         body = ast.parse(cell.source).body
     except SyntaxError:

@@ -11,7 +11,7 @@ from urllib.parse import quote
 
 from autograder import course
 from autograder.masters.layout import chapter_path
-from autograder.masters.parsing import Cell, CellRole
+from autograder.masters.parsing import CellRole, MasterCell
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -72,7 +72,7 @@ def links(address: str, notebook: str) -> dict[str, str]:
     }
 
 
-def with_first_cells(master: Path, cells: list[Cell]) -> list[Cell]:
+def with_first_cells(master: Path, cells: list[MasterCell]) -> list[MasterCell]:
     """Return the cells of a master, with those of this module before the first that is not text."""
     root = master.parents[3]
     first = next((place for place, cell in enumerate(cells) if cell.kind is not CellRole.TEXT), None)
@@ -84,8 +84,8 @@ def with_first_cells(master: Path, cells: list[Cell]) -> list[Cell]:
         notebook = chapter_path(root, master).relative_to(root).as_posix()
         ways = " · ".join(f"[{name}]({link})" for name, link in links(address, notebook).items())
         text = f"Nothing installed? Open this notebook in {ways}."
-        added.append(Cell(CellRole.TEXT, text, line=0, body_line=0))
+        added.append(MasterCell(CellRole.TEXT, text, line=0, body_line=0))
     archive = course.archive(address) if address else ""
     source = SET_UP.format(part=PART, archive=archive).rstrip("\n")
-    added.append(Cell(CellRole.DEMONSTRATION, source, line=0, body_line=0, grade_id=NAME, folded=True))
+    added.append(MasterCell(CellRole.DEMONSTRATION, source, line=0, body_line=0, grade_id=NAME, folded=True))
     return [*cells[:first], *added, *cells[first:]]

@@ -64,7 +64,7 @@ MANUAL_FORM = '+++ {"tags": ["manual"], "points": 5, "grade_id": "some_name"}'
 
 
 @dataclass(frozen=True)
-class Cell:
+class MasterCell:
     """One cell of a master.
 
     Attributes:
@@ -88,7 +88,7 @@ class Cell:
     folded: bool = False
 
 
-def parse_master(path: Path) -> list[Cell]:
+def parse_master(path: Path) -> list[MasterCell]:
     """Read the cells of a master.
 
     Raises:
@@ -117,14 +117,14 @@ def _read(path: Path) -> str:
         raise MasterError(path, None, "The file is not UTF-8 text.", "Save it as UTF-8.") from error
 
 
-def _cell(path: Path, node: Any, place: int, lines: list[str]) -> Cell:
+def _cell(path: Path, node: Any, place: int, lines: list[str]) -> MasterCell:
     if node.cell_type == "markdown":
         first = next(number for number in range(place, len(lines)) if lines[number].strip()) + 1
         try:
             text, figures = attach_figures(path.parent, nest_hints(node.source))
             if node.metadata:
                 return _question(path, node.metadata, text, first, figures)
-            return Cell(CellRole.TEXT, text, first, first, attachments=figures)
+            return MasterCell(CellRole.TEXT, text, first, first, attachments=figures)
         except CellError as error:
             raise error.at(path, first) from error
     if node.cell_type == "raw":
@@ -132,10 +132,12 @@ def _cell(path: Path, node: Any, place: int, lines: list[str]) -> Cell:
     kind, grade_id = _options(path, node.metadata, place)
     if not node.source.strip():
         raise MasterError(path, place, "An empty code cell.", "Fill it or take it out.")
-    return Cell(kind, node.source, place, _body_line(node.source, place, lines), grade_id)
+    return MasterCell(kind, node.source, place, _body_line(node.source, place, lines), grade_id)
 
 
-def _question(path: Path, metadata: Any, text: str, line: int, figures: dict[str, dict[str, str]]) -> Cell:
+def _question(
+    path: Path, metadata: Any, text: str, line: int, figures: dict[str, dict[str, str]]
+) -> MasterCell:
     """Read a text cell with options: only a question that a person grades has options."""
     points, name = metadata.get("points"), metadata.get("grade_id")
     is_worth = isinstance(points, int | float) and not isinstance(points, bool) and points > 0
@@ -150,7 +152,7 @@ def _question(path: Path, metadata: Any, text: str, line: int, figures: dict[str
             "Text has options only if a person grades it, and this cell has other options.",
             f"Write them so: '{MANUAL_FORM}'.",
         )
-    return Cell(CellRole.MANUAL, text, line, line, str(name), figures, float(points))
+    return MasterCell(CellRole.MANUAL, text, line, line, str(name), figures, float(points))
 
 
 def _options(path: Path, metadata: Any, line: int) -> tuple[CellRole, str | None]:
@@ -181,7 +183,7 @@ def _body_line(source: str, place: int, lines: list[str]) -> int:
     return place
 
 
-def with_copies(master: Path, cells: list[Cell]) -> list[Cell]:
+def with_copies(master: Path, cells: list[MasterCell]) -> list[MasterCell]:
     """Return the cells, with copied text in the place of the lines that ask for it.
 
     Args:
@@ -202,7 +204,7 @@ def with_copies(master: Path, cells: list[Cell]) -> list[Cell]:
     return result
 
 
-def _copied(master: Path, cell: Cell, defined: dict[str, str]) -> Cell:
+def _copied(master: Path, cell: MasterCell, defined: dict[str, str]) -> MasterCell:
     def copy(line: re.Match[str]) -> str:
         names = line["names"].split()
         for name in names:
@@ -217,7 +219,7 @@ def _copied(master: Path, cell: Cell, defined: dict[str, str]) -> Cell:
     return replace(cell, source=COPY.sub(copy, cell.source))
 
 
-def _definitions(cell: Cell) -> dict[str, str]:
+def _definitions(cell: MasterCell) -> dict[str, str]:
     """Return the functions, classes and constants of a cell, with their solutions, by name."""
     source = cell.source
     try:

@@ -16,7 +16,7 @@ from autograder.course import SOLUTION, WHY
 from autograder.masters.check_cells import exercise_points
 from autograder.masters.code_cells import find_region, has_magic, shell_script, written_file
 from autograder.masters.master_errors import MasterError
-from autograder.masters.parsing import Cell, CellRole
+from autograder.masters.parsing import CellRole, MasterCell
 from autograder.masters.source import Points, named_cells
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def reference_source(
     Raises:
         MasterError: The master cannot be used, or has no check of ``exercise``.
     """
-    cells: list[Cell] = []
+    cells: list[MasterCell] = []
     for named in named_cells(master, points=points):
         if named.check is not None and named.check.exercise == exercise:
             shell = named.check.is_path
@@ -73,7 +73,7 @@ def reference_source(
     raise MasterError(master, None, f"No cell checks '{exercise}'.", f'Write one: check("{exercise}", …).')
 
 
-def _kept(cell: Cell, *, shell: bool, solved: bool) -> Iterator[str]:
+def _kept(cell: MasterCell, *, shell: bool, solved: bool) -> Iterator[str]:
     """Yield the part of one cell that the program needs.
 
     Args:
@@ -104,7 +104,7 @@ def _on_disk(source: str, *, shell: bool) -> Iterator[str]:
         yield f"import subprocess\nsubprocess.run(['bash', '-c', {script!r}], check=False)"
 
 
-def _definitions(cell: Cell) -> Iterator[str]:
+def _definitions(cell: MasterCell) -> Iterator[str]:
     lines = cell.source.split("\n")
     for node in ast.parse(cell.source).body:
         if isinstance(node, _KEPT) or _is_constant(node):

@@ -32,7 +32,7 @@ from autograder.masters.code_cells import (
 from autograder.masters.first_cell import with_first_cells
 from autograder.masters.layout import before_and_after, lab_name
 from autograder.masters.master_errors import CellError, MasterError
-from autograder.masters.parsing import Cell, CellRole, parse_master, with_copies
+from autograder.masters.parsing import CellRole, MasterCell, parse_master, with_copies
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -72,7 +72,7 @@ class NamedCell:
         points: The points of a check cell or of a question that a person grades; None for any other cell.
     """
 
-    cell: Cell
+    cell: MasterCell
     name: str
     check: CheckCall | None = None
     points: float | None = None
@@ -116,12 +116,12 @@ def named_cells(master: Path, *, points: Points = exercise_points) -> list[Named
     return named
 
 
-def _links(master: Path) -> Iterator[Cell]:
+def _links(master: Path) -> Iterator[MasterCell]:
     """Yield the last cell of a notebook: links to the notebooks before and after it in the chapter, if any."""
     ways = zip(("← Previous: {}", "Next: {} →"), before_and_after(master), strict=True)
     links = [way.format(_link(other)) for way, other in ways if other is not None]
     if links:
-        yield Cell(CellRole.TEXT, " · ".join(links), line=0, body_line=0)
+        yield MasterCell(CellRole.TEXT, " · ".join(links), line=0, body_line=0)
 
 
 def _link(master: Path) -> str:
@@ -129,7 +129,7 @@ def _link(master: Path) -> str:
     return f"[{heading[1] if heading else ''}]({lab_name(master)}.ipynb)"
 
 
-def _name_all(master: Path, cells: list[Cell], points: Points) -> Iterator[NamedCell]:
+def _name_all(master: Path, cells: list[MasterCell], points: Points) -> Iterator[NamedCell]:
     taken: Counter[str] = Counter()
     section = "start"
 
@@ -176,7 +176,7 @@ def _defined_names(source: str) -> list[str]:
     return [node.name for node in ast.parse(python_of(source)).body if isinstance(node, definitions)]
 
 
-def _region_where_it_belongs(master: Path, cell: Cell) -> None:
+def _region_where_it_belongs(master: Path, cell: MasterCell) -> None:
     try:
         if cell.kind is CellRole.MANUAL:
             find_model_answer(cell.source)
@@ -193,7 +193,7 @@ def _region_where_it_belongs(master: Path, cell: Cell) -> None:
         raise error.at(master, cell.body_line) from error
 
 
-def _is_python(master: Path, cell: Cell, unsolved: str) -> None:
+def _is_python(master: Path, cell: MasterCell, unsolved: str) -> None:
     """Check that a solution cell is valid Python with its solution and without."""
     try:
         _defined_names(cell.source)
@@ -212,7 +212,7 @@ def _is_python(master: Path, cell: Cell, unsolved: str) -> None:
         ) from error
 
 
-def _defined_name(master: Path, cell: Cell) -> str:
+def _defined_name(master: Path, cell: MasterCell) -> str:
     names = _defined_names(cell.source)
     if len(names) != 1:
         raise MasterError(

@@ -96,7 +96,7 @@ class CoursePage(_CourseHandler):
         self.finish(text)
 
 
-class ReadNotebook(_CourseHandler):
+class NotebookFile(_CourseHandler):
     """Marks a notebook as read, or removes the mark."""
 
     @web.authenticated
@@ -178,7 +178,7 @@ def _load_jupyter_server_extension(server: ServerApp) -> None:
         ".*$",
         [
             (f"{base}/?", CoursePage),
-            (f"{base}/read", ReadNotebook),
+            (f"{base}/read", NotebookFile),
             (f"{base}/reset", ResetNotebook),
             (f"{base}/certificate/([A-Za-z0-9_.-]+)\\.svg", Certificate),
         ],

@@ -21,14 +21,14 @@ from autograder.kit.runners import Launches, LaunchesFromPackage, RunsPrograms
 from autograder.process_trees import die_with_parent
 from autograder.workspaces.own_builds import StudentsBuilds
 from autograder.workspaces.packages import workspace_of
-from autograder.workspaces.plans import alone, plan_for, ros2
-from autograder.workspaces.preparing import Preparation
+from autograder.workspaces.preparation import Preparation
 from autograder.workspaces.processes import tell, watched
+from autograder.workspaces.program_plans import alone, plan_for, ros2
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from autograder.workspaces.preparing import Prepared
+    from autograder.workspaces.preparation import Prepared
 
 
 def main(arguments: Sequence[str]) -> int:

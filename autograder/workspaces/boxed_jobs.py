@@ -20,13 +20,13 @@ from autograder.boxes.sandbox import Bind, Enclosure
 from autograder.temporary_folders import fresh_folder
 from autograder.workspaces import cache
 from autograder.workspaces.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES, Built
-from autograder.workspaces.plans import ros2
+from autograder.workspaces.program_plans import ros2
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from autograder.boxes.boxed_processes import Running, WarmCommand
-    from autograder.workspaces.cache import Entry
+    from autograder.workspaces.cache import CachedBuild
     from autograder.workspaces.jobs import BuildOrder, ProgramJob
 
 BUILD_LIMITS = Limits(
@@ -80,7 +80,7 @@ class BoxedJobs:
         del sources
         return WORK
 
-    def build(self, order: BuildOrder, command: Sequence[str], entry: Entry) -> Built:
+    def build(self, order: BuildOrder, command: Sequence[str], entry: CachedBuild) -> Built:
         """Build in a box of its own, and pack the result when no process of the build is alive any more.
 
         A build that needs more memory than most is repeated while no other such build runs.

@@ -169,7 +169,7 @@ class Builds:
                 entry.finish()
             return made
 
-    def _make(self, found: Build, order: BuildOrder, entry: cache.Entry) -> Build:
+    def _make(self, found: Build, order: BuildOrder, entry: cache.CachedBuild) -> Build:
         place, install = self.jobs.place(order.name, entry.folder), entry.folder / "install"
         order.tree.write(entry.folder / "src")
         words = command(moved(order.packages, Path("src"), place / "src"), place, order.cmake)

@@ -21,8 +21,8 @@ from autograder.workspaces.builds import BuildTookTooLong
 from autograder.workspaces.colcon import look
 from autograder.workspaces.graded_builds import GradedBuilds
 from autograder.workspaces.interface_packages import holds_only_interfaces, simplified
-from autograder.workspaces.plans import reference_workspace
-from autograder.workspaces.preparing import COURSE
+from autograder.workspaces.preparation import COURSE
+from autograder.workspaces.program_plans import reference_workspace
 from autograder.workspaces.sources import Tree
 
 if TYPE_CHECKING:

@@ -44,7 +44,7 @@ class GivenUp(RuntimeError):
 
 
 @dataclass(frozen=True)
-class Entry:
+class CachedBuild:
     """A folder of the cache, locked while it is held.
 
     Attributes:
@@ -122,7 +122,7 @@ def _is_of(key: str, marker: Path) -> bool:
 
 
 @contextlib.contextmanager
-def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -> Iterator[Entry]:
+def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -> Iterator[CachedBuild]:
     """Hold the entry of a key, so that no other process builds it at the same time.
 
     An unfinished entry is empty when it is given to the caller, and is removed if the caller does not finish it.
@@ -145,7 +145,7 @@ def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -
             shutil.rmtree(folder, ignore_errors=True)
             folder.mkdir(mode=0o700)
         try:
-            yield Entry(folder, complete, lock.fileno())
+            yield CachedBuild(folder, complete, lock.fileno())
         finally:
             if not marker.is_file():
                 shutil.rmtree(folder, ignore_errors=True)

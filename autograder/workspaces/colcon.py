@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from autograder.workspaces.byte_budget import ByteBudget
     from autograder.workspaces.packages import Package
-    from autograder.workspaces.room import Room
 
 MAX_LOG = 40_000
 """The characters that are kept of a failed build's log, from its end."""
@@ -79,10 +79,10 @@ class Build:
         """The launch files that a package has installed, as paths below the prefix."""
         return tuple(f for prefix in self.prefixes if prefix.name == package for f in launch_files(prefix))
 
-    def entry_points(self, package: str, room: Room) -> tuple[str, ...]:
+    def entry_points(self, package: str, budget: ByteBudget) -> tuple[str, ...]:
         """Return the entry points of an installed Python package, as ``name = module:function``."""
         return tuple(
-            e for prefix in self.prefixes if prefix.name == package for e in entry_points(prefix, room)
+            e for prefix in self.prefixes if prefix.name == package for e in entry_points(prefix, budget)
         )
 
 

@@ -15,7 +15,7 @@ from autograder.workspaces import artefacts, cache
 from autograder.workspaces.builds import Builds, state
 from autograder.workspaces.colcon import failed
 from autograder.workspaces.interface_packages import holds_only_interfaces, simplified
-from autograder.workspaces.plans import course_interfaces
+from autograder.workspaces.program_plans import course_interfaces
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

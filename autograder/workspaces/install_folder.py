@@ -19,8 +19,8 @@ from autograder.temporary_folders import scratch_folder
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from autograder.workspaces.byte_budget import ByteBudget
     from autograder.workspaces.colcon import Build
-    from autograder.workspaces.room import Room
 
 LIBRARY = f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
 BESIDE = ("build", "log")
@@ -72,10 +72,10 @@ def programs(prefix: Path) -> list[str]:
     return sorted(file.name for file in (prefix / "lib" / prefix.name).glob("*") if file.is_file())
 
 
-def entry_points(prefix: Path, room: Room) -> Iterator[str]:
+def entry_points(prefix: Path, budget: ByteBudget) -> Iterator[str]:
     """Yield the entry points of the Python package in a prefix, as ``name = module:function``, within the limit."""
     files = (file for folder in python_folders(prefix) for file in folder.glob("*/entry_points.txt"))
-    for file in filter(room.has, files):
+    for file in filter(budget.has, files):
         for line in file.read_text(encoding="utf-8", errors="replace").splitlines():
             if re2.fullmatch(r"\S+ = [\w.]+:[\w.]+", line):
                 yield line

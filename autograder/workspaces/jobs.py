@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from autograder.workspaces.cache import Entry
+    from autograder.workspaces.cache import CachedBuild
     from autograder.workspaces.packages import Package
     from autograder.workspaces.sources import Tree
 
@@ -163,7 +163,7 @@ class Jobs(Protocol):
         """
         ...
 
-    def build(self, order: BuildOrder, command: Sequence[str], entry: Entry) -> Built:
+    def build(self, order: BuildOrder, command: Sequence[str], entry: CachedBuild) -> Built:
         """Run colcon.
 
         Args:

@@ -59,7 +59,7 @@ class OwnBuilds(Builds):
         except BuildTookTooLong as error:
             return error.build
 
-    def _make(self, found: Build, order: BuildOrder, entry: cache.Entry) -> Build:
+    def _make(self, found: Build, order: BuildOrder, entry: cache.CachedBuild) -> Build:
         socket = os.environ.get(GRADERS)
         asked = _ask(socket, found, order.packages, entry.folder / "install") if socket else None
         return asked or super()._make(found, order, entry)

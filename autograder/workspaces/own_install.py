@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
+from autograder.workspaces.byte_budget import ByteBudget
 from autograder.workspaces.install_folder import (
     entry_points,
     is_isolated,
@@ -25,7 +26,6 @@ from autograder.workspaces.install_folder import (
     python_folders,
 )
 from autograder.workspaces.packages import DEFINITIONS, launch_files
-from autograder.workspaces.room import Room
 from autograder.workspaces.sources import is_source
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def _succeeded(workspace: Path, package: Package) -> bool:
     if _text(build / _RESULT).strip() != "0" or not python_folders(prefix):
         return False
     if package.build_type == "ament_python":
-        named = {entry.split(" = ")[0] for entry in entry_points(prefix, Room(sys.maxsize))}
+        named = {entry.split(" = ")[0] for entry in entry_points(prefix, ByteBudget(sys.maxsize))}
         return named == set(programs(prefix))
     return bool(_OPTIMIZED.search(_text(build / "CMakeCache.txt")))
 

@@ -14,8 +14,8 @@ from xml.parsers.expat import ExpatError
 
 import re2
 
+from autograder.workspaces.byte_budget import ByteBudget
 from autograder.workspaces.entry_points import first_objection, is_entry_point
-from autograder.workspaces.room import Room
 from autograder.workspaces.sources import BadSources, Tree, is_source, read
 
 if TYPE_CHECKING:
@@ -118,13 +118,13 @@ class Package:
 
 def find_packages(src: Path) -> tuple[list[Package], list[str]]:
     """Return the packages below ``src`` that colcon would build, by name, and what is wrong with unusable ones."""
-    packages, unusable, room = [], [], Room(MAX_LOOK)
+    packages, unusable, budget = [], [], ByteBudget(MAX_LOOK)
     files = sorted(islice(_package_files(src), MAX_PACKAGES + 1))
     if len(files) > MAX_PACKAGES:
         return [], [f"there are more than {MAX_PACKAGES} packages below {src.name}"]
     for file in files:
         try:
-            packages.append(_package(file, room))
+            packages.append(_package(file, budget))
         except BadPackage as error:
             unusable.append(str(error))
     return sorted(packages, key=lambda package: package.name), unusable
@@ -198,7 +198,7 @@ def _package_files(src: Path) -> Iterator[Path]:
             yield Path(root, "package.xml")
 
 
-def _package(file: Path, room: Room) -> Package:
+def _package(file: Path, budget: ByteBudget) -> Package:
     shown = f"{file.parent.name}/package.xml"
     try:
         with file.open("rb") as opened:
@@ -216,7 +216,7 @@ def _package(file: Path, room: Room) -> Package:
     name = (root.findtext("name") or "").strip()
     if not name:
         raise BadPackage(f"{shown} has no <name>")
-    if room.has(file):
+    if budget.has(file):
         _validate(file, shown)
     depends = [
         child.text.strip() for child in root if child.text and re2.search("depend|member_of", child.tag)

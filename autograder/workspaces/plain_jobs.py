@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from autograder.workspaces.cache import Entry
+    from autograder.workspaces.cache import CachedBuild
     from autograder.workspaces.jobs import BuildOrder, ProgramJob
 
 OWN_BUILD_SECONDS = 300.0
@@ -48,7 +48,7 @@ class PlainJobs:
         """The sources themselves."""
         return sources
 
-    def build(self, order: BuildOrder, command: Sequence[str], entry: Entry) -> Built:
+    def build(self, order: BuildOrder, command: Sequence[str], entry: CachedBuild) -> Built:
         """Build in the entry; a submitted build is packed, and then removed from the entry."""
         seconds, size = (
             (BUILD_SECONDS, MAX_LOG_BYTES) if self._handed_in else (OWN_BUILD_SECONDS, sys.maxsize)

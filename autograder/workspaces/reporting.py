@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.workspace_report import Interface, PackageReport, WorkspaceReport, as_line
+from autograder.workspaces.byte_budget import ByteBudget
 from autograder.workspaces.packages import MAX_LOOK, launch_files
-from autograder.workspaces.room import Room
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.workspaces.colcon import Build
     from autograder.workspaces.packages import Package
-    from autograder.workspaces.plans import Plan
+    from autograder.workspaces.program_plans import Plan
 
 MAX_LOG = 3_000
 """The characters of a build's log that are reported, from its end."""
@@ -32,10 +32,10 @@ def report_line(phase: str, made: Build, plan: Plan | None = None, missing: str 
     """
     needed = set(plan.targets(made)) if plan else set[str]()
     definition = plan.definition if plan else ""
-    room = Room(MAX_LOOK)
-    packages = [_described(p, definition, made, room) for p in made.packages if p.name in needed]
-    complete = room.sufficed
-    others = [_described(p, definition, made, room) for p in made.packages if p.name not in needed]
+    budget = ByteBudget(MAX_LOOK)
+    packages = [_described(p, definition, made, budget) for p in made.packages if p.name in needed]
+    complete = budget.sufficed
+    others = [_described(p, definition, made, budget) for p in made.packages if p.name not in needed]
     return as_line(
         WorkspaceReport(
             phase=phase,
@@ -62,17 +62,17 @@ def no_sources_line(trouble: str) -> str:
     return as_line(WorkspaceReport("built", built=False, trouble="no_workspace", line=trouble))
 
 
-def _described(package: Package, definition: str, made: Build, room: Room) -> PackageReport:
+def _described(package: Package, definition: str, made: Build, budget: ByteBudget) -> PackageReport:
     files = sorted(package.interface_files, key=lambda file: file.name != definition)
-    programs = made.entry_points(package.name, room)
-    if not programs and room.has(package.folder / "setup.py"):
+    programs = made.entry_points(package.name, budget)
+    if not programs and budget.has(package.folder / "setup.py"):
         programs = package.programs
     launches = made.launch_files(package.name) if made.install else launch_files(package.folder)
     return PackageReport(
         package.name,
         package.build_type,
         programs,
-        [_interface(package, file, definition, room) for file in files],
+        [_interface(package, file, definition, budget) for file in files],
         package.dependencies,
         tuple(file.as_posix() for file in package.modules),
         package.commented,
@@ -81,9 +81,9 @@ def _described(package: Package, definition: str, made: Build, room: Room) -> Pa
     )
 
 
-def _interface(package: Package, file: Path, definition: str, room: Room) -> Interface:
+def _interface(package: Package, file: Path, definition: str, budget: ByteBudget) -> Interface:
     listed = package.cmake_lists is None or file.name in package.cmake_lists
-    if file.name != definition or not room.has(package.folder / file):
+    if file.name != definition or not budget.has(package.folder / file):
         return Interface(file.as_posix(), None, listed)
     text = (package.folder / file).read_text(encoding="utf-8", errors="replace")
     return Interface(file.as_posix(), _without_comments(text), listed)

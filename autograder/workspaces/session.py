@@ -13,9 +13,9 @@ from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, NotUnderstood
 from autograder.workspaces.jobs import ProgramJob, output_lines
 from autograder.workspaces.packages import workspace_of
-from autograder.workspaces.plans import alone, course_interfaces, plan_for, ros2
-from autograder.workspaces.preparing import Preparation
+from autograder.workspaces.preparation import Preparation
 from autograder.workspaces.processes import watched
+from autograder.workspaces.program_plans import alone, course_interfaces, plan_for, ros2
 from autograder.workspaces.reporting import no_sources_line
 from autograder.workspaces.sources import BadSources, receive
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from autograder.messages.lines import Lines
     from autograder.workspaces.graded_builds import GradedBuilds
     from autograder.workspaces.jobs import Program
-    from autograder.workspaces.preparing import Prepared
+    from autograder.workspaces.preparation import Prepared
 
 MAX_OUTPUT = 2_000_000
 """The characters of a run's output that are passed on."""

@@ -9,7 +9,7 @@ import pytest
 
 from autograder import exercises
 from autograder.appeals import appeal_file
-from autograder.appeals.appeal_file import Appeal, Cell
+from autograder.appeals.appeal_file import Appeal, AppealedCell
 from autograder.judge.verdicts import keeping, reference, trial
 from autograder.kit.evidence import Event, Evidence, Part
 
@@ -29,7 +29,7 @@ def appeal() -> Appeal:
     seen = Evidence([Part(talking.name, talking.inputs, [graph, *messages])], stored)
     verdict = replace(trial.decide(exercises.get(ID), seen, "a seed"), seconds=2.0)
     kept = keeping.unpack(keeping.pack(verdict, seen, reference.digest(ID), at=1.8e9))
-    cells = [Cell("TalkerNode", ["class TalkerNode(Node):", "    pass"])]
+    cells = [AppealedCell("TalkerNode", ["class TalkerNode(Node):", "    pass"])]
     return Appeal("ada", "lab_1_2", "lab_1_2", "Talk.", "0123456789abcdef", cells, {"x": 1}, kept)
 
 

@@ -9,7 +9,7 @@ import msgspec
 import pytest
 
 from autograder.appeals import appeal_file
-from autograder.appeals.appeal_file import Appeal, Cell
+from autograder.appeals.appeal_file import Appeal, AppealedCell
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -39,7 +39,7 @@ def test_a_person_finds_each_thing_on_a_line(file: Path) -> None:
 
 def test_nothing_in_it_turns_a_line_around_or_moves_the_cursor(appeal: Appeal, tmp_path: Path) -> None:
     evil = "# \u202e tset \x9b31m \u2028 \udc80 \U000e0001 \N{LATIN SMALL LETTER E WITH ACUTE}"
-    odd = msgspec.structs.replace(appeal, solution=[Cell("cell", [evil])])
+    odd = msgspec.structs.replace(appeal, solution=[AppealedCell("cell", [evil])])
     file = tmp_path / "odd.json"
     file.write_bytes(appeal_file.dump(odd))
     text = file.read_text(encoding="utf-8")

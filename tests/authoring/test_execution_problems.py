@@ -8,12 +8,12 @@ import pytest
 
 from autograder.authoring.execution_plan import NotebookKind, Planned
 from autograder.authoring.execution_problems import problems_of
-from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution
-from autograder.grading.rebuilding import nodes
+from autograder.boxes.execution import Cell, CellCheck, CellRun, Ended, Execution
+from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.task import Task
 from autograder.verdict import Diagnosis, State, Verdict
 
-CHECK = Check("lab_1_2.talker", "The talker", 10.0, 10.0, 60.0)
+CHECK = CellCheck("lab_1_2.talker", "The talker", 10.0, 10.0, 60.0)
 CELL = Cell("check(…)", check=CHECK)
 FULL = Verdict("lab_1_2.talker", "The talker", State.PASSED, 10.0, 10.0)
 HALF = Verdict(
@@ -35,7 +35,7 @@ def found(
     if value:
         outputs = ({"output_type": "execute_result", "data": {"text/plain": value}},)
     run = CellRun(ended, outputs)
-    planned = Planned(kind, nodes.notebook([], {}), Task("s", "a", "n", (CELL,), "", ""))
+    planned = Planned(kind, nbformat_nodes.notebook([], {}), Task("s", "a", "n", (CELL,), "", ""))
     verdicts = {} if verdict is None else {0: verdict}
     return [problem.text for problem in problems_of(planned, Execution((run,), verdicts))]
 
@@ -72,6 +72,8 @@ def test_a_cell_that_does_not_end_well_is_found(ended: Ended) -> None:
 
 
 def test_trouble_of_the_grader_is_not_called_a_fault_of_the_notebook() -> None:
-    planned = Planned(NotebookKind.MASTER, nodes.notebook([], {}), Task("s", "a", "n", (CELL,), "", ""))
+    planned = Planned(
+        NotebookKind.MASTER, nbformat_nodes.notebook([], {}), Task("s", "a", "n", (CELL,), "", "")
+    )
     (problem,) = problems_of(planned, Execution((), trouble="no port"))
     assert (problem.cell, problem.text) == (None, "the grader had trouble: no port")

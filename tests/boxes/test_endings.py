@@ -14,7 +14,7 @@ import psutil
 import pytest
 
 from autograder.boxes.boxed_processes import ForkedProcess
-from autograder.boxes.entering import Entrance
+from autograder.boxes.enter_box import Entrance
 from autograder.boxes.environment import box_environment
 from autograder.boxes.fork_server import BESIDE, INSIDE, SUPERVISOR_MODULE, ForkServer
 from autograder.boxes.mounts import WORK

@@ -14,10 +14,10 @@ import psutil
 import pytest
 
 from autograder.boxes import cgroups, guards
-from autograder.boxes.execution import Cell, Check, Ended, Execution
+from autograder.boxes.execution import Cell, CellCheck, Ended, Execution
 from autograder.boxes.fork_server import ForkServers
 from autograder.boxes.limits import Limits
-from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
+from autograder.boxes.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.boxes.runner import run_notebook
 from autograder.boxes.sandbox import why_impossible
 from autograder.judge.serving import attached
@@ -28,7 +28,9 @@ if TYPE_CHECKING:
 
     from autograder.boxes.fork_server import Addresses
 
-CHECK = Cell("print('alive')", check=Check("lab.one", "One", points=10, worth=10, limit=2), name="lab-one")
+CHECK = Cell(
+    "print('alive')", check=CellCheck("lab.one", "One", points=10, worth=10, limit=2), name="lab-one"
+)
 
 Run = Callable[..., Execution]
 

@@ -18,7 +18,7 @@ from autograder.boxes.environment import box_environment
 from autograder.boxes.mounts import HOME, Bind
 from autograder.boxes.sandbox import Enclosure
 from autograder.judge.settings import boxed_ros_environment
-from autograder.workspaces.plans import ros2
+from autograder.workspaces.program_plans import ros2
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

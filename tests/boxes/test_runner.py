@@ -15,16 +15,16 @@ import pytest
 
 from autograder.boxes import kernel
 from autograder.boxes.box import NoSandbox
-from autograder.boxes.execution import Cell, CellType, Check, Ended, Execution
+from autograder.boxes.execution import Cell, CellCheck, CellType, Ended, Execution
 from autograder.boxes.fork_server import Addresses
 from autograder.boxes.limits import Left, Limits, Patient, wall_time
-from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
+from autograder.boxes.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.boxes.runner import Unfinished, run_notebook
 from autograder.boxes.zmtp import ZmtpConnection
 from autograder.temporary_folders import scratch_folder
 from autograder.verdict import State, Verdict
 
-CHECK = Check("lab.one", "One", points=10, worth=10, limit=2)
+CHECK = CellCheck("lab.one", "One", points=10, worth=10, limit=2)
 
 
 class SayingJudge:

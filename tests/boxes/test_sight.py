@@ -19,7 +19,7 @@ from autograder.boxes import mounts
 from autograder.boxes.execution import Cell
 from autograder.boxes.limits import Limits
 from autograder.boxes.mounts import installation
-from autograder.boxes.place import BoxedPlace, JudgeSetting
+from autograder.boxes.notebook_boxes import BoxedPlace, JudgeSetting
 from autograder.boxes.runner import run_notebook
 from autograder.boxes.sandbox import Bind, Enclosure
 from autograder.temporary_folders import scratch_folder

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.boxes.execution import CellRun, Check, Ended
+from autograder.boxes.execution import CellCheck, CellRun, Ended
 from autograder.boxes.verdicts_without_judge import without_verdict
 from autograder.verdict import ASKS_FOR_INPUT
 
-CHECK = Check("lab.one", "One", points=10, worth=10, limit=2)
+CHECK = CellCheck("lab.one", "One", points=10, worth=10, limit=2)
 NO_INPUT = CellRun(
     Ended.RAISED,
     error="StdinNotImplementedError: raw_input was called, but this frontend does not support input requests.",

@@ -23,7 +23,7 @@ from autograder import course
 from autograder.cli import cli
 from autograder.grading.classes.new_class import new_class
 from autograder.grading.classes.sample_class import made_notebook, sample_notebooks
-from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding import nbformat_nodes
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -43,7 +43,9 @@ def test_formgraders_button_has_the_judge_decide(page: Page, tmp_path: Path) -> 
     for student, sample in samples.items():
         folder = made.path / "submitted" / student / LAB
         folder.mkdir(parents=True)
-        (folder / f"{LAB}.ipynb").write_text(nodes.text(made_notebook(made.path, sample)), encoding="utf-8")
+        (folder / f"{LAB}.ipynb").write_text(
+            nbformat_nodes.text(made_notebook(made.path, sample)), encoding="utf-8"
+        )
     hand_in(made, "all-right", "def add(a, b):\n    return abs(a) - abs(b)", OWN)
     exercise = f"{LAB}.three_ints"
     points = {student: sample.expected[exercise][0] for student, sample in samples.items()}

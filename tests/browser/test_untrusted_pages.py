@@ -27,7 +27,7 @@ from autograder.boxes.execution import CellRun, CellType, Ended
 from autograder.boxes.limits import Limits
 from autograder.boxes.outputs import Budget, OutputCollector
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.returning.sanitize import clean, harmless_markdown
 from autograder.grading.running import engine
 
@@ -201,7 +201,7 @@ def hostile_class(tmp_path_factory: pytest.TempPathFactory) -> TinyClass:
     notebook = nbformat.read(path, as_version=4)
     for text in TEXTS:
         for kind in CellType:
-            cell = nodes.cell(kind, text)
+            cell = nbformat_nodes.cell(kind, text)
             cell.metadata = {"tags": [text], "raw_mimetype": "text/html", "magics_language": text}
             notebook.cells.append(cell)
     notebook.metadata = {"title": "<script>fired()</script>", "widgets": {"x": "<script>fired()</script>"}}

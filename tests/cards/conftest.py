@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.verdict import Criterion, Diagnosis, Moment, State, Verdict, from_json
+from autograder.verdict import CriterionResult, Diagnosis, Moment, State, Verdict, from_json
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -46,7 +46,7 @@ def _hostile() -> Verdict:
         score=1 / 3,
         max_score=1.0,
         criteria=(
-            Criterion(
+            CriterionResult(
                 name="topic",
                 title="</td></table><img src=x onerror=alert(1)>",
                 points=1.0,
@@ -54,7 +54,7 @@ def _hostile() -> Verdict:
                 expected="\x1b[31mred\x1b[0m\x00NUL",
                 seen="\u202edesrever \u2066 " + "x" * 5000,
             ),
-            Criterion("rtl", "שלום עולם 1 2 3", 0.0, True, "مرحبا", "l1\nl2\r\tl3"),
+            CriterionResult("rtl", "שלום עולם 1 2 3", 0.0, True, "مرحبا", "l1\nl2\r\tl3"),
         ),
         diagnosis=Diagnosis(
             key="crashed",

@@ -14,7 +14,7 @@ import pytest
 
 from autograder.cards.bundle import card_html
 from autograder.cards.text import card_text
-from autograder.verdict import Criterion, Diagnosis, Moment, State, Verdict, not_checked
+from autograder.verdict import CriterionResult, Diagnosis, Moment, State, Verdict, not_checked
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -202,7 +202,7 @@ def test_a_pass_is_met_with_a_warm_word_and_no_homework(load: Callable[[str], Ve
 
 
 def test_a_failure_without_a_known_mistake_still_has_a_next_step() -> None:
-    rate = Criterion("rate", "Publishes every 0.5 s", 5.0, False, "0.5 s", "1.0 s")
+    rate = CriterionResult("rate", "Publishes every 0.5 s", 5.0, False, "0.5 s", "1.0 s")
     for diagnosis in (None, Diagnosis("crashed", "It stopped.", " ")):
         verdict = Verdict("e", "E", State.FAILED, 0.0, 5.0, criteria=(rate,), diagnosis=diagnosis)
         shown = words(Tree(card_html(verdict)).root)
@@ -352,7 +352,9 @@ def test_a_screen_reader_is_told_the_result(verdict: Verdict) -> None:
 
 
 def test_texts_that_differ_are_shown_as_a_difference(load: Callable[[str], Verdict]) -> None:
-    text = Criterion("text", "Says the right string", 2.0, False, "“Hello, world! 0”, …", "“Hello world 0”")
+    text = CriterionResult(
+        "text", "Says the right string", 2.0, False, "“Hello, world! 0”, …", "“Hello world 0”"
+    )
     tree = Tree(card_html(replace(load("talker_wrong_topic"), criteria=(text,)))).root
     (shown,) = tree.all(css_class="agc-difference")
     assert "".join(words(shown).split()) == "thedifference:Hello[,]world[!]0"
@@ -360,7 +362,7 @@ def test_texts_that_differ_are_shown_as_a_difference(load: Callable[[str], Verdi
 
 
 def test_long_names_break_at_their_slashes(load: Callable[[str], Verdict]) -> None:
-    name = Criterion("type", "Type", 1.0, False, "a/b", "my_robot_interfaces/srv/AddTwoInts")
+    name = CriterionResult("type", "Type", 1.0, False, "a/b", "my_robot_interfaces/srv/AddTwoInts")
     source = card_html(replace(load("talker_wrong_topic"), criteria=(name,)))
     assert "my_robot_interfaces/<wbr/>srv/<wbr/>AddTwoInts" in source
 

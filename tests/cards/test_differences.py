@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 from autograder.cards.differences import difference, marked
-from autograder.verdict import Criterion
+from autograder.verdict import CriterionResult
 
 
 def between(expected: str, seen: str, *, passed: bool = False) -> str:
-    return marked(difference(Criterion("text", "Text", 1.0, passed, expected, seen)))
+    return marked(difference(CriterionResult("text", "Text", 1.0, passed, expected, seen)))
 
 
 @pytest.mark.parametrize(

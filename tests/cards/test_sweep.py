@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.verdict import Criterion, Diagnosis, State, Verdict
+from autograder.verdict import CriterionResult, Diagnosis, State, Verdict
 from tests.cards.sweep import objection
 
 RAISED = 'Traceback (most recent call last):\n  File "a.py", line 3, in f\n    g()\nKeyError: 1'
 
 
 def card(text: str, *, seen: str = "2 messages", held: str = "Builds", detail: str = "") -> Verdict:
-    criteria = (Criterion("a", held, 1, True, "", ""), Criterion("b", "Says it", 1, False, "x", seen))
+    criteria = (
+        CriterionResult("a", held, 1, True, "", ""),
+        CriterionResult("b", "Says it", 1, False, "x", seen),
+    )
     return Verdict(
         "x.y", "X", State.FAILED, 1, 2, criteria, Diagnosis("key", text, "Do this."), detail=detail
     )

@@ -13,7 +13,7 @@ import pytest
 from autograder.cards.card import IN_A_TERMINAL
 from autograder.cards.readable import width as columns
 from autograder.cards.text import card_text
-from autograder.verdict import Criterion, State, Verdict, not_checked
+from autograder.verdict import CriterionResult, State, Verdict, not_checked
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -52,7 +52,7 @@ def test_every_criterion_appears_in_words(verdict: Verdict) -> None:
 
 
 def test_its_own_marks_are_ascii() -> None:
-    failed = Criterion("rate", "Rate", 1.0, False, "x" * 500, "y" * 500)
+    failed = CriterionResult("rate", "Rate", 1.0, False, "x" * 500, "y" * 500)
     verdict = Verdict("e", "E" * 500, State.FAILED, 0.0, 1.0, (failed,), detail="line\n" * 500, seed="s")
     assert card_text(verdict).isascii()
 

@@ -20,7 +20,7 @@ from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.goal_mistakes import ENDED_TOO_EARLY, RESULT_NOT_REQUESTED
 from autograder.kit.goal_reports import LATE, left_at_once
 from autograder.kit.service_calls import BIASED, EXTREME
-from autograder.kit.service_mistakes import ANSWER_NOT_AWAITED
+from autograder.kit.service_client_mistakes import ANSWER_NOT_AWAITED
 from autograder.kit.texts_said import has_much_of
 
 TOPIC, TYPE = "/chatter", "std_msgs/msg/String"

@@ -28,7 +28,7 @@ from autograder.kit.service_calls import (
     gives_up_in_time,
     reports,
 )
-from autograder.kit.service_mistakes import NOT_RETURNED, SILENT_END
+from autograder.kit.service_client_mistakes import NOT_RETURNED, SILENT_END
 from autograder.kit.texts_said import mentions
 
 SEEDS = range(60)

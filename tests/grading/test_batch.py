@@ -16,8 +16,6 @@ from nbgrader.api import Gradebook
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
-from autograder.grading.entering import gradebook
-from autograder.grading.entering.gradebook import NotebookEntry
 from autograder.grading.errors import (
     ClassBusy,
     ClassIncomplete,
@@ -26,6 +24,8 @@ from autograder.grading.errors import (
     MasterUnusable,
     NotAClass,
 )
+from autograder.grading.gradebooks import gradebook
+from autograder.grading.gradebooks.gradebook import NotebookEntry
 from autograder.temporary_folders import fresh_folder
 
 if TYPE_CHECKING:

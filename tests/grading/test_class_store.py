@@ -18,7 +18,7 @@ import pytest
 from click.testing import CliRunner
 from conftest import TALKER, FakeEngine, TinyClass
 
-from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution
+from autograder.boxes.execution import Cell, CellCheck, CellRun, Ended, Execution
 from autograder.boxes.limits import Limits
 from autograder.cli import cli
 from autograder.grading import class_store
@@ -33,7 +33,7 @@ from autograder.verdict import State, Verdict
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-CHECK = Check("lab.one", "One", points=10, worth=4, limit=2)
+CHECK = CellCheck("lab.one", "One", points=10, worth=4, limit=2)
 CELLS = (Cell("1", own=True), Cell("check()", check=CHECK, name="lab-one"))
 TASK = Task("ada", "lab", "lab", CELLS, "seed", "v1")
 DONE = Execution(

@@ -19,9 +19,9 @@ from nbgrader.coursedir import CourseDirectory
 from autograder.cli import cli
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.entering import gradebook
-from autograder.grading.entering.gradebook_reading import read_entries
 from autograder.grading.errors import ClassIncomplete
+from autograder.grading.gradebooks import gradebook
+from autograder.grading.gradebooks.gradebook_reading import read_entries
 
 if TYPE_CHECKING:
     from pathlib import Path

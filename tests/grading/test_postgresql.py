@@ -20,8 +20,8 @@ from nbgrader.api import Gradebook
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
-from autograder.grading.entering import gradebook_reading
 from autograder.grading.errors import ClassIncomplete, GradingError
+from autograder.grading.gradebooks import gradebook_reading
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

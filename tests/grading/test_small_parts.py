@@ -13,7 +13,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution
+from autograder.boxes.execution import Cell, CellCheck, CellRun, Ended, Execution
 from autograder.cards.readable import printable
 from autograder.grading.classes.class_directory import reason_against_name
 from autograder.grading.classes.new_class import NewClass
@@ -24,7 +24,7 @@ from autograder.grading.task import Task, points
 from autograder.regular_files import write_whole
 from autograder.verdict import State, Verdict
 
-CHECK = Check("lab.one", "One", points=10, worth=4, limit=2)
+CHECK = CellCheck("lab.one", "One", points=10, worth=4, limit=2)
 TASK = Task("ada", "lab", "lab", (Cell("1"), Cell("check()", check=CHECK, name="lab-one")), "seed", "v1")
 
 

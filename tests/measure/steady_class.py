@@ -20,7 +20,7 @@ from autograder import course
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.classes.new_class import new_class
 from autograder.grading.classes.sample_class import BANK, SampleNotebook, made_notebook
-from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding import nbformat_nodes
 from tests.measure.ends import Ends, Repeated, in_one_line
 from tests.measure.soak import busy_loops
 
@@ -76,7 +76,7 @@ def make(path: Path) -> None:
             notebook = made_notebook(path, SampleNotebook(student, assignment, "", {}, bank=mine))
             folder = path / "submitted" / student / assignment
             folder.mkdir(parents=True)
-            (folder / f"{assignment}{SUFFIX}").write_text(nodes.text(notebook), encoding="utf-8")
+            (folder / f"{assignment}{SUFFIX}").write_text(nbformat_nodes.text(notebook), encoding="utf-8")
 
 
 def grade(path: Path, *options: str) -> dict[str, str]:

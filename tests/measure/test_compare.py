@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.verdict import Criterion, Diagnosis, State, Verdict
+from autograder.verdict import CriterionResult, Diagnosis, State, Verdict
 from tests.measure import __main__ as measure
 from tests.measure import compare
 
@@ -42,7 +42,7 @@ def test_an_answer_that_is_gone_is_a_difference_and_a_new_one_is_none(
 
 
 def test_points_criteria_and_diagnosis_are_compared_and_texts_where_asked_for() -> None:
-    rate = Criterion("rate", "", 3, False, "", "")
+    rate = CriterionResult("rate", "", 3, False, "", "")
     found = Verdict(
         "x.y", "", State.FAILED, 7, 10, (rate,), Diagnosis("wrong_rate", "Every 3 s: no", "Mend 2")
     )

@@ -20,7 +20,7 @@ from autograder.workspaces.boxed_jobs import BoxedJobs, BoxedProgram
 from autograder.workspaces.colcon import look
 from autograder.workspaces.graded_builds import GradedBuilds
 from autograder.workspaces.jobs import Built, ProgramJob
-from autograder.workspaces.plans import course_interfaces
+from autograder.workspaces.program_plans import course_interfaces
 
 sys.path.insert(0, str(Path(__file__).parent))
 

@@ -14,7 +14,7 @@ from autograder.kit.launch_report import MARK
 from autograder.process_trees import descendants, kill, known
 from autograder.workspaces import processes
 from autograder.workspaces.__main__ import _run
-from autograder.workspaces.preparing import Prepared
+from autograder.workspaces.preparation import Prepared
 from autograder.workspaces.processes import watched
 
 RENAMES_ITSELF = """

@@ -23,7 +23,7 @@ from autograder.kit.workspace_report import (
 from autograder.workspaces.colcon import Build
 from autograder.workspaces.install_folder import LIBRARY
 from autograder.workspaces.packages import Package
-from autograder.workspaces.plans import Plan
+from autograder.workspaces.program_plans import Plan
 from autograder.workspaces.reporting import report_line
 
 if TYPE_CHECKING:

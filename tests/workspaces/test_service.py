@@ -20,7 +20,7 @@ from autograder.kit.evidence import REPORTS
 from autograder.kit.runners import ALONE
 from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, Lines
-from autograder.workspaces import colcon_stand_in, own_builds, packages, service, session, sources
+from autograder.workspaces import colcon_in_class, own_builds, packages, service, session, sources
 from autograder.workspaces.install_folder import LIBRARY
 from autograder.workspaces.jobs import BuildOrder, Built, ProgramJob
 from autograder.workspaces.plain_jobs import PlainProgram
@@ -32,7 +32,7 @@ from made_workspaces import interface_package, python_package
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from autograder.workspaces.cache import Entry
+    from autograder.workspaces.cache import CachedBuild
 
 
 FORGED = f'{REPORTS[0]}{{"phase": "built", "built": true}}'
@@ -59,7 +59,7 @@ class FakeJobs:
     def tree(self, sources: Path) -> Path:
         return Path("/home/student/notebook")
 
-    def build(self, order: BuildOrder, command: Sequence[str], entry: Entry) -> Built:
+    def build(self, order: BuildOrder, command: Sequence[str], entry: CachedBuild) -> Built:
         self.builds.append(sorted(path.name for path in (entry.folder / "src").iterdir()))
         self.sources.append("".join(path.read_text() for path in entry.folder.rglob("*") if path.is_file()))
         self.boxes.append(
@@ -491,7 +491,7 @@ def test_a_notebook_s_build_comes_from_the_grader(
 ) -> None:
     monkeypatch.setenv(own_builds.GRADERS, str(sockets.notebook))
     monkeypatch.chdir(lab)
-    assert colcon_stand_in.main(["build", "--packages-select", "my_robot_pkg"]) == 0
+    assert colcon_in_class.main(["build", "--packages-select", "my_robot_pkg"]) == 0
     assert "Finished <<< my_robot_pkg" in capsys.readouterr().out
     assert (lab / "install" / "my_robot_pkg" / "lib" / "my_robot_pkg" / "simple_node").is_file()
     judge = FakeJudge(sockets)
@@ -510,7 +510,7 @@ def test_a_notebook_s_failed_build_shows_what_colcon_said(
     jobs.built = Built(1, b"SyntaxError: invalid syntax\nFailed   <<< my_robot_pkg\n")
     monkeypatch.setenv(own_builds.GRADERS, str(sockets.notebook))
     monkeypatch.chdir(lab)
-    assert colcon_stand_in.main(["build"]) == 1
+    assert colcon_in_class.main(["build"]) == 1
     assert "SyntaxError" in capsys.readouterr().out
     assert not (lab / "install").exists()
 
@@ -522,7 +522,7 @@ def test_sources_that_no_build_takes_are_refused_with_the_reason(
     monkeypatch.setattr(packages, "MAX_BYTES", 100)
     monkeypatch.setenv(own_builds.GRADERS, str(sockets.notebook))
     monkeypatch.chdir(lab)
-    assert colcon_stand_in.main(["build"]) == 1
+    assert colcon_in_class.main(["build"]) == 1
     assert "a workspace for a check holds text" in capsys.readouterr().out
 
 

@@ -29,9 +29,9 @@ from autograder.grading.classes.class_directory import (
 )
 from autograder.grading.classes.origins import note_origins
 from autograder.grading.classes.seeds import create_secret
-from autograder.grading.entering.writer import quiet
 from autograder.grading.errors import ClassExists, GradingError, clear_disk_errors, course_command
-from autograder.grading.rebuilding import nodes
+from autograder.grading.gradebooks.writer import quiet
+from autograder.grading.rebuilding import nbformat_nodes
 from autograder.masters.layout import lab_name, masters, relinked
 from autograder.masters.master_errors import MasterError
 from autograder.masters.source import source_notebook
@@ -253,7 +253,9 @@ def write_source(
     for cell in linked.cells:
         if cell.cell_type == "markdown":
             cell.source = relinked(cell.source, in_a_class)
-    (directory.path / "source" / name / f"{name}{SUFFIX}").write_text(nodes.text(linked), encoding="utf-8")
+    (directory.path / "source" / name / f"{name}{SUFFIX}").write_text(
+        nbformat_nodes.text(linked), encoding="utf-8"
+    )
 
 
 def release(directory: ClassDirectory, assignments: Sequence[str] = ()) -> None:

@@ -19,7 +19,7 @@ from autograder.grading.batch import grade
 from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, SUFFIX
 from autograder.grading.classes.new_class import CONFIG, new_class
 from autograder.grading.errors import ClassExists
-from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.rebuild import grade_id
 from autograder.grading.reporting.report_table import show
 from autograder.grading.running import sandboxing
@@ -76,7 +76,7 @@ def submit_sample(path: Path) -> None:
     for notebook in sample_notebooks():
         folder = path / "submitted" / notebook.student / notebook.assignment
         folder.mkdir(parents=True, exist_ok=True)
-        text = notebook.file or nodes.text(made_notebook(path, notebook))
+        text = notebook.file or nbformat_nodes.text(made_notebook(path, notebook))
         (folder / f"{notebook.assignment}{SUFFIX}").write_text(text, encoding="utf-8")
 
 
@@ -145,10 +145,10 @@ def made_notebook(path: Path, wanted: SampleNotebook) -> NotebookNode:
         wanted: The notebook to make.
     """
     name = f"{wanted.assignment}{SUFFIX}"
-    made = nodes.read((path / "release" / wanted.assignment / name).read_text(encoding="utf-8"))
+    made = nbformat_nodes.read((path / "release" / wanted.assignment / name).read_text(encoding="utf-8"))
     right: dict[str, str] = {}
     if not wanted.unsolved:
-        source = nodes.read((path / "source" / wanted.assignment / name).read_text(encoding="utf-8"))
+        source = nbformat_nodes.read((path / "source" / wanted.assignment / name).read_text(encoding="utf-8"))
         right = {grade_id(cell): _without_markers(cell.source) for cell in source.cells}
     answers = {name: answer for file in wanted.bank for name, answer in _bank_answers(file).items()}
     answers |= {name: _Answer(text.strip(), ()) for name, text in wanted.answers.items()}
@@ -165,17 +165,17 @@ def _changed(
         return [cell]
     answer = answers.get(name)
     cell.source = answer.source if answer else right.get(name, cell.source)
-    before = [nodes.cell(CellType.CODE, source) for source in (answer.extra if answer else ())]
+    before = [nbformat_nodes.cell(CellType.CODE, source) for source in (answer.extra if answer else ())]
     if name in wanted.insert:
-        before.append(nodes.cell(CellType.CODE, wanted.insert[name]))
+        before.append(nbformat_nodes.cell(CellType.CODE, wanted.insert[name]))
     if name in wanted.delete:
         return before
     if name in wanted.retype:
-        retyped = nodes.cell(wanted.retype[name], cell.source)
+        retyped = nbformat_nodes.cell(wanted.retype[name], cell.source)
         retyped.metadata = cell.metadata
         return [*before, retyped]
     if name in wanted.duplicate:
-        twin = nodes.copied(cell)
+        twin = nbformat_nodes.copied(cell)
         twin.id = f"{cell.id}-again"[:64]
         return [*before, cell, twin]
     return [*before, cell]

@@ -16,7 +16,7 @@ from autograder.grading.collecting.handed_out import HandedOut
 from autograder.grading.collecting.inbox import Arrival, Delivery, Inbox
 from autograder.grading.collecting.lists import Entry, read_list
 from autograder.grading.collecting.named_sources import Source, note_on, own_of, source_of
-from autograder.grading.collecting.naming import check_names
+from autograder.grading.collecting.names_option import check_names
 from autograder.grading.collecting.outcomes import CollectReport, Outcome, State
 from autograder.grading.collecting.proposals import Edit, Proposals, entries_of, in_utc, list_trouble
 from autograder.grading.collecting.student_of import StudentOf

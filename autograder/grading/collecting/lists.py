@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import re2
 import yaml
 
-from autograder.grading.collecting.forms import read_time
+from autograder.grading.collecting.lms_file_names import read_time
 from autograder.grading.reporting.spreadsheet import csv_rows
 from autograder.grading.table.roster import Identity
 

@@ -16,8 +16,8 @@ import msgspec
 import re2
 from babel.core import Locale, UnknownLocaleError, get_global
 
-from autograder.grading.collecting.forms import read_time
 from autograder.grading.collecting.inbox import FOLDER
+from autograder.grading.collecting.lms_file_names import read_time
 from autograder.grading.collecting.outcomes import State
 from autograder.grading.collecting.proposals import Edit, in_utc
 from autograder.grading.reporting.spreadsheet import defused, original

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 
 from autograder.boxes.boxed_processes import ForkedProcess
 from autograder.boxes.channel import ChannelClosed
-from autograder.boxes.entering import Entrance
+from autograder.boxes.enter_box import Entrance
 from autograder.boxes.environment import base_environment
 from autograder.boxes.fork_server import BESIDE, FOLDER_PREFIX, INSIDE, SUPERVISOR_MODULE, ForkServer
 from autograder.boxes.sandbox import Enclosure, NoSandbox

@@ -13,9 +13,9 @@ from nbgrader.preprocessors import SaveCells
 from traitlets.config import Config
 
 from autograder import exercises
-from autograder.boxes.execution import Check
+from autograder.boxes.execution import CellCheck
 from autograder.grading.errors import MasterUnusable
-from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.rebuild import grade_id, is_answer, is_check
 from autograder.masters.code_cells import find_model_answer
 from autograder.masters.master_errors import CellError
@@ -51,7 +51,7 @@ def read_master(source: Path, config: Config) -> NotebookNode:
 @functools.lru_cache(maxsize=32)
 def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
     try:
-        notebook = nodes.read(data.decode())
+        notebook = nbformat_nodes.read(data.decode())
     except Exception as error:  # nbformat raises the errors of its JSON and schema libraries
         raise MasterUnusable(
             f"{source} is not a notebook: {error}. Make it again or put back a copy."
@@ -93,7 +93,7 @@ def _given_part(source: str) -> str:
     return "\n".join((*lines[:begin], *lines[end + 1 :])) if begin < end else ""
 
 
-def check_of(cell: NotebookNode) -> Check | None:
+def check_of(cell: NotebookNode) -> CellCheck | None:
     """Return the check of a master's cell, or None if the cell is not graded automatically.
 
     Raises:
@@ -103,9 +103,9 @@ def check_of(cell: NotebookNode) -> Check | None:
         return None
     name, worth = grade_id(cell), float(cell.metadata.nbgrader["points"])
     if exercise_of(name) == name and not _asks_the_judge(cell.source):
-        return Check(exercise=name, title=name, points=worth, worth=worth, limit=0.0, asserts=True)
+        return CellCheck(exercise=name, title=name, points=worth, worth=worth, limit=0.0, asserts=True)
     exercise = exercises.get(exercise_of(name))
-    return Check(
+    return CellCheck(
         exercise=exercise.id,
         title=exercise.title,
         points=exercise.points,

@@ -13,7 +13,7 @@ import re  # noqa: TID251  (a class of characters each, nothing repeated: there 
 from typing import TYPE_CHECKING
 
 from autograder.boxes.execution import CellType
-from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.matching import Known, match, normalized
 from autograder.grading.rebuilding.shown_pictures import ShownPictures
 from autograder.kit.in_words import counted
@@ -61,7 +61,7 @@ def rebuild(
 def rebuild_unreadable(master: NotebookNode, problem: str) -> NotebookNode:
     """Return the notebook for a submission that cannot be read: the master without answers, and the reason."""
     remarks = [f"This submission could not be graded. {problem}"]
-    return _finished(master, [nodes.copied(cell) for cell in master.cells], remarks)
+    return _finished(master, [nbformat_nodes.copied(cell) for cell in master.cells], remarks)
 
 
 def is_of_another(master: NotebookNode, submitted: Sequence[SubmittedCell]) -> bool:
@@ -106,7 +106,7 @@ class _Sorting:
             # Any other deleted cell comes back before the student's cells, which may change what it defines.
             pending += [_extra(extra) for extra in extras.get(name, [])]
             for check in [check for check, anchor in late.items() if anchor == name]:
-                built += [*pending, nodes.copied(self._master[check])]
+                built += [*pending, nbformat_nodes.copied(self._master[check])]
                 pending = []
         return built + pending
 
@@ -236,7 +236,7 @@ class _Sorting:
         return groups
 
     def _filled(self, name: str, cell: NotebookNode) -> NotebookNode:
-        filled = nodes.copied(cell)
+        filled = nbformat_nodes.copied(cell)
         if is_answer(cell):
             filled.pop("attachments", None)
         if is_answer(cell) and name in self._chosen:
@@ -320,7 +320,7 @@ def _finished(master: NotebookNode, cells: list[NotebookNode], remarks: list[str
         if cell["cell_type"] == CellType.CODE:
             cell["outputs"] = []
             cell["execution_count"] = None
-    return nodes.notebook(
+    return nbformat_nodes.notebook(
         cells,
         {
             "kernelspec": {"name": "python3", "display_name": "Python 3 (ipykernel)", "language": "python"},
@@ -331,7 +331,7 @@ def _finished(master: NotebookNode, cells: list[NotebookNode], remarks: list[str
 
 
 def _extra(cell: SubmittedCell) -> NotebookNode:
-    made = nodes.cell(cell.kind, cell.source, "own")
+    made = nbformat_nodes.cell(cell.kind, cell.source, "own")
     made["attachments"] = _attachments(cell)
     return made
 
@@ -342,7 +342,7 @@ def _attachments(cell: SubmittedCell) -> dict[str, dict[str, str]]:
 
 def _remarks_cell(remarks: list[str]) -> NotebookNode:
     lines = ["**Remarks of the grader**", ""] + [f"- {_escaped(remark)}" for remark in remarks]
-    return nodes.cell(CellType.MARKDOWN, "\n".join(lines))
+    return nbformat_nodes.cell(CellType.MARKDOWN, "\n".join(lines))
 
 
 def _escaped(text: str) -> str:

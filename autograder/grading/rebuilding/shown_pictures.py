@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import re2
 from nbformat import NotebookNode
 
-from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding import nbformat_nodes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -51,4 +51,4 @@ class ShownPictures:
             elif self._left[name] > 0:
                 self._left[name] -= 1
                 found[name] = self._pictures[name]
-        return nodes.copied(NotebookNode(found))
+        return nbformat_nodes.copied(NotebookNode(found))

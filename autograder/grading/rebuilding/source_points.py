@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.grading.entering import gradebook_reading
 from autograder.grading.errors import ClassIncomplete, MasterUnusable, course_command
+from autograder.grading.gradebooks import gradebook_reading
 from autograder.grading.reporting.rows import NO_EXERCISE
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from autograder.grading.reporting.rows import DROPPED, LATE, NO_EXERCISE, Row, remarks_on, total
-from autograder.grading.running.timings import Timings
+from autograder.grading.running.batch_times import Timings
 from autograder.regular_files import name_as_text
 from autograder.verdict import State
 

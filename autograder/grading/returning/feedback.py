@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from nbgrader.utils import is_grade, is_solution, is_task
 
 from autograder.grading.classes.class_directory import SUFFIX
-from autograder.grading.entering.gradebook_reading import read_entry
-from autograder.grading.rebuilding import nodes
+from autograder.grading.gradebooks.gradebook_reading import read_entry
+from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.returning.page_exporter import PageExporter
 from autograder.grading.returning.page_head import mark_waiting
 from autograder.regular_files import write_whole
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
-    from autograder.grading.entering.gradebook_reading import CellEntry, SubmissionEntry
+    from autograder.grading.gradebooks.gradebook_reading import CellEntry, SubmissionEntry
 
 
 class FeedbackPages:
@@ -50,7 +50,7 @@ class FeedbackPages:
             write_whole(folder / f"{name}.html", page.encode())
 
     def _page(self, path: Path, submission: Submission, entry: SubmissionEntry) -> str:
-        notebook, cells = nodes.read_own(path.read_bytes()), entry.cells.get(path.stem, {})
+        notebook, cells = nbformat_nodes.read_own(path.read_bytes()), entry.cells.get(path.stem, {})
         for cell in notebook.cells:
             _fill_in(cell, cells)
         penalty = entry.penalties.get(path.stem, 0.0)

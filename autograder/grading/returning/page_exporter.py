@@ -23,7 +23,7 @@ from nbconvert.preprocessors import CSSHTMLHeaderPreprocessor
 from nbformat import NotebookNode
 from traitlets.config import Config
 
-from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.rebuild import is_check, is_the_masters
 from autograder.grading.returning.page_head import cards_first, with_summary, without_dead_links
 from autograder.grading.returning.sanitize import Renderer, clean, make_harmless
@@ -151,7 +151,7 @@ class PageExporter(HTMLExporter):
         shown: Any = WidgetsDataTypeFilter(notebook_metadata={}, parent=self, resources=resources)
         self._set_filter("filter_data_type", shown)
         convert: Any = TemplateExporter.from_notebook_node  # HTMLExporter's method would parse the page again
-        _, resources = convert(self, nodes.notebook([], {}), resources)
+        _, resources = convert(self, nbformat_nodes.notebook([], {}), resources)
         return resources
 
     def _part(self, lexer: str | None, render: Callable[[], str], depends_on: Any) -> str:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from nbformat import NotebookNode
 
-    from autograder.grading.entering.gradebook_reading import CellEntry
+    from autograder.grading.gradebooks.gradebook_reading import CellEntry
 
 WAITS = "waits_for_a_person"
 """The key, in a cell's nbgrader metadata, that marks points as still to come; its value is the text for that."""

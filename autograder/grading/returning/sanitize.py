@@ -19,7 +19,7 @@ from pygments.token import STANDARD_TYPES
 
 from autograder.boxes.execution import CellType
 from autograder.boxes.outputs import IMAGES
-from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.rebuild import is_check, is_the_masters
 from autograder.grading.rebuilding.submission import HARMLESS_LENGTH
 from autograder.grading.returning.pictures import PixelBudget, is_shown
@@ -118,7 +118,7 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
                         cell.pop("attachments", None)
                         cell.source = as_typed(_PICTURE.sub("picture left out: too large", cell.source))
             elif cell.cell_type == CellType.RAW:
-                cell.update(nodes.cell(CellType.MARKDOWN, as_typed(cell.source)) | {"id": cell.id})
+                cell.update(nbformat_nodes.cell(CellType.MARKDOWN, as_typed(cell.source)) | {"id": cell.id})
             elif place in as_they_are:
                 cell.metadata["magics_language"] = "text"  # nbconvert then does not highlight the code
         if cell.cell_type == CellType.CODE and not (is_check(cell) and is_the_masters(cell)):

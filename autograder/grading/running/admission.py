@@ -26,7 +26,7 @@ from autograder.grading.running.orders import LARGEST_ANSWER, Offer
 from autograder.verdict import State
 
 if TYPE_CHECKING:
-    from autograder.boxes.execution import CellRun, Check
+    from autograder.boxes.execution import CellCheck, CellRun
     from autograder.boxes.limits import Limits
     from autograder.grading.task import Task
     from autograder.verdict import Verdict
@@ -113,7 +113,7 @@ def printable(text: str) -> str:
     return "".join(letter if letter.isprintable() else " " for letter in text[:_LONGEST_WORDS])
 
 
-def _look_at(verdict: Verdict, check: Check) -> None:
+def _look_at(verdict: Verdict, check: CellCheck) -> None:
     if verdict.exercise != check.exercise:
         raise Forged(f"it judged {verdict.exercise!r:.60} instead of {check.exercise}")
     if verdict.max_score != check.points or not 0 <= verdict.score <= check.points:

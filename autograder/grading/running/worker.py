@@ -24,10 +24,10 @@ import msgspec
 from autograder.boxes.execution import Ended, Execution
 from autograder.boxes.fork_server import Addresses
 from autograder.boxes.limits import raise_own
-from autograder.boxes.place import BoxedPlace, JudgeSetting, UnboxedPlace
+from autograder.boxes.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.boxes.runner import Unfinished, run_notebook
 from autograder.boxes.sandbox import NoSandbox
-from autograder.grading.returning.page_budget import too_costly
+from autograder.grading.returning.rendering_time import too_costly
 from autograder.grading.running.workspace_service import arrange, served
 from autograder.grading.task import Task
 from autograder.judge.bench.patience import Patience

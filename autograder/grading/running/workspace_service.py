@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from autograder import exercises
 from autograder.boxes.environment import kernel_environment
-from autograder.boxes.place import SHARED_FOLDER, BoxedPlace
+from autograder.boxes.notebook_boxes import SHARED_FOLDER, BoxedPlace
 from autograder.judge.settings import boxed_ros_environment, ros_environment
 from autograder.workspaces import cache, own_builds
 from autograder.workspaces.boxed_jobs import BoxedJobs
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.boxes.fork_server import Addresses
-    from autograder.boxes.place import UnboxedPlace
+    from autograder.boxes.notebook_boxes import UnboxedPlace
     from autograder.grading.task import Task
 
 _BUILDS, _PROGRAMS = "builds", "bin"
@@ -114,6 +114,6 @@ def _furnish(shared: Path) -> None:
     programs = shared / _PROGRAMS
     programs.mkdir()
     colcon = programs / "colcon"
-    stand_in = python_child("-m", "autograder.workspaces.colcon_stand_in").command
+    stand_in = python_child("-m", "autograder.workspaces.colcon_in_class").command
     colcon.write_text(f'#!/bin/sh\nexec {shlex.join(stand_in)} "$@"\n')
     colcon.chmod(0o755)

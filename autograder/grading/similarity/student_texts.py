@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from autograder.boxes.execution import CellType
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.errors import MasterUnusable
-from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.desk import read_notebook
 from autograder.grading.rebuilding.rebuild import grade_id, is_answer
 from autograder.grading.rebuilding.submission import NotAFile, UnreadableSubmission, read_bytes
@@ -117,7 +117,7 @@ def read_answers(
 def _cells(directory: ClassDirectory, place: str) -> list[NotebookNode]:
     path = directory.path / place
     try:
-        return list(nodes.read(path.read_text(encoding="utf-8")).cells)
+        return list(nbformat_nodes.read(path.read_text(encoding="utf-8")).cells)
     except Exception as error:  # nbformat raises what its JSON and schema libraries raise
         raise MasterUnusable(
             f"{path} is not a notebook: {error}. Make it again or put back a copy."

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.class_store import ClassStore
 from autograder.grading.collecting.table import Table, Waiting
-from autograder.grading.entering.gradebook_reading import Entries, read_entries
 from autograder.grading.errors import MasterUnusable
+from autograder.grading.gradebooks.gradebook_reading import Entries, read_entries
 from autograder.grading.rebuilding.fingerprints import Fingerprints
 from autograder.grading.rebuilding.source_points import read_released
 from autograder.grading.reporting.rows import DROPPED, EXCUSED, NO_EXERCISE, NOT_SUBMITTED, Row, total

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import ClassDirectory, reason_against_name
-from autograder.grading.entering.gradebook_reading import has_tables, opened, sql
 from autograder.grading.errors import GradingError
+from autograder.grading.gradebooks.gradebook_reading import has_tables, opened, sql
 from autograder.grading.reporting.spreadsheet import csv_rows
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from autograder.grading.table.what_counts import WhatCounts
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
 
-    from autograder.grading.entering.gradebook_reading import CellEntry, Entries, SubmissionEntry
+    from autograder.grading.gradebooks.gradebook_reading import CellEntry, Entries, SubmissionEntry
     from autograder.grading.rebuilding.source_points import GradedCell
 
     Judged = Mapping[tuple[str, str], Sequence[Row]]

@@ -19,7 +19,7 @@ from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.in_words import of_its_kind, shortened, visible
 from autograder.kit.model import Advice, Exercise, Finding, Mistake, Pace
 from autograder.kit.workspace_mistakes import changed_since_build
-from autograder.verdict import Criterion, Diagnosis, State, Verdict
+from autograder.verdict import CriterionResult, Diagnosis, State, Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -221,7 +221,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
     """Return the verdict that follows from the evidence alone."""
     lost = {event.data["costs"]: event for part in evidence for event in part.of("misnamed")}
     criteria = tuple(
-        Criterion(c.name, c.title, c.points, finding.passed, _cut(finding.expected), _cut(finding.seen))
+        CriterionResult(c.name, c.title, c.points, finding.passed, _cut(finding.expected), _cut(finding.seen))
         for c in exercise.criteria
         for finding in [_with_name(c.judge(evidence), lost.get(c.name))]
     )

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import re2
 
 from autograder.kit import common_mistakes as common
-from autograder.kit import giving_up, service_mistakes
+from autograder.kit import giving_up, service_client_mistakes
 from autograder.kit.crashes import OTHER_SLIPS
 from autograder.kit.draft import OWN, OWN_LATE, Judge, Told
 from autograder.kit.giving_up import drawn_patience
@@ -326,7 +326,7 @@ class Calls:
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most telling first."""
         return (
-            service_mistakes.WAITS_THE_WRONG_WAY_ROUND,
+            service_client_mistakes.WAITS_THE_WRONG_WAY_ROUND,
             *common.CRASHES,
             called_too_early("called the service", "wait_for_service"),
             common.endpoint_name("client"),
@@ -334,19 +334,19 @@ class Calls:
             *OTHER_SLIPS,
             common.NOT_BEGUN,
             common.USAGE_MESSAGE,
-            service_mistakes.WAITS_FOR_NOBODY,
-            service_mistakes.WAITS_FOREVER,
+            service_client_mistakes.WAITS_FOR_NOBODY,
+            service_client_mistakes.WAITS_FOREVER,
             *(replace(hang, certain=True) for hang in (*HANGS, common.AWAITS_IN_VAIN)),
-            service_mistakes.FIELDS_NEVER_FILLED,
+            service_client_mistakes.FIELDS_NEVER_FILLED,
             Mistake("too_many_calls", self._too_many_calls, certain=True),
             OWN,
-            service_mistakes.ZERO_TAKEN_FOR_FAILURE,
-            service_mistakes.NOT_RETURNED,
-            service_mistakes.GAVE_UP_TOO_EARLY,
-            service_mistakes.ANSWER_NOT_AWAITED,
+            service_client_mistakes.ZERO_TAKEN_FOR_FAILURE,
+            service_client_mistakes.NOT_RETURNED,
+            service_client_mistakes.GAVE_UP_TOO_EARLY,
+            service_client_mistakes.ANSWER_NOT_AWAITED,
             OWN_LATE,
-            service_mistakes.SILENT_END,
-            service_mistakes.PATIENCE_NOT_KEPT,
+            service_client_mistakes.SILENT_END,
+            service_client_mistakes.PATIENCE_NOT_KEPT,
             *common.OTHER_CRASHES,
             *common.NOTHING_THERE,
         )

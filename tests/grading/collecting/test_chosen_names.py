@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from downloads import ROSTER, write_zip, zipped
 from test_collect import lies, placed, why, work
-from test_forms import add_assignment
+from test_lms_file_names import add_assignment
 from test_real_forms import METADATA, STEALS, gradescope_export
 
 from autograder.grading.collecting import proposals

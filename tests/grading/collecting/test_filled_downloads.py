@@ -15,7 +15,7 @@ from test_collect import placed, why, work
 
 from autograder.grading.collecting import archives
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.forms import base_and_number
+from autograder.grading.collecting.lms_file_names import base_and_number
 from autograder.grading.collecting.outcomes import State
 from autograder.grading.rebuilding.submission import read_bytes
 from autograder.regular_files import remove_unfinished

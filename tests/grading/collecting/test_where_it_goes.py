@@ -17,7 +17,7 @@ from conftest import TinyClass
 from downloads import write_zip, zipped
 from test_collect import kept, lies, stamp, why, work
 from test_collected_table import edit
-from test_forms import add_assignment
+from test_lms_file_names import add_assignment
 
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory

@@ -11,7 +11,7 @@ import pytest
 from nbgrader.api import Gradebook
 from own_assignment import TESTS, graded_cells, hand_in, write_assignment
 
-from autograder.boxes.execution import CellRun, Check, Ended
+from autograder.boxes.execution import CellCheck, CellRun, Ended
 from autograder.boxes.verdicts_without_judge import verdict_by_tests
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
@@ -79,7 +79,7 @@ def test_tests_stand_beside_checks_of_the_judge(tiny: TinyClass, with_fake_judge
 )
 def test_a_value_is_worth_what_nbgrader_takes_it_for(value: str, score: float) -> None:
     outputs = ({"output_type": "execute_result", "data": {"text/plain": value}},)
-    verdict = verdict_by_tests(Check("own", "own", 4, 4, 0, asserts=True), CellRun(Ended.DONE, outputs))
+    verdict = verdict_by_tests(CellCheck("own", "own", 4, 4, 0, asserts=True), CellRun(Ended.DONE, outputs))
     assert verdict is not None
     assert verdict.score == score
     assert verdict.passed is (score == 4)
@@ -88,7 +88,7 @@ def test_a_value_is_worth_what_nbgrader_takes_it_for(value: str, score: float) -
 def test_what_meets_the_stub_of_nbgrader_is_not_solved_yet() -> None:
     for error in ("NotImplementedError: ", "NotImplementedError"):
         verdict = verdict_by_tests(
-            Check("own", "own", 4, 4, 0, asserts=True), CellRun(Ended.RAISED, error=error)
+            CellCheck("own", "own", 4, 4, 0, asserts=True), CellRun(Ended.RAISED, error=error)
         )
         assert verdict is not None
         assert verdict.diagnosis is not None

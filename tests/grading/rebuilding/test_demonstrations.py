@@ -10,7 +10,7 @@ import pytest
 from autograder import course
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
-from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.demonstrations import LEFT_OUT, demonstrations_of, is_demonstration
 from autograder.masters.first_cell import NAME as SET_UP_CELL
 from autograder.masters.layout import masters
@@ -77,9 +77,9 @@ def test_a_class_says_whether_its_demonstrations_are_run(
     tiny: TinyClass, fake_engine: FakeEngine, wanted: bool
 ) -> None:
     source = tiny.path / "source" / "lab_1_2" / "lab_1_2.ipynb"
-    notebook = nodes.read(source.read_text())
+    notebook = nbformat_nodes.read(source.read_text())
     notebook.cells.insert(1, shown("%%bash\nros2 topic list", grade_id="given-list", schema_version=3))
-    source.write_text(nodes.text(notebook))
+    source.write_text(nbformat_nodes.text(notebook))
     release(ClassDirectory(tiny.path))
     if wanted:
         with (tiny.path / "nbgrader_config.py").open("a") as config:

@@ -23,7 +23,7 @@ from autograder.grading.report_page import statistics as figures
 from autograder.grading.report_page.page import write_report
 from autograder.grading.reporting.rows import Row
 from autograder.grading.table.class_table import ClassTable, read_table
-from autograder.verdict import Criterion, Diagnosis, Verdict
+from autograder.verdict import CriterionResult, Diagnosis, Verdict
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -39,7 +39,7 @@ def graded(tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyP
     plain = tiny_class.verdict
 
     def with_criteria(exercise: str, score: float, seed: str) -> Verdict:
-        criterion = Criterion("text", "Says the right thing", 10, score == 10, "", "")
+        criterion = CriterionResult("text", "Says the right thing", 10, score == 10, "", "")
         return replace(plain(exercise, score, seed), criteria=(criterion,))
 
     monkeypatch.setattr(tiny_class, "verdict", with_criteria)

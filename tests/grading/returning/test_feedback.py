@@ -12,8 +12,8 @@ from tiny_class import TALKER, TinyClass
 
 from autograder.boxes.execution import CellType
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
-from autograder.grading.entering.gradebook_reading import CellEntry, SubmissionEntry
-from autograder.grading.rebuilding import nodes
+from autograder.grading.gradebooks.gradebook_reading import CellEntry, SubmissionEntry
+from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.returning import feedback
 from autograder.grading.returning.page_exporter import POLICY, PageExporter, Remembered
 
@@ -39,31 +39,33 @@ def marked(cell: NotebookNode, **marks: object) -> NotebookNode:
 
 def one_of_each() -> list[NotebookNode]:
     """A cell of each kind that a graded notebook can have."""
-    answer = marked(nodes.cell(CellType.CODE, "def talk():\n    return 10", "1"), solution=True, locked=False)
+    answer = marked(
+        nbformat_nodes.cell(CellType.CODE, "def talk():\n    return 10", "1"), solution=True, locked=False
+    )
     answer["outputs"] = [
-        nodes.output(output_type="stream", name="stdout", text="\x1b[31mred\x1b[0m <b>\n"),
-        nodes.output(
+        nbformat_nodes.output(output_type="stream", name="stdout", text="\x1b[31mred\x1b[0m <b>\n"),
+        nbformat_nodes.output(
             output_type="display_data",
             data={"text/plain": "p", "text/html": _SCRIPT, "image/png": "iVBORw0KGgo="},
             metadata={},
         ),
-        nodes.output(output_type="error", ename="E", evalue="v", traceback=["line 1", "line 2"]),
+        nbformat_nodes.output(output_type="error", ename="E", evalue="v", traceback=["line 1", "line 2"]),
     ]
-    check = marked(nodes.cell(CellType.CODE, "check()", "2"), grade=True, points=1.0)
+    check = marked(nbformat_nodes.cell(CellType.CODE, "check()", "2"), grade=True, points=1.0)
     check["outputs"] = [
-        nodes.output(
+        nbformat_nodes.output(
             output_type="display_data", data={"text/html": "<p>card</p>", "text/plain": "card"}, metadata={}
         ),
-        nodes.output(
+        nbformat_nodes.output(
             output_type="execute_result", data={"text/plain": "1"}, metadata={}, execution_count=None
         ),
     ]
     return [
-        nodes.cell(CellType.MARKDOWN, "# Given\n\nwith *words*", "0"),
+        nbformat_nodes.cell(CellType.MARKDOWN, "# Given\n\nwith *words*", "0"),
         answer,
         check,
-        marked(nodes.cell(CellType.CODE, "print(1)", "3")),
-        nodes.cell(CellType.RAW, "raw text", "4"),
+        marked(nbformat_nodes.cell(CellType.CODE, "print(1)", "3")),
+        nbformat_nodes.cell(CellType.RAW, "raw text", "4"),
     ]
 
 
@@ -123,11 +125,11 @@ class Pages:
     def make(self, maker: feedback.FeedbackPages, change: Callable[[Any], None], **metadata: Any) -> str:
         cells = one_of_each()
         change(cells)
-        notebook = nodes.notebook(cells, {"language_info": {"name": "python", **metadata}})
+        notebook = nbformat_nodes.notebook(cells, {"language_info": {"name": "python", **metadata}})
         submission = Submission("ada", "lab_1_2", self.directory.path / "submitted" / "ada" / "lab_1_2")
         folder = self.directory.path / "autograded" / "ada" / "lab_1_2"
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / "lab_1_2.ipynb").write_text(nodes.text(notebook))
+        (folder / "lab_1_2.ipynb").write_text(nbformat_nodes.text(notebook))
         maker.write(submission, ["lab_1_2"])
         return (self.directory.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html").read_text()
 
@@ -207,9 +209,11 @@ def test_what_the_chapter_gives_is_rendered_once(pages: Pages, monkeypatch: pyte
 
 def test_what_opens_at_a_click_keeps_its_mark() -> None:
     """Bootstrap's rule for ``summary`` is in the page's head too; the last one holds."""
-    text = nodes.cell(CellType.MARKDOWN, "<details><summary>Yes</summary>\n\n✓ Because.\n</details>", "1")
+    text = nbformat_nodes.cell(
+        CellType.MARKDOWN, "<details><summary>Yes</summary>\n\n✓ Because.\n</details>", "1"
+    )
     names = {"notebook": "summary", "score": 0.0, "max_score": 0.0, "late_penalty": 0.0}
-    page = PageExporter().page(nodes.notebook([text], {}), names)
+    page = PageExporter().page(nbformat_nodes.notebook([text], {}), names)
     head, body = page.split("</head>")
     displays = re.findall(r"(?<![\w.-])summary\s*\{\s*display:\s*([\w-]+)", head)
     assert displays[-1:] == ["list-item"]

@@ -18,7 +18,7 @@ from conftest import LISTENER, TALKER, FakeEngine, TinyClass
 from nbgrader.api import Gradebook
 from tiny_class import GRADE
 
-from autograder.boxes.execution import Cell, CellRun, Check, Ended, Execution
+from autograder.boxes.execution import Cell, CellCheck, CellRun, Ended, Execution
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.running import engine
 from autograder.grading.running.worker import a_check_was_stopped
@@ -64,14 +64,14 @@ def test_points_come_from_the_judge_and_nothing_is_left(tiny: TinyClass, with_fa
 @pytest.mark.parametrize(
     ("check", "ended", "stopped"),
     [
-        (Check("one", "One", 10, 10, 60), Ended.TIMED_OUT, True),
-        (Check("one", "One", 10, 10, 60), Ended.DONE, False),
-        (Check("one", "One", 10, 10, 60, asserts=True), Ended.TIMED_OUT, False),
+        (CellCheck("one", "One", 10, 10, 60), Ended.TIMED_OUT, True),
+        (CellCheck("one", "One", 10, 10, 60), Ended.DONE, False),
+        (CellCheck("one", "One", 10, 10, 60, asserts=True), Ended.TIMED_OUT, False),
         (None, Ended.TIMED_OUT, False),
     ],
 )
 def test_a_check_of_the_judge_that_was_stopped_says_nothing_while_others_ran_beside(
-    check: Check | None, ended: Ended, stopped: bool
+    check: CellCheck | None, ended: Ended, stopped: bool
 ) -> None:
     execution = Execution((CellRun(Ended.DONE), CellRun(ended)))
     assert a_check_was_stopped([Cell("x = 1"), Cell("check(x)", check=check)], execution) is stopped

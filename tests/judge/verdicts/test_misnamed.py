@@ -14,7 +14,7 @@ from autograder.judge.verdicts.misnamed import misnamed
 from autograder.judge.verdicts.timeline import moments
 from autograder.judge.verdicts.trial import decide
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.verdict import Criterion, State, Verdict
+from autograder.verdict import CriterionResult, State, Verdict
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,9 +27,9 @@ FAILED = Verdict(
     2.0,
     10.0,
     (
-        Criterion("spins", "Spins", 2, True, "", ""),
-        Criterion("topic", "Topic", 2, False, "", ""),
-        Criterion("text", "Text", 6, False, "", ""),
+        CriterionResult("spins", "Spins", 2, True, "", ""),
+        CriterionResult("topic", "Topic", 2, False, "", ""),
+        CriterionResult("text", "Text", 6, False, "", ""),
     ),
 )
 

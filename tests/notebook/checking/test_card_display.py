@@ -22,14 +22,14 @@ import autograder.notebook.checking.card_display as card_display
 import importlib
 from autograder.notebook import check
 checking = importlib.import_module("autograder.notebook.checking.check")
-from autograder.verdict import Criterion, Diagnosis, State, Verdict
+from autograder.verdict import CriterionResult, Diagnosis, State, Verdict
 
 scores, meanwhile = [], lambda place: None
 
 def verdict(exercise, subject, place):
     meanwhile(place)
     score = scores.pop(0)
-    text = Criterion("text", "Says the right string", 10.0, score == 10, "a", "b")
+    text = CriterionResult("text", "Says the right string", 10.0, score == 10, "a", "b")
     state = State.PASSED if score == 10 else State.FAILED
     return Verdict(exercise, "The talker", state, score, 10.0, (text,), Diagnosis("text", "It says b.", "Say a."))
 

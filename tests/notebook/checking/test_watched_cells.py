@@ -22,7 +22,7 @@ import threading
 from autograder.notebook import unwatch, watch
 from autograder.notebook.checking import card_display, watched_cells
 from autograder.notebook.checking.judge_link import JudgeUnreachable
-from autograder.verdict import Criterion, Diagnosis, State, Verdict
+from autograder.verdict import CriterionResult, Diagnosis, State, Verdict
 
 patient, scores = threading.Event(), []
 
@@ -40,7 +40,7 @@ def converse(link, exercise, subject, place):
         raise JudgeUnreachable("hung up")
     score = scores.pop(0)
     state = State.PASSED if score == 10 else State.FAILED
-    text = Criterion("text", "Says the right string", 10.0, score == 10, "a", "b")
+    text = CriterionResult("text", "Says the right string", 10.0, score == 10, "a", "b")
     return Verdict(exercise, "The talker", state, score, 10.0, (text,), Diagnosis("text", "It says b.", "Say a."))
 
 watched_cells.JudgeLink, watched_cells.converse = Link, converse

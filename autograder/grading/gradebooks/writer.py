@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.class_records import Attempt, Entered
 from autograder.grading.classes.timestamps import handed_in_at
-from autograder.grading.entering import conversion, gradebook
-from autograder.grading.entering.gradebook_reading import read_entries
 from autograder.grading.errors import is_disk_full
+from autograder.grading.gradebooks import conversion, gradebook
+from autograder.grading.gradebooks.gradebook_reading import read_entries
 from autograder.grading.returning import feedback
 from autograder.grading.table.late_policy import penalties
 from autograder.grading.task import scores_of
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from autograder.boxes.execution import Execution
     from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
-    from autograder.grading.entering.gradebook_reading import SubmissionEntry
+    from autograder.grading.gradebooks.gradebook_reading import SubmissionEntry
     from autograder.grading.reporting.rows import Row
     from autograder.grading.task import Task
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from autograder.boxes.boxed_processes import ForkedProcess
-from autograder.boxes.entering import Entrance
+from autograder.boxes.enter_box import Entrance
 from autograder.boxes.environment import box_environment, kernel_environment
 from autograder.boxes.guards import BoxGuard, NoGuard
 from autograder.boxes.mounts import HOME, WORK, Bind

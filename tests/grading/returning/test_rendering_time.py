@@ -11,8 +11,8 @@ from nbconvert.exporters import HTMLExporter
 
 from autograder.boxes.execution import Cell, CellType
 from autograder.grading.rebuilding.submission import HARMLESS_LENGTH
-from autograder.grading.returning import page_budget
-from autograder.grading.returning.page_budget import SECONDS, too_costly
+from autograder.grading.returning import rendering_time
+from autograder.grading.returning.rendering_time import SECONDS, too_costly
 from autograder.grading.returning.sanitize import make_harmless
 
 SIZE = 50_000
@@ -157,7 +157,7 @@ def test_what_students_usually_write_is_within_it() -> None:
 def test_what_others_have_left_behind_is_not_charged_to_a_notebook(monkeypatch: pytest.MonkeyPatch) -> None:
     """A collection of garbage goes through all that lives in the process."""
     collects: list[bool] = []
-    monkeypatch.setattr(page_budget, "_renderer", lambda: lambda _: collects.append(gc.isenabled()))
+    monkeypatch.setattr(rendering_time, "_renderer", lambda: lambda _: collects.append(gc.isenabled()))
     assert too_costly([Cell("a" * (HARMLESS_LENGTH + 1), CellType.MARKDOWN, own=True)], BUDGET) == ()
     assert collects == [False]
     assert gc.isenabled()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.boxes.execution import Cell, Check, Ended
+from autograder.boxes.execution import Cell, CellCheck, Ended
 from autograder.boxes.limits import Limits
 from autograder.boxes.runner import _Run
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 LIMITS = Limits(cell_seconds=120, check_margin=10)
-CHECK = Check("lab.one", "One", 10, 10, limit=120)
+CHECK = CellCheck("lab.one", "One", 10, 10, limit=120)
 TALKER = Cell("class Talker:\n    def run(self):\n        while True: pass", own=True)
 LISTENER = Cell("class Listener: pass", own=True)
 SHOWN, SHOWN_AGAIN = Cell("Talker().run()"), Cell("t = Talker()\nt.run()")

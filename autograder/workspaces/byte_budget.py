@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-class Room:
+class ByteBudget:
     """A budget of bytes for files to be read.
 
     Args:

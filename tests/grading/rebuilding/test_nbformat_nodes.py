@@ -11,7 +11,7 @@ import pytest
 
 from autograder.boxes.execution import CellType
 from autograder.boxes.outputs import Budget, OutputCollector
-from autograder.grading.rebuilding import nodes
+from autograder.grading.rebuilding import nbformat_nodes
 
 _new_output: Any = nbformat.v4.new_output
 _PICTURE = "iVBORw0KGgo="
@@ -30,7 +30,7 @@ def collected() -> list[dict[str, Any]]:
 
 @pytest.mark.parametrize("fields", collected(), ids=lambda fields: fields["output_type"])
 def test_an_output_is_the_one_that_nbformat_makes(fields: dict[str, Any]) -> None:
-    made = nodes.output(**fields)
+    made = nbformat_nodes.output(**fields)
     expected = _new_output(**fields)
     assert made == expected
     assert type(made) is type(expected)
@@ -53,33 +53,33 @@ def test_an_output_is_the_one_that_nbformat_makes(fields: dict[str, Any]) -> Non
 )
 def test_what_is_no_output_is_refused(changed: dict[str, Any]) -> None:
     right = {"output_type": "stream", "name": "stdout", "text": "a"}
-    assert nodes.output(**right)
+    assert nbformat_nodes.output(**right)
     kept = {} if "output_type" in changed and changed["output_type"] in ("display_data", "error") else right
     with pytest.raises(msgspec.ValidationError):
-        nodes.output(**{**kept, **changed})
+        nbformat_nodes.output(**{**kept, **changed})
 
 
 def whole() -> Any:
-    cells = [nodes.cell(kind, f"{kind}\n\ntwo lines") for kind in CellType]
-    cells[0]["outputs"] = [nodes.output(**fields) for fields in collected()]
+    cells = [nbformat_nodes.cell(kind, f"{kind}\n\ntwo lines") for kind in CellType]
+    cells[0]["outputs"] = [nbformat_nodes.output(**fields) for fields in collected()]
     cells[1].metadata["nbgrader"] = {"grade_id": "a", "points": 1.0, "solution": False}
-    return nodes.notebook(cells, {"autograder": {"remarks": ["one", "two"]}})
+    return nbformat_nodes.notebook(cells, {"autograder": {"remarks": ["one", "two"]}})
 
 
 def test_what_was_written_is_read_as_nbformat_reads_it() -> None:
-    text = nodes.text(whole())  # this one validates
-    read = nodes.read_own(text.encode())
-    assert read == nodes.read(text) == whole() | {"cells": read.cells}
+    text = nbformat_nodes.text(whole())  # this one validates
+    read = nbformat_nodes.read_own(text.encode())
+    assert read == nbformat_nodes.read(text) == whole() | {"cells": read.cells}
     assert read.cells[0].outputs[0].text == "é\nb\n"
     assert read.cells[1].metadata.nbgrader.grade_id == "a"
     with pytest.raises(msgspec.DecodeError):
-        nodes.read_own(b"{")
+        nbformat_nodes.read_own(b"{")
 
 
 def test_a_copy_shares_nothing_that_can_be_changed() -> None:
     original = whole()
     before = json.dumps(original)
-    copy = nodes.copied(original)
+    copy = nbformat_nodes.copied(original)
     assert copy == original
     copy.cells[0].outputs[1].data["text/plain"] = "other"
     copy.cells[0].outputs[3].traceback.append("other")
@@ -90,5 +90,5 @@ def test_a_copy_shares_nothing_that_can_be_changed() -> None:
 
 
 def test_an_id_is_the_given_one_or_none_that_was_there_before() -> None:
-    assert nodes.cell(CellType.CODE, "", "own").id == "own"
-    assert len({nodes.cell(CellType.CODE, "").id for _ in range(100)}) == 100
+    assert nbformat_nodes.cell(CellType.CODE, "", "own").id == "own"
+    assert len({nbformat_nodes.cell(CellType.CODE, "").id for _ in range(100)}) == 100

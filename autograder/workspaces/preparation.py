@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from autograder.workspaces.colcon import look
 from autograder.workspaces.install_folder import relocated, with_prefixes
 from autograder.workspaces.packages import WORKSPACE
-from autograder.workspaces.plans import lacks_programs, launch_targets, reference_workspace
+from autograder.workspaces.program_plans import lacks_programs, launch_targets, reference_workspace
 from autograder.workspaces.reporting import report_line
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from autograder.workspaces.builds import Builds
     from autograder.workspaces.colcon import Build, Targets
-    from autograder.workspaces.plans import Plan
+    from autograder.workspaces.program_plans import Plan
 
 COURSE = "course_ws"
 """The place of the course's own packages, which come after the student's."""

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from autograder.grading.classes.class_directory import RefusedFile
 from autograder.grading.classes.timestamps import handed_in_at, is_not_believed
 from autograder.grading.collecting.table import NAME, Table
-from autograder.grading.entering.gradebook_reading import CellEntry, SubmissionEntry, read_due_dates
 from autograder.grading.errors import MasterUnusable, check_known, course_command
+from autograder.grading.gradebooks.gradebook_reading import CellEntry, SubmissionEntry, read_due_dates
 from autograder.grading.reporting.rows import LATE, Row
 from autograder.grading.table.point_differences import Difference
 from environment.installation import COMMAND
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from autograder.boxes.execution import Execution
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
-    from autograder.grading.entering.gradebook_reading import Entries
+    from autograder.grading.gradebooks.gradebook_reading import Entries
     from autograder.grading.rebuilding.fingerprints import Fingerprints
     from autograder.grading.rebuilding.source_points import GradedCell, Released
     from autograder.grading.table.roster import Roster

@@ -14,12 +14,12 @@ from nbformat.v4 import rwbase
 from nbgrader.preprocessors import LimitOutput
 from nbgrader.utils import compute_checksum, determine_grade, is_grade, is_solution, is_task
 
-from autograder.boxes.execution import Cell, CellRun, CellType, Check, Ended, Execution
+from autograder.boxes.execution import Cell, CellCheck, CellRun, CellType, Ended, Execution
 from autograder.cards.bundle import mimebundle
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.classes.timestamps import companions
-from autograder.grading.entering.gradebook import NotebookEntry
-from autograder.grading.rebuilding import nodes
+from autograder.grading.gradebooks.gradebook import NotebookEntry
+from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.demonstrations import LEFT_OUT
 from autograder.grading.rebuilding.task_making import task_of
 from autograder.grading.returning.sanitize import harmless_output, make_harmless
@@ -139,13 +139,13 @@ def _with_results(nb: NotebookNode, task: Task, execution: Execution) -> Noteboo
         if cell.check is not None:
             node.outputs = _graded_outputs(cell.check, execution.verdicts[index], run.outputs)
         else:
-            node.outputs = [nodes.output(**output) for output in run.outputs]
+            node.outputs = [nbformat_nodes.output(**output) for output in run.outputs]
             node.outputs += _remark(node, cell, run, task.limits) if execution.cells else []
     # Done here, because formgrader shows ``autograded/`` without cleaning it.
     make_harmless(nb, range(len(nb.cells)) if execution.trouble else execution.as_typed)
     nb.cells = list(_with_rubrics(nb.cells))
     if not task.boxed:
-        nb.cells.insert(0, nodes.cell(CellType.MARKDOWN, f"**{sandboxing.NOTE}**"))
+        nb.cells.insert(0, nbformat_nodes.cell(CellType.MARKDOWN, f"**{sandboxing.NOTE}**"))
     return nb
 
 
@@ -156,21 +156,21 @@ def _with_rubrics(cells: Sequence[NotebookNode]) -> Iterator[NotebookNode]:
         yield cell
         if known.get("rubric"):
             text = f"**How this answer is graded**\n\n{known['rubric']}"
-            made = nodes.cell(CellType.MARKDOWN, text, f"rubric-{cell.id}"[:64])
+            made = nbformat_nodes.cell(CellType.MARKDOWN, text, f"rubric-{cell.id}"[:64])
             if known["pictures"]:
                 made["attachments"] = known["pictures"]
             yield made
 
 
 def _graded_outputs(
-    check: Check, verdict: Verdict, outputs: Sequence[Mapping[str, Any]]
+    check: CellCheck, verdict: Verdict, outputs: Sequence[Mapping[str, Any]]
 ) -> list[NotebookNode]:
     """Return the card or the test's output, and the score as the cell's value: nbgrader takes that value as points."""
     score = points(check, verdict)
-    card = nodes.output(output_type="display_data", data=mimebundle(verdict), metadata={})
+    card = nbformat_nodes.output(output_type="display_data", data=mimebundle(verdict), metadata={})
     return [
         *([card, *_of_tests(outputs)] if check.asserts else [card]),
-        nodes.output(
+        nbformat_nodes.output(
             output_type="execute_result",
             data={"text/plain": f"{score:.17g}"},
             metadata={},
@@ -187,11 +187,13 @@ def _of_tests(outputs: Sequence[Mapping[str, Any]]) -> Iterator[NotebookNode]:
     for one in outputs:
         if one["output_type"] == "error":
             text = "\n".join(one["traceback"]) or f"{one['ename']}: {one['evalue']}"
-            yield harmless_output(nodes.output(output_type="stream", name="stdout", text=text))
+            yield harmless_output(nbformat_nodes.output(output_type="stream", name="stdout", text=text))
         elif one["output_type"] == "stream":
-            yield harmless_output(nodes.output(output_type="stream", name="stdout", text=one["text"]))
+            yield harmless_output(
+                nbformat_nodes.output(output_type="stream", name="stdout", text=one["text"])
+            )
         elif one["output_type"] == "display_data":
-            yield harmless_output(nodes.output(**one))
+            yield harmless_output(nbformat_nodes.output(**one))
 
 
 def _remark(node: NotebookNode, cell: Cell, run: CellRun, limits: Limits) -> list[NotebookNode]:
@@ -205,4 +207,4 @@ def _remark(node: NotebookNode, cell: Cell, run: CellRun, limits: Limits) -> lis
         Ended.NOT_RUN: "[this cell was not run]",
     }
     text = words.get(run.ended) if cell.source.strip() else LEFT_OUT if node.source.strip() else None
-    return [nodes.output(output_type="stream", name="stdout", text=f"{text}\n")] if text else []
+    return [nbformat_nodes.output(output_type="stream", name="stdout", text=f"{text}\n")] if text else []

@@ -16,11 +16,11 @@ from bs4 import BeautifulSoup
 from nbgrader.preprocessors import AssignLatePenalties, GetGrades, SaveAutoGrades
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
-from autograder.boxes.execution import Check
+from autograder.boxes.execution import CellCheck
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.timestamps import handed_in_at
-from autograder.grading.entering import conversion, gradebook
-from autograder.grading.entering.gradebook_reading import read_entries
+from autograder.grading.gradebooks import conversion, gradebook
+from autograder.grading.gradebooks.gradebook_reading import read_entries
 from autograder.grading.returning.page_exporter import PageExporter
 from autograder.grading.returning.page_head import mark_waiting
 from autograder.grading.returning.sanitize import make_harmless
@@ -33,7 +33,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 @pytest.mark.parametrize("worth", [7, 150, 1000, 99_999])
 def test_points_are_written_with_all_their_digits(worth: int) -> None:
     """What nbgrader reads from the cell is compared with what the judge gave."""
-    check = Check("lab.one", "One", points=3, worth=worth, limit=2)
+    check = CellCheck("lab.one", "One", points=3, worth=worth, limit=2)
     verdict = Verdict("lab.one", "One", State.FAILED, 1, 3)
     given = points(check, verdict)
     *_, value = conversion._graded_outputs(check, verdict, [])

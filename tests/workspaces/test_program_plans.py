@@ -9,7 +9,7 @@ import pytest
 from autograder.kit.runners import ALONE, LaunchesFromPackage
 from autograder.workspaces.colcon import Build
 from autograder.workspaces.packages import Package
-from autograder.workspaces.plans import lacks_programs, launch_targets, plan_for
+from autograder.workspaces.program_plans import lacks_programs, launch_targets, plan_for
 
 if TYPE_CHECKING:
     from pathlib import Path

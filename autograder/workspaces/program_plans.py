@@ -15,9 +15,9 @@ import re2
 from autograder import course
 from autograder.kit.runners import ALONE, LaunchesFromPackage, RunsProgram, RunsPrograms, ServesInterface
 from autograder.kit.workspace_report import AMENT_PACKAGE
+from autograder.workspaces.byte_budget import ByteBudget
 from autograder.workspaces.install_folder import files_of_interfaces, has_service, is_indexed
 from autograder.workspaces.packages import LAUNCH_LANGUAGES, WORKSPACE, launch_files
-from autograder.workspaces.room import Room
 from environment.python_child import installed_program, python_child
 
 if TYPE_CHECKING:
@@ -215,10 +215,10 @@ def _launch_words(file: Path, build: Build) -> set[str] | None:
         *(path for package in build.packages for path in package.folder.rglob("*")),
     ]
     others = {path for path in near if path.name.endswith(_LAUNCH_FILES) and _is_small(path)}
-    room, words = Room(_LARGEST), set[str]()
+    budget, words = ByteBudget(_LARGEST), set[str]()
     unread = {file}
     while unread:
-        if not all(map(room.has, unread)):
+        if not all(map(budget.has, unread)):
             return None
         others -= unread
         text = "\n".join(path.read_text(encoding="utf-8", errors="replace") for path in unread)

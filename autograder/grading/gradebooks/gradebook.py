@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import sqlalchemy
 
-from autograder.grading.entering.gradebook_reading import SUBMITTED, has_tables, opened, sql
+from autograder.grading.gradebooks.gradebook_reading import SUBMITTED, has_tables, opened, sql
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
