@@ -116,7 +116,7 @@ def first_answer_ignored(seen: Client, _: Client) -> Advice | None:
         f"The service answered {first} to the first call, but your second call does not use that answer: it adds up "
         "on its own.",
         "Put what the service answered first into the second call, and add nothing up yourself. In a notebook, that is "
-        "what the first ask returned.",
+        "what the first `ask` returned.",
     )
 
 
