@@ -7,8 +7,10 @@ worker process, so tests name it as ``fake_judge:FakeJudge`` with this folder on
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import threading
+import traceback
 from pathlib import Path
 from typing import Self
 
@@ -36,6 +38,9 @@ class FakeJudge:
     def open(self, exercise_id: str) -> None:
         self._exercise = exercise_id
         self._said = None
+        if stack := os.environ.get("STACK_OF_THE_FAKE_JUDGE"):
+            frames = [(frame.filename, frame.name) for frame in traceback.extract_stack()]
+            Path(stack).write_text(json.dumps(frames), encoding="utf-8")
 
     def close_report(self) -> Report:
         if self._said is None:

@@ -1,0 +1,66 @@
+"""The table "One class" of docs/architecture.md, followed while a class of one student is graded."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+import threading
+from typing import TYPE_CHECKING, Any
+
+from conftest import TALKER, TinyClass
+
+from autograder import course
+from autograder.grading.batch import grade
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import pytest
+
+STEP = re.compile(r"^\| (\d+) \| `([\w/]+\.py)` \| `(\w+)` \|", re.MULTILINE)
+
+
+def steps() -> list[tuple[str, str]]:
+    """The files and functions of the table, in its order."""
+    text = (course.root() / "docs" / "architecture.md").read_text(encoding="utf-8")
+    found = STEP.findall(text)
+    assert [int(number) for number, _, _ in found] == list(range(1, len(found) + 1))
+    return [(file, function) for _, file, function in found]
+
+
+def test_a_class_goes_through_these_files_in_this_order(
+    tiny: TinyClass, with_fake_judge: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """A step in a worker process is known by the stack that reaches the judge there."""
+    table = steps()
+    assert len(table) >= 10
+    stack = tmp_path / "stack.json"
+    monkeypatch.setenv("STACK_OF_THE_FAKE_JUDGE", str(stack))
+    called: list[tuple[str, str]] = []
+
+    def note(frame: Any, event: str, _: object) -> None:
+        if event == "call":
+            step = _step(frame.f_code.co_filename, frame.f_code.co_name)
+            if step not in called:
+                called.append(step)
+
+    tiny.submit("ada", 10, 10)
+    threading.setprofile(note)
+    sys.setprofile(note)
+    try:
+        grade(tiny.path, judge=with_fake_judge, jobs=1)
+    finally:
+        sys.setprofile(None)
+        threading.setprofile(None)
+    assert tiny.scores("ada")[TALKER] == 10
+    elsewhere = [_step(file, function) for file, function in json.loads(stack.read_text())]
+    here = [step for step in table if step in called]
+    assert here == [step for step in called if step in table]
+    assert [step for step in table if step in elsewhere] == [step for step in elsewhere if step in table]
+    assert [step for step in table if step not in called and step not in elsewhere] == []
+
+
+def _step(file: str, function: str) -> tuple[str, str]:
+    """The file as the table names it: below ``grading/``, or else below the package."""
+    return file.rpartition("/autograder/")[2].removeprefix("grading/"), function
