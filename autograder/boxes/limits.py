@@ -86,6 +86,20 @@ class Limits:
         return min(self.memory_bytes, self.beside_bytes) if self.beside else self.memory_bytes
 
 
+BUILD_LIMITS = Limits(
+    cpu_seconds=300.0,
+    memory_bytes=1_500_000_000,
+    beside_bytes=500_000_000,
+    beside=True,
+    processes=200,
+    scratch_bytes=300_000_000,
+    scratch_files=20_000,
+)
+"""The limits of a build; an interface package takes 10 s of processor time, 400 MB, and writes 5 million bytes in
+600 files.
+"""
+
+
 _MOST_OPEN_FILES = 1 << 20
 """Programs that loop over all possible descriptors would take too long with the billion that some systems allow."""
 

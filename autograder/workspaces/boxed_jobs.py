@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from autograder.boxes.environment import box_environment
 from autograder.boxes.execution import Ended
 from autograder.boxes.guards import BoxGuard
-from autograder.boxes.limits import Limits
+from autograder.boxes.limits import BUILD_LIMITS, Limits
 from autograder.boxes.mounts import HOME, WORK
 from autograder.boxes.sandbox import Bind, Enclosure
 from autograder.temporary_folders import fresh_folder
@@ -29,18 +29,6 @@ if TYPE_CHECKING:
     from autograder.workspaces.cache import CachedBuild
     from autograder.workspaces.jobs import BuildOrder, ProgramJob
 
-BUILD_LIMITS = Limits(
-    cpu_seconds=300.0,
-    memory_bytes=1_500_000_000,
-    beside_bytes=500_000_000,
-    beside=True,
-    processes=200,
-    scratch_bytes=300_000_000,
-    scratch_files=20_000,
-)
-"""The limits of a build; an interface package takes 10 s of processor time, 400 MB, and writes 5 million bytes in
-600 files.
-"""
 PROGRAM_LIMITS = Limits(cpu_seconds=200.0, memory_bytes=1_500_000_000, processes=400)
 """The limits of a program, if the system itself does not enforce the limits of the whole submission."""
 PACK_SECONDS = 60.0

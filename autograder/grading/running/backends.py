@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 from typing import TYPE_CHECKING
 
+from autograder.grading.running.orders import JUDGE
 from autograder.temporary_folders import HeldFolder, sweep
 
 if TYPE_CHECKING:
@@ -39,7 +40,6 @@ def local(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[E
         SandboxMissing: Submissions cannot be boxed on this machine; the message says what to do.
     """
     from autograder.grading.running import engine, sandboxing
-    from autograder.grading.running.worker import JUDGE
 
     sandboxing.require(directory)
 
@@ -67,7 +67,6 @@ def cluster(
     """
     from autograder.grading.cluster.connection import connected
     from autograder.grading.running import sandboxing
-    from autograder.grading.running.worker import JUDGE
 
     boxed = not sandboxing.switched_off(directory)
     with connected(scheduler, judge=judge or JUDGE, boxed=boxed, tell=tell) as pool:

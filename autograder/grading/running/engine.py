@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 
 import psutil
 
-from autograder.boxes.limits import Limits
+from autograder.boxes.limits import BUILD_LIMITS, Limits
 from autograder.grading.running.dispatcher import Dispatcher, Done
+from autograder.grading.running.orders import JUDGE
 from autograder.grading.running.this_machine import ThisMachine
-from autograder.grading.running.worker import JUDGE
-from autograder.workspaces.boxed_jobs import BUILD_LIMITS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable

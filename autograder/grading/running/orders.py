@@ -10,6 +10,8 @@ import msgspec
 
 ADDRESS = "this machine"
 """The address of the worker that is this machine. It is never refused: then nothing could be graded."""
+JUDGE = "autograder.judge.serving.process:JudgeProcess"
+"""The class of the real judge, as ``module:class``. It is named, not imported: only workers load a judge."""
 
 
 class Offer(msgspec.Struct, frozen=True):

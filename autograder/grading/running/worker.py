@@ -46,7 +46,6 @@ if TYPE_CHECKING:
     from autograder.boxes.limits import Left
     from autograder.verdict import Verdict
 
-JUDGE = "autograder.judge.serving.process:JudgeProcess"
 LAST_SECONDS = 10.0
 """Seconds for a worker to end cleanly once its grader is gone; a living grader allows less."""
 MOST_EVIDENCE = 4_000_000

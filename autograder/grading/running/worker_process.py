@@ -19,7 +19,7 @@ import msgspec
 from autograder import course
 from autograder.boxes.execution import Execution
 from autograder.boxes.fork_server import ForkServers
-from autograder.grading.running.worker import JUDGE
+from autograder.grading.running.orders import JUDGE
 from autograder.judge.settings import boxed_ros_environment, ros_environment
 from autograder.messages.lines import Hangup, Lines, Silent, TooLong
 from autograder.process_trees import end_processes_in, end_soon
