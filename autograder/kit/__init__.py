@@ -1,1 +1,1 @@
-"""The words that exercises are written in: the model, the evidence, and what several exercises ask of it."""
+"""The vocabulary of exercises: the model, the evidence, and the rules and mistakes that several exercises share."""

@@ -1,4 +1,4 @@
-"""The judge's publishers, servers and clients, as a scenario uses them."""
+"""Interfaces of the publishers, servers and clients that the judge makes for a scenario."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class ActionCounterpart(Protocol):
         """Send one feedback message for the current goal."""
 
     def say_status(self) -> None:
-        """Publish the current goal's status, as a server does when it begins to execute a goal."""
+        """Publish the current goal's status (executing), as a server does when it begins to execute a goal."""
 
     def await_cancel(self, within: float) -> bool:
         """Wait for a request to cancel the current goal; False if none came in ``within`` seconds."""
@@ -50,28 +50,28 @@ class ActionCounterpart(Protocol):
 class Caller(Protocol):
     """A client of the judge for one service. Its calls are numbered from 0.
 
-    It records the events ``servers`` (how many serve the name), ``asked`` and ``answered``.
+    It records these events: ``servers`` (how many servers of this name exist), ``asked`` and ``answered``.
     """
 
     def await_server(self, within: float) -> bool:
-        """Wait until it can call; False if no server of the name and type appears in ``within`` seconds."""
+        """Wait until the client can call; False if no server of the name and type appears in ``within`` seconds."""
 
     def ask(self, *requests: Mapping[str, Any]) -> None:
         """Send requests, one right after the other, without waiting for answers."""
 
     def await_answers(self, quiet: float) -> bool:
-        """Wait until every call is answered; False if nothing at all happened for ``quiet`` seconds."""
+        """Wait until every call is answered; False if no event at all was recorded for ``quiet`` seconds."""
 
 
 class ActionCaller(Protocol):
     """A client of the judge for one action. Its goals are numbered from 0.
 
     It records the events ``servers``, ``goal_sent``, ``goal_answer``, ``feedback_heard``, ``cancel_sent``,
-    ``cancel_answer`` and ``result_heard``; all but the first have the number of the goal.
+    ``cancel_answer`` and ``result_heard``. All but ``servers`` contain the number of the goal.
     """
 
     def await_server(self, within: float) -> bool:
-        """Wait until it can send goals; False if no server of the name and type appears in ``within`` seconds."""
+        """Wait until the client can send goals; False if no matching server appears in ``within`` seconds."""
 
     def send_goal(self, **fields: Any) -> int:
         """Send a goal, and request its result once it is accepted. Return its number."""

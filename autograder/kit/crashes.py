@@ -1,4 +1,4 @@
-"""Mistakes recognized from a traceback: which traceback counts, which mistake it shows, and the advice."""
+"""Mistakes recognized from a traceback: decides which traceback counts, which mistake it shows, and what to advise."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ _NO_CRASH = re2.compile(
 
 
 def traceback_of(evidence: Evidence) -> str:
-    """Return the last traceback of any part that shows a crash.
+    """Return the last traceback that shows a crash, of any part.
 
-    A TimeoutError does not count, because a client is asked to raise it if there is no server. Neither does an error
-    in a thread when the main program shuts ROS down under it. An exception raised on purpose in one part, such as for
-    a refused goal, does not hide a slip in another part. A traceback that was cut off, because two threads printed at
-    once, counts only if there is no other.
+    Some tracebacks do not count: a TimeoutError, because a client is asked to raise it if there is no server; and an
+    error in a thread when the main program shuts ROS down while the thread still uses it. An exception raised on
+    purpose in one part, such as for a refused goal, does not hide an accidental error in another part. A traceback
+    that was cut off, because two threads printed at the same time, counts only if no complete one exists.
     """
     last_first = [part.traceback for part in reversed(list(evidence)) if part.traceback]
     shown = sorted(last_first, key=lambda text: is_cut_off(text.split("\n")))
@@ -58,7 +58,7 @@ def _recogniser(crash: Crash | Elsewhere) -> Mistake:
 
 
 def what_and_where(traceback: str) -> str:
-    """The exception that was raised, and the line of the student's that led to it."""
+    """Return a text with the exception that was raised and the student's line that led to it."""
     line = raised_line(traceback)
     frames = [found for found in _FRAME.finditer(traceback) if not is_a_library(found["file"])]
     where = f" (line {frames[-1]['line']}, in {frames[-1]['function']})" if frames else ""
@@ -71,15 +71,15 @@ def raised(how: str, traceback: str) -> Advice:
     """Return the advice for an exception that is not a known mistake.
 
     Args:
-        how: The consequence, for the beginning of the sentence.
-        traceback: Its traceback.
+        how: The consequence of the exception; the sentence begins with it.
+        traceback: The traceback of the exception.
     """
     why, next_step = meaning(traceback)
     return Advice(f"{how}: {what_and_where(traceback)}{why and f'. {why}'}", next_step, traceback)
 
 
 _EXECUTOR = "rclpy/executors.py"
-"""The file that calls callbacks: the student's code below it in a traceback is a callback."""
+"""The file of rclpy that calls callbacks. Student's code that a traceback shows below this file ran in a callback."""
 _FRAME = re2.compile(r'(?m)^ +File "(?P<file>[^"\n]*)", line (?P<line>\d+), in (?P<function>[^\n]*)$')
 
 
@@ -100,14 +100,13 @@ def _exception_in_callback(evidence: Evidence) -> Advice | None:
     spins = next((place for place, file in enumerate(files) if file.endswith(_EXECUTOR)), len(files))
     called = files if _was_spun(evidence) else files[spins:]
     if all(map(is_a_library, called)) and ", in await_or_execute\n" not in traceback:
-        return (
-            None  # not in a callback: ROS itself raised it, such as for spinning an object that is not a node
-        )
+        # ROS itself raised it, not a callback: for example, an object that is not a node was spun.
+        return None
     return raised("A callback raised an exception, and that ended the spinning of the node", traceback)
 
 
 def _was_spun(evidence: Evidence) -> bool:
-    """True if a notebook's node raised its exception after it was made; the traceback alone does not show that."""
+    """Return True if a notebook's node was made before it raised its exception; no traceback shows this."""
     return any(p.first("subject", "constructed") for p in evidence if p.ending and p.ending.name == "raised")
 
 
@@ -126,13 +125,14 @@ _NONE_FOR_AN_ANSWER = re2.compile(
     rf"\.sum\b.*{MARKS}AttributeError: 'NoneType' object has no attribute 'sum'"
 )
 LEFT_LYING = 0.3
-"""Seconds that an answer must have been available before the client is said not to have taken it."""
+"""Seconds for which an answer must have been available before the advice says that the client did not take it."""
 
 
 def _answer_not_taken(evidence: Evidence) -> Advice | None:
-    """In each run the client goes on without an answer that was available for a while, as after a call with a limit.
+    """Return advice if the client, in each run, goes on without an available answer, as after a call that timed out.
 
-    In a single run, a busy machine may have delayed it. A value read from a future may never have been waited for.
+    If this happens in only one run, a busy machine may have delayed the answer. A client that reads a value from a
+    future may never have waited for it.
     """
     answered = [part for part in evidence if part.first("response") is not None]
     if not answered or not all(map(_went_on_without_it, answered)):
@@ -150,19 +150,19 @@ def _went_on_without_it(part: Part) -> bool:
     if given is None or found is None or "result()" in found[0] or part.ending is None:
         return False
     if "rclpy/executors.py" in part.traceback:
-        return False  # it waited in a callback: the spinning was not what was missing
+        return False  # The client waited in a callback, so missing spinning was not the cause.
     outputs = (e for e in part.of("output") if raised_line(part.traceback) in e.data["text"])
     return next(outputs, part.ending).t > given.t + LEFT_LYING
 
 
 _COROUTINE = re2.compile(
-    # A method, or a function of rclpy, may be a callback that did not run before the program ended.
+    # If a callback was never awaited, the program may simply have ended before rclpy ran it: those are left out.
     r"^<coroutine object (?P<returned>\S+) at |RuntimeWarning: coroutine '(?P<warned>[a-z]\w*)' was never awaited"
 )
 
 
 def _never_awaited(evidence: Evidence) -> Advice | None:
-    """Return advice if a coroutine of the student was never awaited: its value or Python's warning shows that."""
+    """Return advice if a coroutine was never awaited; the returned value or Python's warning shows this."""
     said = [line for part in evidence for line in part.said()]
     found = next(filter(None, map(_COROUTINE.search, said)), None)
     name = (found["returned"] or found["warned"]).rpartition(".")[2] if found else ""
@@ -180,7 +180,7 @@ _GENERATOR = re2.compile(r"^<generator object (?P<name>\S+) at ")
 
 
 def _never_iterated(evidence: Evidence) -> Advice | None:
-    """The advice for a notebook's function that has a ``yield``, so that its call runs nothing of it."""
+    """Return advice if a notebook's function contains ``yield``, so that calling it runs none of its code."""
     found = next(filter(None, (_GENERATOR.match(part.returned or "") for part in evidence)), None)
     if found is None:
         return None
@@ -196,7 +196,7 @@ _NO_FILE = re2.compile(r"^\S*python[\d.]*: can't (?:open file|find '__main__' mo
 
 
 def _file_not_found(evidence: Evidence) -> Advice | None:
-    """Python says that it cannot open the file of the command, so nothing of the student's has run."""
+    """Return advice if Python could not open the file named in the command, so that no code of the student's ran."""
     found = _said_without_a_node(evidence, _NO_FILE)
     if found is None:
         return None
@@ -211,7 +211,7 @@ _NO_PACKAGE = re2.compile(r"^Package (?:'(?P<name>[^']*)' )?not found")
 
 
 def _package_not_found(evidence: Evidence) -> Advice | None:
-    """`ros2` says that it knows no such package, and ends: nothing of the student's has run."""
+    """Return advice if `ros2` did not know the package and ended, so that none of the student's code has run."""
     found = _said_without_a_node(evidence, _NO_PACKAGE)
     if found is None:
         return None
@@ -224,7 +224,7 @@ def _package_not_found(evidence: Evidence) -> Advice | None:
 
 
 def _said_without_a_node(evidence: Evidence, pattern: Any) -> Any:
-    """Return the first match in what a program said that ended and had no node; None if there is none."""
+    """Search the output of a program that ended and never had a node. Return the first match, or None."""
     said = [line for part in evidence if part.ending and not part.had_node for line in part.said()]
     return next(filter(None, map(pattern.search, said)), None)
 
@@ -246,22 +246,22 @@ CRASHES: tuple[Mistake, ...] = (
     Mistake("module_not_found", _file_not_found, certain=True),
     Mistake("module_not_found", _package_not_found, certain=True),
 )
-"""The known tracebacks, most telling first, a kernel that went away, and a package that ROS does not find."""
+"""Known tracebacks, most specific first; then a kernel that ended, and a package that ROS does not find."""
 OTHER_CRASHES = (
     Mistake("exception_in_callback", _exception_in_callback, certain=True),
     Mistake("crashed", _crashed, certain=True),
 )
-"""Any other traceback; checked after the mistakes that the graph shows."""
+"""Any other traceback; checked after the mistakes that the ROS graph shows."""
 OTHER_SLIPS = tuple(map(_only_slips, OTHER_CRASHES))
-"""Tracebacks of accidental errors; exceptions raised on purpose are checked after all other mistakes."""
+"""Tracebacks of accidental errors. Exceptions raised on purpose are checked later, after all other mistakes."""
 
 
 SLIPS = ("AttributeError", "TypeError", "NameError", "UnboundLocalError", "KeyError", "IndexError")
-"""Exceptions that programs do not raise on purpose."""
+"""The exceptions that count as accidental: programs do not raise them on purpose."""
 
 
 def raised_lines(traceback: str) -> list[str]:
-    """Return the lines of the exception at the end of a traceback: type, message (of one line or more), notes."""
+    """Return the last exception of a traceback as lines: its type, its message (one line or more) and its notes."""
     lines = traceback.rstrip().splitlines()
     frames = [place for place, line in enumerate(lines) if _FRAME.match(line)]
     behind = lines[frames[-1] + 1 :] if frames else lines[-1:]
@@ -274,7 +274,7 @@ def raised_line(traceback: str) -> str:
 
 
 def on_purpose(traceback: str) -> bool:
-    """True if a program ended with an exception that it raised itself, or with one that is not in :data:`SLIPS`."""
+    """Return True if the program's own code raised the exception, or if its type is not in :data:`SLIPS`."""
     line = raised_line(traceback)
     return bool(line) and (meant(traceback) or not line.startswith(SLIPS))
 

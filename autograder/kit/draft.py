@@ -1,9 +1,9 @@
-"""An exercise while it is written: a recipe, then criteria and mistakes, each a decorated function.
+"""A builder for exercises: pass a recipe, then add criteria and mistakes, each as a decorated function.
 
-A function gets two views of the same kind, made by the recipe: the record of the subject, and the record of the
-reference solution. There are two ways to add a mistake. :meth:`Draft.knows` takes two texts, which may quote from
-both views, ``"It carries {seen.counters[0]}."``, and what was found, as ``{}``. If texts are not enough,
-:meth:`Draft.mistake` decorates a function that returns the advice itself.
+Each function gets two views of the same type, both made by the recipe: the first shows the student's subject, the
+second the reference solution. There are two ways to add a mistake. :meth:`Draft.knows` takes two texts with
+placeholders: ``"It carries {seen.counters[0]}."`` quotes from a view, and ``{}`` stands for the value that was found.
+If texts are not enough, :meth:`Draft.mistake` decorates a function that returns the advice itself.
 """
 
 from __future__ import annotations
@@ -22,56 +22,56 @@ if TYPE_CHECKING:
 View = TypeVar("View")
 View_co = TypeVar("View_co", covariant=True)
 Judge = Callable[[View, View], Finding]
-"""Decides a criterion from the records of the subject and of the reference."""
+"""A function that decides a criterion from the views of the subject and of the reference solution."""
 Told = Callable[[View, View], Advice | None]
-"""Returns the advice about a mistake, if it was made."""
+"""A function that returns the advice about a mistake, or None if the mistake was not made."""
 
 
 class Recipe(Protocol[View_co]):
-    """The common part of exercises about one kind of subject."""
+    """The base class of recipes. A recipe contains what exercises about one kind of subject have in common."""
 
     @property
     def roles(self) -> tuple[str, ...]:
-        """The roles of the subject's endpoints."""
+        """The roles of the endpoints that the subject must have, such as ``"publisher"``."""
 
     @property
     def ladder(self) -> Sequence[Mistake]:
-        """The common mistakes, most telling first; :data:`OWN` and :data:`OWN_LATE` hold the exercise's places."""
+        """Return the common mistakes, most specific first; others go at :data:`OWN` and :data:`OWN_LATE`."""
 
     def scenario(self, bench: Bench) -> None:
-        """Drive the bench through all parts."""
+        """Run the scenario: tell the bench what to do in each part."""
 
     def seen(self, evidence: Evidence) -> View_co:
-        """The subject, as it was seen."""
+        """Return the view of the student's subject."""
 
     def expected(self, evidence: Evidence) -> View_co:
-        """The reference solution, as it was recorded."""
+        """Return the view of the recorded reference solution."""
 
 
 class SeenAsItIs:
-    """A recipe whose two views are the evidence itself, because there are several runs; it contains the reference."""
+    """A recipe whose two views are both the whole evidence, which also contains the reference solution's record."""
 
     def seen(self, evidence: Evidence) -> Evidence:
-        """The subject, as it was seen."""
+        """Return the evidence unchanged."""
         return evidence
 
     def expected(self, evidence: Evidence) -> Evidence:
-        """The same evidence: it contains the reference, too."""
+        """Return the same evidence, because it contains the reference solution's record as well."""
         return evidence
 
 
 OWN = Mistake("", lambda _: None)
-"""The place in a ladder for an exercise's own mistakes: before those of nodes that hang or are not spun."""
+"""Placeholder in a list of mistakes: the exercise's own go here, before those of nodes that hang or are not spun."""
 OWN_LATE = Mistake("", lambda _: None)
-"""The place for own mistakes that a node which is not spun would show as well."""
+"""Placeholder for the exercise's own mistakes that a node which is not spun would show as well."""
 
 
 class Draft(Generic[View]):
-    """Collects an exercise.
+    """Collects the criteria and mistakes of an exercise.
 
     Args:
-        exercise_id: Such as ``"lab_8_1.battery"``: the lab's folder and the file's name.
-        title: The title of the card: the lab and the subject.
+        exercise_id: The lab's folder and the file's name, such as ``"lab_8_1.battery"``.
+        title: The title of the card, naming the lab and the subject.
         task: One sentence that states the task.
         recipe: The recipe for the kind of subject.
     """
@@ -83,23 +83,23 @@ class Draft(Generic[View]):
         self._before: dict[str, list[Mistake]] = {}
 
     def asks(self, name: str, points: float, title: str, judge: Callable[[Evidence], Finding]) -> None:
-        """Add a criterion of the recipe, in the order of the card.
+        """Add a criterion that the recipe provides. The card shows the criteria in the order in which they were added.
 
         Args:
-            name: A stable key.
-            points: The points for it.
-            title: One line for people.
-            judge: A criterion of the recipe.
+            name: A stable key for the criterion.
+            points: The points that the criterion is worth.
+            title: The criterion in one line, as the card shows it.
+            judge: The recipe's function that decides the criterion.
         """
         self._criteria.append(Criterion(name, title, points, judge))
 
     def criterion(self, name: str, points: float, title: str) -> Callable[[Judge[View]], Judge[View]]:
-        """Add a criterion of the exercise's own, in the order of the card.
+        """Add a criterion of this exercise only. The card shows the criteria in the order in which they were added.
 
         Args:
-            name: A stable key.
-            points: The points for it.
-            title: One line for people.
+            name: A stable key for the criterion.
+            points: The points that the criterion is worth.
+            title: The criterion in one line, as the card shows it.
         """
 
         def add(judge: Judge[View]) -> Judge[View]:
@@ -121,16 +121,20 @@ class Draft(Generic[View]):
         late: bool = False,
         before: str = "",
     ) -> None:
-        """Add a known mistake that is described in two texts, most telling first.
+        """Add a known mistake that is described in two texts. Call this for the most specific mistakes first.
 
         Args:
             key: A stable name, explained in ``docs/mistakes.md``.
-            found: Returns what shows the mistake; anything false if nothing does.
-            says: What the student is told, with placeholders such as ``{seen.texts[0]}``; ``{}`` is what was found.
-            next_step: What to do about it, with the same placeholders.
-            certain: True if the record proves it whatever the machine's load was; or a function that decides this.
-            late: True if a node that hangs or is not spun would show it as well, so that those are checked first.
-            before: The key of the common mistake before which it is checked, if its place is neither of the two.
+            found: Returns whatever shows the mistake; a false value, such as None or "", if the mistake was not made.
+            says: The text for the student, with placeholders such as ``{seen.texts[0]}``; ``{}`` is the value that
+                was found.
+            next_step: The next step for the student, with the same placeholders.
+            certain: True if the record proves the mistake however busy the machine was; or a function that decides
+                this.
+            late: True if a node that hangs or is not spun shows it as well. Then those two mistakes are checked
+                first.
+            before: The key of the common mistake before which this one is checked, if neither of the two usual
+                positions fits.
         """
 
         def told(seen: View, expected: View) -> Advice | None:
@@ -149,7 +153,7 @@ class Draft(Generic[View]):
         late: bool = False,
         before: str = "",
     ) -> Callable[[Told[View]], Told[View]]:
-        """Add a known mistake whose advice the decorated function returns; the arguments are those of :meth:`knows`."""
+        """Add a known mistake whose advice the decorated function returns. For the arguments see :meth:`knows`."""
 
         def add(told: Told[View]) -> Told[View]:
             def advice(evidence: Evidence) -> Advice | None:
@@ -169,7 +173,7 @@ class Draft(Generic[View]):
         return add
 
     def exercise(self, **more: Any) -> Exercise:
-        """Return the exercise, after everything was added.
+        """Return the finished exercise. Call this after adding all criteria and mistakes.
 
         Args:
             more: Further attributes of :class:`autograder.kit.model.Exercise`.

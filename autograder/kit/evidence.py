@@ -1,4 +1,4 @@
-"""The judge's record of a subject, and the questions that exercises ask about it."""
+"""The record that the judge makes of a subject, and the questions that exercises ask about it."""
 
 from __future__ import annotations
 
@@ -17,11 +17,12 @@ class Event:
     """One recorded event.
 
     Attributes:
-        t: Seconds of wall time since the part began.
+        t: Wall time in seconds since the part began.
         kind: What happened, such as ``message`` or ``goal``; docs/exercise-reference.md lists every kind with its data.
-        name: The topic, service or action; the stream of an output line; what happened to the subject.
-        data: The rest, as JSON-able values.
-        sim: Simulated seconds if the judge stepped the clock, else None.
+        name: The topic, service or action; for a line of output, its stream; for the subject itself, such as
+            ``exited``.
+        data: Further fields of the event, as values that JSON can contain.
+        sim: Simulated time in seconds if the judge stepped the clock, else None.
     """
 
     t: float
@@ -32,75 +33,75 @@ class Event:
 
     @property
     def moment(self) -> float:
-        """Seconds of the subject's time: simulated if the judge stepped its clock, else ``t``."""
+        """The event's time in the subject's clock, in seconds: simulated if the judge stepped the clock, else ``t``."""
         return self.t if self.sim is None else self.sim
 
 
 @dataclass(frozen=True)
 class Part:
-    """One run of the subject: its inputs and the events in order."""
+    """One run of the subject: the inputs, and the recorded events in order of time."""
 
     name: str
     inputs: Mapping[str, Any] = field(default_factory=dict)
     events: Sequence[Event] = ()
 
     def of(self, kind: str, name: str | None = None) -> list[Event]:
-        """Return the events of a kind, in order; only those of ``name`` if it is given."""
+        """Return the events of a kind, in order of time. If ``name`` is given, only those with this name."""
         return [e for e in self.events if e.kind == kind and (name is None or e.name == name)]
 
     def first(self, kind: str, name: str | None = None) -> Event | None:
-        """The first event of a kind, or None."""
+        """Return the first event of a kind, with this name if one is given, or None."""
         return next((e for e in self.events if e.kind == kind and (name is None or e.name == name)), None)
 
     def said(self, *, after: Event | None = None) -> list[str]:
-        """Return the subject's words (log lines, printed lines, a function's value), in order.
+        """Return everything that the subject logged, printed or returned, in order of time, without tracebacks.
 
         Args:
-            after: Only words after this event.
+            after: Only output after this event.
         """
         start = self.events.index(after) + 1 if after is not None else 0
-        # A traceback that began before that event continues after it.
+        # A traceback that began before the event ``after`` may continue beyond it.
         own = without_tracebacks(self.events)
         return [text for i, e in own if i >= start and (text := spoken_by(e)) is not None]
 
     def endpoints(self, role: str) -> dict[str, str]:
-        """Return the subject's endpoints of a role that were ever on the graph in this part: name -> type."""
+        """Return all endpoints of a role that the subject had on the ROS graph in this part, as name -> type."""
         found: dict[str, str] = {}
         for survey in self.of("interface"):
             found |= survey.data.get(role, {})
         return found
 
     def real_name(self, name: str) -> str:
-        """Return the subject's name for what the task calls ``name``: another one if the subject misnamed it."""
+        """Return the name that the subject used for the task's ``name``: a different one if the subject misnamed it."""
         event = self.first("misnamed", name)
         return name if event is None else str(event.data["real"])
 
     @property
     def had_node(self) -> bool:
-        """True if the subject had a node, even for a short time."""
+        """Return True if the subject had a node, even for a short time."""
         return bool(self.of("announced")) or any(survey.data.get("nodes") for survey in self.of("interface"))
 
     @property
     def ending(self) -> Event | None:
-        """How the subject ended by itself: an event named ``exited``, ``returned`` or ``raised``; or None."""
+        """Return the event with which the subject ended by itself (``exited``, ``returned`` or ``raised``), or None."""
         return next((e for e in self.events if e.kind == "subject" and e.name in _ENDINGS), None)
 
     @property
     def returned(self) -> str | None:
-        """A function's value, as Python writes it (``"None"`` for nothing); None if no function has returned."""
+        """The repr of the value that a function returned (``"None"`` for nothing); None if none has returned."""
         ending = self.ending
         return str(ending.data.get("value")) if ending is not None and ending.name == "returned" else None
 
     @functools.cached_property
     def traceback(self) -> str:
-        """The last traceback that the subject showed, else empty; cached, because most mistakes need it.
+        """The last traceback that the subject printed; empty if there is none. Cached, because most mistakes need it.
 
-        A traceback from being stopped by the judge does not count.
+        A traceback that appears because the judge stopped the subject does not count.
         """
         for event in reversed(self.events):
             if event.kind == "subject" and event.data.get("traceback"):
                 return str(event.data["traceback"])
-        # Separately for each stream, and for each program below a launch, because their lines may be mixed.
+        # Search each stream separately, and under a launch each program, because their lines may be interleaved.
         streams: dict[str, list[str]] = {}
         for event in self.of("output"):
             stream, line = _stream_and_line(event)
@@ -109,11 +110,11 @@ class Part:
 
 
 _LAUNCHED = re2.compile(r"(?s)(\[[\w.]+-\d+\] )?(.*)")
-"""A line of output, after the prefix that a launch puts before its programs' lines, such as ``[talker-1]``."""
+"""Splits a line of output into the prefix that a launch adds, such as ``[talker-1]``, and the rest."""
 
 
 def _stream_and_line(event: Event) -> tuple[str, str]:
-    """Return the stream of an output line, with its program below a launch, and the line without its prefix."""
+    """Return the stream (under a launch, also the program) of an output line, and the line without its prefix."""
     text = str(event.data["text"])
     if not text.startswith("["):
         return event.name, text
@@ -124,13 +125,13 @@ def _stream_and_line(event: Event) -> tuple[str, str]:
 _ENDINGS = ("exited", "returned", "raised")
 _OF_A_NOTEBOOK = ("started", "constructed", "never_constructed", "returned", "raised")
 INTERRUPTED = "Ctrl-C"
-"""The name of the event that records that the judge pressed Ctrl-C."""
+"""The name of the event recorded when the judge pressed Ctrl-C."""
 
 
 _TRACEBACK = "Traceback (most recent call last)"
 _IGNORED = "Exception ignored in"
-"""The beginning of Python's message about an error in a destructor: it stops nothing, and is often a consequence of
-another error.
+"""The beginning of Python's message about an error in a destructor. Such an error stops nothing, and is often only a
+consequence of another one.
 """
 _OF_A_TRACEBACK = (
     "Exception in thread ",
@@ -144,16 +145,16 @@ _OF_A_TRACEBACK = (
     "During handling of the above exception",
     "The above exception was the direct cause",
 )
-"""The beginnings of lines of tracebacks and stacks, even if two threads print theirs at once.
+"""Lines that begin like this belong to tracebacks or stacks, even if two threads print theirs at the same time.
 
-A Python program that ends while one of its threads still spins is often aborted by the C++ runtime (``terminate
-called without an active exception``), and faulthandler prints the stacks.
+For example, if a Python program ends while one of its threads still spins, the C++ runtime often aborts it
+(``terminate called without an active exception``), and faulthandler then prints the stacks.
 """
 _FRAME = re2.compile(r'\s+File ".*", line \d+')
 
 
 def without_tracebacks(events: Sequence[Event]) -> Iterator[tuple[int, Event]]:
-    """Yield all events with their indexes, except lines of tracebacks: these quote the program, not its words."""
+    """Yield all events with their indexes, without the lines of tracebacks, which are not the program's own."""
     inside: dict[str, bool] = {}
     for place, event in enumerate(events):
         if event.kind == "output":
@@ -167,29 +168,32 @@ def without_tracebacks(events: Sequence[Event]) -> Iterator[tuple[int, Event]]:
 
 
 REPORTS = ("@workspace ", "@process ")
-"""The beginning of a runner's line about a build or a launched process. Such lines are not the subject's words."""
+"""The beginnings of lines with which a runner reports a build or a launched process. The subject did not write them.
+"""
 _ROS2_RUN = "[ros2run]: "
-"""The beginning of a line of ``ros2 run`` itself, such as that the program exited with failure 3: it does not tell
-why.
+"""The prefix of messages from ``ros2 run`` itself, for example that the program exited with failure 3. Such a message
+does not explain the failure.
 """
 _PREFIX = re2.compile(r"^\[\w+\] \[[\d.]+\] \[(?P<logger>[^\]]*)\]: ")
-"""The prefix that rcutils puts before a line on a terminal: level, time stamp, logger.
+"""The prefix that rcutils puts before a log line on a terminal: level, time stamp, logger.
 
-It is not the subject's words.
+The prefix is not part of what the subject said.
 """
 
 
 _LIBRARIES = re2.compile(r"\.action_(client|server)$|^(rcl|rclpy|rcutils|rmw\w*)(\.|$)")
-"""Loggers of ROS itself, for lines such as "Ignoring unexpected result response" (rclpy/action/client.py)."""
+"""The names of ROS's own loggers, which write lines such as "Ignoring unexpected result response"
+(rclpy/action/client.py).
+"""
 _COLOURS = r"(?:\x1b\[[\d;]*m)*"
 _MIDDLEWARE = re2.compile(
     rf"^{_COLOURS}\d{{4}}-\d\d-\d\d [\d:.]+ .*\[{_COLOURS}\w+{_COLOURS} (Error|Warning)\]"
 )
-"""The beginning of a line of Fast DDS, which on a busy machine may complain even about a perfect program."""
+"""The beginning of a Fast DDS error or warning. On a busy machine these appear even if the program is right."""
 
 
 def spoken_by(event: Event) -> str | None:
-    """Return the subject's words in an event, without a terminal's prefix; None if the event has none."""
+    """Return the text that the subject logged, printed or returned in an event, without terminal prefix, or None."""
     if event.kind in ("log", "output"):
         text = str(event.data["text"])
         prefix = _PREFIX.match(text) if text.startswith("[") else None
@@ -212,15 +216,15 @@ def _is_a_library(logger: str) -> bool:
 
 
 def _is_the_middlewares(text: str) -> bool:
-    # This is called for every line at every event, so the slow expression runs only for likely lines.
+    # This runs for every line of output again and again, so the slow pattern is tried only on lines that may match.
     return ("Error]" in text or "Warning]" in text) and _MIDDLEWARE.match(text) is not None
 
 
 def _traceback_in(lines: Sequence[str]) -> str:
-    """Return the last Python traceback among lines of output, as a terminal shows it.
+    """Return the last Python traceback in lines of output, as a terminal shows it.
 
-    A traceback that was cut off, because the process died or another thread printed in between, counts only if there
-    is no other.
+    A traceback that was cut off, because the process died or another thread printed in between, counts only if no
+    complete one exists.
     """
     starts = [
         i
@@ -229,7 +233,7 @@ def _traceback_in(lines: Sequence[str]) -> str:
     ]
     syntax = [i for i, line in enumerate(lines) if line.startswith("  File ") and i not in starts]
     if not starts:
-        # A SyntaxError in the program itself is shown without the word "Traceback".
+        # Python prints a SyntaxError in the program itself without the line "Traceback".
         ends = [
             i
             for i, line in enumerate(lines)
@@ -241,7 +245,7 @@ def _traceback_in(lines: Sequence[str]) -> str:
 
 
 def is_cut_off(traceback: Sequence[str]) -> bool:
-    """True if the lines of a traceback end before the error's own message."""
+    """Return True if the lines of a traceback stop before the error's own message."""
     return len(traceback) < 2 or traceback[-1].startswith((" ", "\t", _TRACEBACK, *_OF_A_TRACEBACK))
 
 
@@ -255,13 +259,13 @@ def _traceback_at(lines: Sequence[str], start: int) -> list[str]:
 
 @dataclass(frozen=True)
 class Evidence:
-    """Everything that a criterion or a mistake may use.
+    """Everything that criteria and mistakes may use to decide.
 
     Attributes:
-        parts: The record of the subject.
-        reference: The record of the reference solution: the expected behavior.
-        real_time: True if this is the second look.
-        before: The result of the first look, in the second one.
+        parts: The record of the subject, one entry for each part of the scenario.
+        reference: The record of the reference solution, that is, the expected behavior.
+        real_time: True if this is the second look, in which the judge does not speed up time.
+        before: In the second look, the evidence of the first one; else None.
     """
 
     parts: Sequence[Part]
@@ -270,7 +274,7 @@ class Evidence:
     before: Evidence | None = None
 
     def part(self, name: str) -> Part:
-        """Return the part of that name; an empty one if the scenario did not get so far."""
+        """Return the part with this name; an empty one if the scenario ended before that part."""
         return next((part for part in self.parts if part.name == name), Part(name))
 
     @property
@@ -280,11 +284,14 @@ class Evidence:
 
     @property
     def in_a_notebook(self) -> bool:
-        """True if the subject is a class or a function of a notebook, not a program."""
+        """True if the subject is a class or a function in a notebook; False if it is a program."""
         return any(e.kind == "subject" and e.name in _OF_A_NOTEBOOK for part in self for e in part.events)
 
     def ever_had(self, role: str) -> bool:
-        """True if any run of both looks has such an endpoint: one that ends at once may be gone before it is seen."""
+        """Return True if the subject had an endpoint of this role in any run of either look.
+
+        Both looks count, because an endpoint that exists only briefly may go unseen in one of them.
+        """
         return any(part.endpoints(role) for part in (*self, *(self.before or ())))
 
     def __iter__(self) -> Iterator[Part]:
@@ -293,12 +300,12 @@ class Evidence:
 
 @dataclass(frozen=True)
 class Reference:
-    """A reference output: the behavior of the reference solution on the wire.
+    """A reference output: what the judge recorded on the wire when it ran the reference solution.
 
     Attributes:
         exercise: The exercise's id.
-        interface: Role -> {name: type} of the reference solution's endpoints.
-        parts: Its record, in the same parts as any subject's.
+        interface: For each role, the reference solution's endpoints as {name: type}.
+        parts: The record of the reference solution, with the same parts as a subject's.
     """
 
     exercise: str
@@ -306,10 +313,10 @@ class Reference:
     parts: Sequence[Part] = ()
 
     def part(self, name: str) -> Part:
-        """Return the part of that name.
+        """Return the part with this name.
 
         Raises:
-            KeyError: The reference output has no such part: it must be recorded again.
+            KeyError: The reference output has no such part, so it has to be recorded again.
         """
         for part in self.parts:
             if part.name == name:
@@ -319,10 +326,10 @@ class Reference:
         )
 
     def only(self, role: str) -> tuple[str, str]:
-        """Return the name and type of the only endpoint of a role.
+        """Return the name and type of the reference solution's only endpoint of a role.
 
         Raises:
-            KeyError: The reference solution has none of this role.
+            KeyError: The reference solution has no endpoint of this role.
         """
         for name, type_name in sorted(self.interface.get(role, {}).items()):
             return name, type_name

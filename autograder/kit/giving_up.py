@@ -1,7 +1,7 @@
-"""Clients whose server is late or missing: how long they wait, what they say meanwhile, and how they give up.
+"""Clients whose server is late or missing: how long they wait, what they report meanwhile, and how they give up.
 
 One rule holds for every client of the course. A client that ends and reports :data:`NOT_AVAILABLE` has given up well.
-A client that repeatedly says that it waits may go on, with a remark about limits on the card. A function with a
+A client that repeatedly reports that it waits may go on; the card then has a remark about limits. A function with a
 parameter ``patience_sec`` must wait that long.
 """
 
@@ -22,71 +22,76 @@ if TYPE_CHECKING:
     from autograder.kit.model import Bench, Mistake
 
 PATIENCE = "patience_sec"
-"""The parameter that tells a notebook's function how long to wait; also its name among a part's inputs."""
+"""The name of the parameter that tells a notebook's function how long to wait. The same name is used in a part's
+inputs.
+"""
 GIVE_UP_LIMIT = 12.0
-"""Seconds within which a client without a server must have ended, or have said repeatedly that it waits."""
+"""Time limit in seconds: until then a client without a server must have ended, or have repeatedly said that it waits.
+"""
 LATENESS = 1.5
-"""Seconds by which a late server comes after its client."""
+"""The delay in seconds between a client's start and the start of its late server."""
 PATIENCES = (6.5, 6.95)
-"""The range from which the seconds of patience are drawn.
+"""The range, in seconds, from which a function's patience is drawn at random.
 
-A usual constant, such as 5 or 10, cannot pass as one of them, even with the tolerances below.
+No usual constant, such as 5 or 10, lies within this range, even with the tolerances below.
 """
 PATIENCES_WITHOUT_A_SERVER = {Pace.FAST: (0.33, 0.37), Pace.REAL_TIME: PATIENCES}
-"""The same range for a run without a server, in which the function waits for all of its patience.
+"""The range in seconds, for each pace, in a run without a server. There the function waits for its whole patience.
 
-A constant that is long enough for a late server is too long for these. A function that needs longer, such as one
-that waits in whole seconds, gets the longer range in a second look.
-the long one in a second look."""
+A constant that is long enough for a late server is too long for the short range. A function that needs longer, such
+as one that waits in whole seconds, gets the long range in the second look.
+"""
 TOO_LONG = 2.0
-"""Seconds that a function may need in addition to its patience: to make its node, to remove it, to be slow."""
+"""Seconds that a function may need beyond its patience, for making and destroying its node and for a slow machine."""
 SLACK = 3.0
-"""The tolerance as a multiple of a short patience; a slower function gets a longer patience in the second look."""
+"""A short patience may be exceeded by this factor. A slower function gets a longer patience in the second look."""
 TOO_SHORT = 0.5
-"""The smallest share of its patience that a function must wait."""
+"""The smallest fraction of its patience that a function must wait."""
 PART_OF_A_WAIT = 1.0
-"""Seconds that a function may leave out at the end of a longer patience: it may wait in whole seconds."""
+"""Seconds by which a function may end before its patience is over, because it may wait in whole seconds."""
 NOT_AVAILABLE = Outcome("not available")
-"""The words that a client must report if its service or server is missing."""
+"""The words that a client must report if its service or action server is missing."""
 WAITING = Outcome("not available", "waiting")
-"""The words that a client which keeps waiting must say repeatedly."""
+"""The words that a client must repeat if it keeps waiting."""
 AGAIN_AND_AGAIN = 3
-"""The number of times that a client must say that it waits."""
+"""The least number of times that a waiting client must say so."""
 SAYS_SO_TO = 8.0
-"""Seconds until which it must still say so: a client that says it every four seconds does, one that tried three
-times does not.
+"""The time in seconds, from the client's start, at which it must still say so. A client that repeats it every four
+seconds reaches this time; one that stops after three tries does not.
 """
 _CLIENTS = ("client", "action_client")
 _AT_WORK = ("log", "called", "looked")
-"""The kinds of events that show a working node, or a waiting function, even if the graph shows neither."""
+"""The kinds of events that show that a node works or a function waits, even if the ROS graph does not show it."""
 MOMENT = 0.5
-"""Seconds within which the same words count once: a log line arrives in two ways, and a loop may be fast."""
+"""The same words count once within this many seconds: a log line is recorded twice (printed and on /rosout), and a
+loop may be fast.
+"""
 
 
 # --- time ----------------------------------------------------------------------------------------------------
 
 
 def waited(part: Part) -> float:
-    """Return the seconds from a subject's start to its end, or to the last event if it goes on."""
+    """Return the seconds from the subject's start to its end; if it has not ended, to its last event."""
     start = part.first("subject", "started")
     end = part.ending or (part.events[-1] if part.events else None)
     return (end.t if end else 0.0) - (start.t if start else 0.0)
 
 
 def patience(part: Part) -> float | None:
-    """Return the seconds that the subject was told to wait; None if it has no parameter for that."""
+    """Return the seconds that the subject was told to wait; None if it has no parameter for this."""
     start = part.first("subject", "started")
     takes = start is not None and PATIENCE in start.data["accepted"]
     return float(part.inputs[PATIENCE]) if takes and PATIENCE in part.inputs else None
 
 
 def drawn_patience(bench: Bench, between: tuple[float, float] = PATIENCES) -> float:
-    """Draw the seconds that a function is told to wait, in whole hundredths."""
+    """Draw the number of seconds that a function is told to wait, rounded to hundredths."""
     return round(bench.random.uniform(*between), 2)
 
 
 def await_it(bench: Bench) -> None:
-    """Wait until a subject without a server has given up, or could have."""
+    """Wait until a subject without a server has given up, or has had enough time to do so."""
     bench.await_end(GIVE_UP_LIMIT)
 
 
@@ -94,9 +99,10 @@ def await_it(bench: Bench) -> None:
 
 
 def says_that_it_waits(part: Part) -> bool:
-    """True if the subject says repeatedly that it waits, and not only at the beginning.
+    """Return True if the subject repeatedly says that it waits, and not only at the beginning.
 
-    The beginning is when its client was first seen: on a busy machine a program may need seconds until then.
+    The beginning is the moment when its client was first seen; on a busy machine a program may need seconds to get
+    there.
     """
     looks = (event.t for event in part.of("interface") if any(map(event.data.get, _CLIENTS)))
     late = (next(looks, 0.0) + SAYS_SO_TO) / MOMENT
@@ -105,7 +111,7 @@ def says_that_it_waits(part: Part) -> bool:
 
 
 def _moments(part: Part, outcome: Outcome) -> set[int]:
-    """Return the times at which a line with the word of an outcome came."""
+    """Return the times at which the subject reported this outcome, as multiples of :data:`MOMENT`."""
     return {
         int(event.t / MOMENT)
         for event in part.events
@@ -114,27 +120,28 @@ def _moments(part: Part, outcome: Outcome) -> set[int]:
 
 
 def goes_on_waiting(part: Part) -> bool:
-    """True if the subject waits for ever and may do so: it says so, and was not told how long to wait."""
+    """Return True if the subject waits forever and may: it says that it waits, and was given no patience."""
     return bool(part.events) and part.ending is None and patience(part) is None and says_that_it_waits(part)
 
 
 def waits_in_silence(part: Part) -> bool:
-    """True if the client waits forever although the task forbids it."""
+    """Return True if the client waits forever although the task forbids it."""
     return bool(part.events) and part.ending is None and not goes_on_waiting(part)
 
 
 def served_otherwise(
     served: Sequence[Part], absent: Part, asked: Callable[[Part], bool], looks_elsewhere: bool
 ) -> list[Part]:
-    """Return the runs in which the subject had its server, so that its words there do not report a missing one.
+    """Return the runs in which the subject had its server, so that its words there cannot mean that one is missing.
 
-    In the first run the server comes late, so a client may once report it missing there, unless it never calls there.
+    In the first run the server comes late, so a client may report it missing there. That run is therefore left out,
+    unless the client never sends a request in it.
 
     Args:
-        served: The runs with a server; in the first one the server comes late.
-        absent: The run without one.
-        asked: Returns True if the subject sent the server a request in a run.
-        looks_elsewhere: True if the subject looks for a server with another name.
+        served: The runs with a server. In the first one the server comes late.
+        absent: The run without a server.
+        asked: Tells whether the subject sent the server a request in a run.
+        looks_elsewhere: True if the subject looks for a server with a name different from the task's.
     """
     late, *others = served
     found = [part for part in others if asked(part)]
@@ -142,12 +149,12 @@ def served_otherwise(
 
 
 def objection(part: Part, others: Sequence[Part] = (), role: str = "") -> str:
-    """Return the fault of a client that finds no server, in words; empty if it behaves well.
+    """Return in words what a client does wrong when it finds no server; empty if it behaves well.
 
     Args:
         part: The run without a server.
         others: Runs in which the subject had its server.
-        role: The endpoint of a client that waits for its server, such as ``"client"``.
+        role: The role of the endpoint that waits for the server, such as ``"client"``.
     """
     if not part.events:
         return "not reached"
@@ -161,19 +168,19 @@ def objection(part: Part, others: Sequence[Part] = (), role: str = "") -> str:
 
 
 def _unsaid(part: Part, others: Sequence[Part]) -> str:
-    # On a machine that shows the server slowly, a client may say once what it otherwise says repeatedly.
+    # If a busy machine delays discovery, a client that usually repeats this may have said it only once.
     times = _moments(part, NOT_AVAILABLE)
     said_again = bool(times) and max(times) - min(times) > 1
     return "" if said_again else NOT_AVAILABLE.missing(part, others)
 
 
 def silent_end(part: Part, others: Sequence[Part], noun: str) -> Advice | None:
-    """Return the diagnosis of a client that ends without a server and does not report it, or returns an answer anyway.
+    """Return the advice for a client that finds no server and ends without reporting it, or returns an answer anyway.
 
     Args:
         part: The run without a server.
         others: Runs in which the subject had its server.
-        noun: The word for what is missing, such as ``"service"``.
+        noun: The word for the missing thing, such as ``"service"``.
     """
     if part.ending is None:
         return None
@@ -194,14 +201,14 @@ def silent_end(part: Part, others: Sequence[Part], noun: str) -> Advice | None:
 
 
 def returned_answer(part: Part) -> str:
-    """Return the number or text that a function returned; empty if it returned nothing like an answer."""
+    """Return the number or text that a function returned; empty if the value does not look like an answer."""
     value = part.returned or ""
     is_answer = re2.fullmatch(r"-?\d+|['\"].*\pL.*", value) and not NOT_AVAILABLE.is_said_in(value)
     return value if is_answer else ""
 
 
 def broken_patience(part: Part) -> str:
-    """Return how the time of a function differs from its patience, in words; empty if it kept the patience."""
+    """Return in words how a function's waiting time differs from its patience; empty if it kept to its patience."""
     limit = patience(part)
     if limit is None or part.ending is None:
         return ""
@@ -211,10 +218,10 @@ def broken_patience(part: Part) -> str:
 
 
 def looks_elsewhere(evidence: Evidence, absent: Part, role: str) -> bool:
-    """True if a client that never called the server was seen to look for a server other than the task's.
+    """Return True if a client that never called the server was seen to look for a server with another name.
 
-    A client that ends, with or without a server, must have looked for another name. One that keeps waiting may have
-    used the task's name with another type.
+    If the client ended both with and without a server, it must have looked for another name. If it kept waiting, it
+    may have used the right name with another type.
 
     Args:
         evidence: All runs of the client.
@@ -228,13 +235,16 @@ def looks_elsewhere(evidence: Evidence, absent: Part, role: str) -> bool:
 
 
 def ended_at_once(part: Part) -> bool:
-    """True if a function that was told how long to wait has ended much too early for any wait."""
+    """Return True if a function that was told how long to wait ended far too early to have waited at all."""
     limit = patience(part)
     return limit is not None and part.ending is not None and waited(part) < limit * TOO_SHORT
 
 
 def patience_not_kept(absent: str) -> Mistake:
-    """Without a server, in the run named ``absent``, a function waits by a limit of its own."""
+    """Make the mistake of a function that, without a server, waits by a limit of its own.
+
+    In ``absent``, the name of the run without a server, its waiting time differs from the given patience.
+    """
     return mistake(
         "patience_not_kept",
         lambda evidence: "" if _looked_for_nobody(evidence) else broken_patience(evidence.part(absent)),
@@ -246,7 +256,7 @@ def patience_not_kept(absent: str) -> Mistake:
 
 
 def remark(absent: str) -> Callable[[Evidence], str]:
-    """Return the card's remark on a client that keeps waiting without a server, in the run named ``absent``."""
+    """Return a function for the card's remark on a client that keeps waiting in ``absent``, the run with no server."""
     words = (
         "When there is no server, your client says again and again that it waits, and waits on. The task allows this; "
         "a robot that must not wait for ever needs a limit as well, such as a number of tries."
@@ -258,16 +268,16 @@ def remark(absent: str) -> Callable[[Evidence], str]:
 
 
 def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool]) -> bool:
-    """True if the subject ended before it had found a server that was available.
+    """Return True if the subject reported a missing server and ended, although the server was available.
 
-    On the wire, a client that gave up looks like one that never meant to call: both just end. But the first says
-    about an available server what it says about a missing one. The machine decides in which runs it ends too early: a
-    client that looks only once may find the server in some runs, in all or in none.
+    On the wire, a client that gave up looks like one that never meant to call: both just end. But a client that gave
+    up prints the same words whether the server is available or missing. Timing decides in which runs it ends too
+    early: a client that looks only once may find the server in some runs, in all or in none.
 
     Args:
-        served: The runs with a server; in the first one the server comes late.
-        absent: The run without one.
-        asked: Returns True if the subject sent the server a request in a run.
+        served: The runs with a server. In the first one the server comes late.
+        absent: The run without a server.
+        asked: Tells whether the subject sent the server a request in a run.
     """
     if _looked_for_nobody((absent, *served)):
         return False
@@ -280,9 +290,9 @@ def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool])
 
 
 def _looked_for_nobody(parts: Iterable[Part]) -> bool:
-    """True if the subject ended well in each run, and was never seen as a node or to wait.
+    """Return True if the subject ended well in each run, but was never seen to have a node or to wait.
 
-    A notebook's function may end before the graph shows its node; then its actions are unknown.
+    A notebook's function may end before the graph shows its node; then it is unknown whether it looked for a server.
     """
     return all(
         part.ending is not None and part.ending.name in ("exited", "returned") and not _was_seen(part)
@@ -301,14 +311,14 @@ def not_forgotten(
     served: Callable[[Evidence], Sequence[Part]],
     asked: Callable[[Part], bool],
 ) -> Mistake:
-    """A client gives up if its server is available, and not if it is absent: its condition lacks a ``not``.
+    """Make the mistake of a client whose condition lacks a ``not``: it gives up if its server exists, else not.
 
     Args:
         absent: The name of the run without a server.
-        noun: The word for what the client waits for, ``"service"`` or ``"server"``, as in the name of the wait.
-        role: The client's endpoint, such as ``"client"``.
+        noun: The word for the thing the client waits for, ``"service"`` or ``"server"``, as in ``wait_for_service``.
+        role: The role of the client's endpoint, such as ``"client"``.
         served: Returns the runs with a server.
-        asked: Returns True if the subject sent the server a request in a run.
+        asked: Tells whether the subject sent the server a request in a run.
     """
     wait = f"wait_for_{noun}"
     return mistake(
@@ -325,7 +335,7 @@ def not_forgotten(
 def _gives_up_where_served(
     served: Sequence[Part], absent: Part, role: str, asked: Callable[[Part], bool]
 ) -> str:
-    """Return the line that reports a missing server in a run with a server, if no run without one has it."""
+    """Return the line that reports a missing server in a run with one; empty if the other run has the same line."""
     if not (served and absent.events) or NOT_AVAILABLE.lines(absent):
         return ""
     if any(asked(part) or not (part.ending and part.endpoints(role)) for part in served):

@@ -1,4 +1,4 @@
-"""Known mistakes of clients that send goals and report how they ended."""
+"""Known mistakes of clients that send a goal and report how the goal ended."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ WRONG_ORDER = mistake(
 
 
 def _ended_before(evidence: Evidence) -> str:
-    """Return the answer that had not come yet when the client ended, in words; empty if it waited for its answers."""
+    """Return in words which answer the client did not wait for before it ended; empty if it waited for all answers."""
     part = evidence.part(LATE)
     ending, answered, result = part.ending, part.first("goal_answered"), part.first("result")
     if not asked_for(part) or ending is None or (part.traceback and not meant(part.traceback)):
@@ -141,7 +141,10 @@ RESULT_OF_REJECTED_GOAL = mistake(
 
 
 def crashed_by_refusal(evidence: Evidence) -> Advice | None:
-    """The client goes on with a refused goal until an exception stops it, and finishes all other parts without one."""
+    """Return advice if the client goes on with a refused goal until an exception stops it.
+
+    All other parts must have ended without an exception.
+    """
     crashed = [part for part in evidence if part.traceback and not on_purpose(part.traceback)]
     if [part.name for part in crashed] != [REFUSED]:
         return None
@@ -182,7 +185,7 @@ REFUSAL_NOT_REPORTED = Mistake("refusal_not_reported", _refusal_not_reported)
 
 
 def _feedback_not_shown(evidence: Evidence) -> tuple[int, int] | None:
-    """Return the number of feedback messages that were sent, and of those that the client showed."""
+    """Return the number of feedback messages sent and the number that the client showed; None if it showed enough."""
     part = evidence.part(LATE)
     sent, missing = len(part.of("feedback")), len(unshown_feedback(part))
     return (sent, sent - missing) if missing and part.first("result_request") else None
@@ -219,7 +222,7 @@ RESULT_REPEATED = mistake(
 
 
 def _result_not_reported(evidence: Evidence) -> Advice | None:
-    """The result came, but the client did not report it."""
+    """Return advice if the result came and the client did not report it."""
     part = evidence.part(LATE)
     result = part.first("result")
     if result is None or part.first("result_request") is None or reports_result(part):
@@ -262,7 +265,7 @@ ABORT_NOT_REPORTED = Mistake("abort_not_reported", _abort_not_reported)
 
 
 def _returns_another_value(evidence: Evidence) -> Advice | None:
-    """The advice for a notebook's function that returns anything but its goal's sequence, or an empty list."""
+    """Return advice for a notebook's function that returns neither its goal's sequence nor, if refused, ``[]``."""
     late, refused = evidence.part(LATE), evidence.part(REFUSED)
     result = late.first("result")
     if result and (value := returned_instead(late, result.data["fields"]["sequence"])):

@@ -1,4 +1,4 @@
-"""An action client's reports of the judge's goals, and their faults."""
+"""How an action client reports the judge's goals, and what can be wrong with those reports."""
 
 from __future__ import annotations
 
@@ -22,52 +22,52 @@ LATE = "the server comes late"
 REFUSED = "the goal is refused"
 ABORTED = "the goal is aborted"
 ABSENT = "there is no server"
-"""In this part there is no server; in the first part of any exercise a goal is accepted."""
+"""The name of the part without a server. In the first part of every exercise a goal is accepted."""
 SERVED = (LATE, REFUSED, ABORTED)
-"""The parts in which a goal is expected."""
+"""The names of the parts in which the client should send a goal."""
 
 FEEDBACKS = 14
-"""Feedback messages of the goal that succeeds: enough to detect a client that stops receiving after a while."""
+"""The number of feedback messages for the goal that succeeds: enough to detect a client that stops receiving them."""
 SUCCEEDED, CANCELED, WAS_ABORTED = Outcome("succeeded"), Outcome("canceled", "cancelled"), Outcome("aborted")
-"""How an accepted goal ended: these words, or the number of the status."""
+"""The three ways in which an accepted goal can end; a client reports each by this word or by the status number."""
 REJECTED = Outcome("rejected")
 NOT_ENDED = "said so, and did not end"
 NO_GOAL = "no goal"
 UNASKED = "a request to cancel the goal"
 NOT_AWAITED = "it ended without taking in the answer to its goal"
 MANY_REQUESTS = 3
-"""The number of requests for one result that may have a reason; a client with more keeps requesting."""
+"""A client may have a reason to request one result up to this many times; one with more repeats without end."""
 
 AT_ONCE = 3.6
-"""Seconds after an answer within which a client ends that never meant to use it.
+"""Seconds: a client that ends sooner than this after an answer was sent never meant to use the answer.
 
-A process takes a tenth of a second to end, more than one on a busy machine. A client that spins for 5 seconds, as
-many do, ends more than half a second later than this, even if its answer was held back; one that spins for 3 ends a
-second earlier.
+A process takes a tenth of a second to end, and more than one second on a busy machine. A client that spins for 5
+seconds, as many do, ends at least half a second later than this limit, even if its answer was held back; a client
+that spins for 3 seconds ends a second earlier.
 """
 STAYED = 1.5
-"""Seconds after a request: if the client still exists then, the request was not lost with its process."""
+"""Seconds: if the client still exists this long after a request, the request was not lost by the process ending."""
 _WAYS = ("log", "output", "subject")
-"""The kinds of events that contain the subject's words: on /rosout, printed, returned."""
+"""The kinds of events that contain words of the subject: logged to /rosout, printed, or returned."""
 _TRACEBACK = "Traceback (most recent call last)"
 
 
 def asked_for(part: Part) -> list[int]:
-    """Return the orders of the goals, in order."""
+    """Return the ``order`` fields of the goals that the client sent, in order of time."""
     return [int(event.data["fields"]["order"]) for event in part.of("goal")]
 
 
 def left_at_once(part: Part, answer: str = "goal_answered") -> bool:
-    """True if the subject was about to end before the judge sent an answer that it holds back.
+    """Return True if the subject was already ending when the judge sent an answer that it had held back.
 
-    The last requests of an ending process may or may not arrive, and nothing may depend on that. A traceback shows
-    that the process ends before it has ended; a process that ends silently may take a while.
+    The last requests of an ending process may or may not arrive, so no decision may depend on them. A printed
+    traceback shows that a process is ending; a process that ends silently may take a while.
     """
     if part.ending is None:
         return False
     for event in part.events:
         if event.kind == answer:
-            # A subject that fails only now has received something: the answer, or the feedback after it.
+            # A subject that fails only now has received something: the answer, or feedback sent after the answer.
             went_on = part.traceback or part.said(after=event) or _stayed_for_more(part, event)
             return not went_on and part.ending.t - event.t < AT_ONCE
         if event is part.ending or (event.kind == "output" and event.data["text"].startswith(_TRACEBACK)):
@@ -76,7 +76,7 @@ def left_at_once(part: Part, answer: str = "goal_answered") -> bool:
 
 
 def _stayed_for_more(part: Part, answer: Event) -> bool:
-    """True if it existed when its goal's result was sent, or for a while after the request that followed the answer."""
+    """Return True if the client still existed when its result was sent, or well after its request for the result."""
     assert part.ending is not None
     end, later = part.ending.t, part.events[part.events.index(answer) :]
     stayed = {"result": 0.0, "result_request": STAYED, "cancel": STAYED}
@@ -84,7 +84,7 @@ def _stayed_for_more(part: Part, answer: Event) -> bool:
 
 
 def goals_as_seen(evidence: Evidence) -> str:
-    """Return the faults of the goals, in words."""
+    """Return in words what is wrong with the goals that the client sent."""
     if asked_for(evidence.part(LATE)) and left_at_once(evidence.part(LATE)):
         return NOT_AWAITED
     wanted = len(asked_for(evidence.reference.part(LATE)))
@@ -109,7 +109,7 @@ def goals_as_seen(evidence: Evidence) -> str:
 
 
 def cancels_unasked(part: Part) -> bool:
-    """True if it requests to cancel its goal before the goal has ended; an interrupted subject may do so."""
+    """Return True if the client requests to cancel a running goal. After an interruption this is allowed."""
     for event in part.events:
         if event.kind == "result" or event.name == INTERRUPTED:
             return False
@@ -119,7 +119,7 @@ def cancels_unasked(part: Part) -> bool:
 
 
 def unshown_feedback(part: Part) -> list[Event]:
-    """Return the feedback messages whose newest number was not said after they were sent."""
+    """Return the feedback messages whose newest number the client did not print or return afterwards."""
     return [
         event for event in part.of("feedback") if not mentions(part.said(after=event), _sequence(event)[-1])
     ]
@@ -131,23 +131,24 @@ def _sequence(event: Event) -> list[int]:
 
 
 def said_of_result(part: Part) -> list[str]:
-    """Return the words after the result was sent, without late echoes of earlier words."""
+    """Return what the client said after the result was sent, without late copies of earlier lines."""
     return said_first_after(part.first("result"), part)
 
 
 def reports_result(part: Part) -> bool:
-    """True if every number of the result was said after it was sent, in the right order."""
+    """Return True if the client said every number of the result, in the right order, after the result was sent."""
     result = part.first("result")
     if result is None or part.first("result_request") is None:
         return False
     numbers = [str(number) for number in _sequence(result)]
-    # A log line comes twice, as output and on /rosout: numbers missing in one copy must not be taken from the other.
+    # A log line is recorded twice: as output and on /rosout. One copy must not fill gaps of the other, so each kind
+    # is searched alone.
     ways = ([event for event in part.events if event is result or event.kind == way] for way in _WAYS)
     return any(_are_in_order(numbers, replace(part, events=events).said(after=result)) for events in ways)
 
 
 def _are_in_order(numbers: Sequence[str], lines: Sequence[str]) -> bool:
-    # The numbers are long and random, so their digits alone distinguish them from the text in between.
+    # The numbers are long and random, so their digits cannot be confused with other text between them.
     digits, place = re2.sub(r"\D", "", " ".join(lines)), 0
     for number in numbers:
         place = digits.find(number, place)
@@ -158,29 +159,31 @@ def _are_in_order(numbers: Sequence[str], lines: Sequence[str]) -> bool:
 
 
 _SEQUENCE = re2.compile(r"[\[(]|[a-z.]+\((?:'\w', )?[\[(]|[a-z.]+\((?:'\w')?\)")
-"""The beginning of a sequence's repr: ``[1``, ``(1``, ``array('i', [1``, ``array('i')``, ``deque([1``."""
+"""Matches how the repr of a sequence begins: ``[1``, ``(1``, ``array('i', [1``, ``array('i')``, ``deque([1``."""
 
 
 def returned_instead(part: Part, wanted: Sequence[int]) -> str:
-    """Return a function's wrong value, in words; empty if the value is right, or if no function returned.
+    """Return a function's wrong return value in words; empty if the value is right, or if no function returned.
 
-    Any kind of sequence counts as a list, such as a tuple or an array; a message that contains one does not.
+    Any sequence type counts as a list, for example a tuple or an array. A message object that contains a sequence
+    does not.
     """
     if part.returned is None:
         return ""
-    # The text may also contain the numbers' type, as in np.int32(5), or a length limit, as in deque([5], maxlen=9).
+    # The repr may also contain digits of the numbers' type, as in np.int32(5), or of a maximum length, as in
+    # deque([5], maxlen=9).
     numbers = re2.findall(r"\d+", re2.sub(r"int\d+|maxlen=\d+", "", part.returned))
     right = numbers == [str(number) for number in wanted]
     return "" if right and _SEQUENCE.match(part.returned) else part.returned
 
 
 def _waits(late: Part) -> bool:
-    """True if it waits for a late server and a late answer; otherwise timing decides which runs it meets."""
+    """Return True if the client waits for a late server and a late answer. If not, timing decides how far it gets."""
     return bool(asked_for(late)) and not left_at_once(late)
 
 
 def refused_as_seen(evidence: Evidence) -> str:
-    """Return the fault in the report of a refused goal, in words."""
+    """Return in words what is wrong with the client's report of a refused goal; empty if nothing is."""
     part = evidence.part(REFUSED)
     goal = part.first("goal")
     if not part.events:
@@ -189,17 +192,20 @@ def refused_as_seen(evidence: Evidence) -> str:
         return NOT_AWAITED if goal else NO_GOAL
     if missing := REJECTED.missing(part, all_but(evidence, REFUSED)):
         return missing
-    # A client that goes on after a success may go on here, too.
+    # A client that keeps running after a successful goal may also keep running here.
     return NOT_ENDED if part.ending is None and evidence.main.ending is not None else ""
 
 
 def all_but(evidence: Evidence, name: str) -> list[Part]:
-    """Return the other runs with a goal, in each of which the goal ended in another way."""
+    """Return the other runs that have a goal; in each of them the goal ended differently."""
     return [part for part in evidence if part.name != name and part.first("goal")]
 
 
 def aborted_as_seen(evidence: Evidence) -> str:
-    """Return the fault in the report of an aborted goal, in words. The goal's status is on a topic, too."""
+    """Return in words what is wrong with the client's report of an aborted goal.
+
+    The status is also published on a topic, so a client may take it from there.
+    """
     part = evidence.part(ABORTED)
     if not part.events:
         return "not reached"
@@ -209,7 +215,7 @@ def aborted_as_seen(evidence: Evidence) -> str:
 
 
 def given_up(evidence: Evidence) -> str:
-    """Return the fault in the way it gives up without a server, in words."""
+    """Return in words what is wrong with how the client gives up when there is no server."""
     return objection(evidence.part(ABSENT), had_server(evidence), "action_client")
 
 
@@ -225,19 +231,20 @@ def had_server(evidence: Evidence) -> list[Part]:
 
 
 def sends_the_goal(evidence: Evidence) -> Finding:
-    """Each run has one goal, of the order that the client was given."""
+    """Decide whether the client sends one goal in each run, with the order that it was given."""
     wrong = goals_as_seen(evidence)
     expected = "one goal of the given order, in each run"
     return Finding(not wrong, expected, wrong or expected)
 
 
 def shows_feedback(evidence: Evidence) -> Finding:
-    """Every feedback message is logged or printed."""
+    """Decide whether the client logs or prints every feedback message."""
     part = evidence.part(LATE)
     sent, missing = part.of("feedback"), unshown_feedback(part)
     shown = len(sent) - len(missing)
     if sent and left_at_once(part, "result"):
-        # The machine decides how many messages came before the client ended.
+        # How many messages arrive before the client ends depends on the machine's load, so the card gives no
+        # number.
         return Finding(False, f"all {FEEDBACKS} feedback messages", "it ended before its goal did")
     return Finding(
         bool(sent) and not missing,
@@ -247,7 +254,7 @@ def shows_feedback(evidence: Evidence) -> Finding:
 
 
 def reports_the_result(evidence: Evidence) -> Finding:
-    """The sequence of the result is said or returned."""
+    """Decide whether the client prints or returns the sequence of the result."""
     part = evidence.part(LATE)
     result = part.first("result")
     expected = f"{result.data['fields']['sequence']} said at the end" if result else "the result's sequence"
@@ -269,13 +276,13 @@ def reports_the_result(evidence: Evidence) -> Finding:
 
 
 def tells_of_refusal(evidence: Evidence) -> Finding:
-    """A refused goal is reported, no result is requested, and the client ends."""
+    """Decide whether the client reports a refused goal, requests no result for it, and ends."""
     wrong = refused_as_seen(evidence)
     return Finding(not wrong, f"says {REJECTED} and ends", wrong or "it did")
 
 
 def returns_nothing_of_a_refused_goal(evidence: Evidence) -> Finding:
-    """As :func:`tells_of_refusal`; a function that returns must return an empty list."""
+    """Decide the same as :func:`tells_of_refusal`. A function that returns must also return an empty list."""
     told = tells_of_refusal(evidence)
     returned = returned_instead(evidence.part(REFUSED), [])
     if not told.passed or not returned:
@@ -284,13 +291,13 @@ def returns_nothing_of_a_refused_goal(evidence: Evidence) -> Finding:
 
 
 def tells_of_abort(evidence: Evidence) -> Finding:
-    """An aborted goal is reported, by the name or the number of its status."""
+    """Decide whether the client reports an aborted goal, by the name or the number of the goal's status."""
     wrong = aborted_as_seen(evidence)
     return Finding(not wrong, f"says {WAS_ABORTED}, or `status` and 6", wrong or "it did")
 
 
 def waits_for_the_server(evidence: Evidence) -> Finding:
-    """The client sends its goal even if the server comes late."""
+    """Decide whether the client sends its goal even if the server comes late."""
     part = evidence.part(LATE)
     wrong = "" if asked_for(part) else "no goal came"
     if not wrong and left_at_once(part):
@@ -299,10 +306,10 @@ def waits_for_the_server(evidence: Evidence) -> Finding:
 
 
 def ends_without_a_server(evidence: Evidence) -> Finding:
-    """Without a server the client ends by itself and reports it, or says repeatedly that it waits."""
+    """Decide whether, without a server, the client reports that and ends, or repeatedly says that it waits."""
     wrong = given_up(evidence)
     return Finding(not wrong, f"says {NOT_AVAILABLE} and ends by itself", wrong or "it says so")
 
 
 may_wait_on = remark(ABSENT)
-"""A remark about limits for a client that keeps waiting."""
+"""Returns the card's remark, about setting limits, on a client that keeps waiting."""

@@ -1,4 +1,4 @@
-"""The goals of an action server, of any type, as the judge's action client has seen them."""
+"""The goals that the judge's action client sent to an action server of any type, and everything that came back."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Part
 
 ERROR_GOAL_TERMINATED = 3
-"""From action_msgs/srv/CancelGoal."""
+"""A return code defined in action_msgs/srv/CancelGoal."""
 SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
-"""From action_msgs/msg/GoalStatus."""
+"""Status numbers defined in action_msgs/msg/GoalStatus."""
 STATUS = {
     0: "UNKNOWN",
     1: "ACCEPTED",
@@ -32,17 +32,19 @@ class Goal:
     """Everything known about one goal.
 
     Attributes:
-        request: The fields of the goal; None if it was not sent.
-        accepted: The server's answer; None if there is none.
-        feedback: The fields of each feedback message, in order, without those sent after the result was received.
-        sent: The time of sending of each of them, by the publisher's clock, in seconds of the epoch.
-        answered_at: The time at which the server's answer arrived, by the judge's clock; None if unknown.
-        cancel_answered_at: The same for the answer to the cancel request.
-        cancel_accepted: The answer to the cancel request; None if there is none.
-        cancelled_too_late: True if the answer to the cancel request was that the goal had ended.
-        before_cancel: The number of feedback messages before the cancel request.
-        unread: The number of feedback messages between the cancel request and its answer.
-        seconds: Wall time from the acceptance to the result; None if one of them is missing.
+        request: The fields of the goal; None if the goal was not sent.
+        accepted: True if the server accepted the goal, False if it refused; None if it did not answer.
+        feedback: The fields of each feedback message, in order. Messages sent after the result was received are left
+            out.
+        sent: The time at which each of these messages was sent, by the publisher's clock, in seconds since the epoch.
+        answered_at: The time at which the server's answer to the goal arrived, by the judge's clock; None if unknown.
+        cancel_answered_at: The time at which the answer to the cancel request arrived, likewise.
+        cancel_accepted: True if the server accepted the cancel request; None if it did not answer or none was sent.
+        cancelled_too_late: True if the server answered the cancel request by saying that the goal had already ended.
+        before_cancel: The number of feedback messages that arrived before the cancel request was sent.
+        unread: The number of feedback messages that arrived between the cancel request and its answer.
+        seconds: Wall time in seconds from the acceptance to the result; None if the goal has no acceptance or no
+            result.
         status: The status that came with the result; None if no result came.
         result: The fields of the result; empty if no result came.
     """
@@ -63,21 +65,21 @@ class Goal:
 
     @property
     def over(self) -> bool:
-        """True if it has a result, or was refused and gets none."""
+        """True if the goal has a result, or was refused and therefore gets none."""
         return self.status is not None or self.accepted is False
 
     @property
     def pauses(self) -> tuple[float, ...]:
-        """The seconds between feedback messages."""
+        """The pauses between successive feedback messages, in seconds."""
         return tuple(after - before for before, after in pairwise(self.sent))
 
     def sent_after(self, moment: float | None) -> int:
-        """Return the number of feedback messages certainly sent after a moment; 0 if the moment is unknown."""
+        """Return how many feedback messages were certainly sent after a moment; 0 if the moment is unknown."""
         return 0 if moment is None else sum(sent > moment for sent in self.sent)
 
 
 def goal(part: Part, number: int) -> Goal:
-    """Return the goal of that number."""
+    """Return the goal with this number."""
     events = [event for event in part.events if event.data.get("goal") == number]
     first = {event.kind: place for place, event in reversed(list(enumerate(events)))}
     by_kind = {kind: events[place] for kind, place in first.items()}
@@ -108,7 +110,7 @@ def goal(part: Part, number: int) -> Goal:
 
 
 def all_goals(part: Part) -> list[Goal]:
-    """Return all goals that were sent."""
+    """Return all goals that the judge sent in a part."""
     return [goal(part, int(event.data["goal"])) for event in part.of("goal_sent")]
 
 

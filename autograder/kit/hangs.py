@@ -1,8 +1,8 @@
-"""Mistakes recognized from a hung program's stack: which thread waits, and for what.
+"""Mistakes recognized from the stacks of a hung program: which thread waits, and for what.
 
-The stack comes from Python's faulthandler (innermost call first). The judge requests it once a subject that should go
-on has fallen silent. In rclpy 7.1, ``Client.call`` waits in ``client.py``, the action client's blocking calls in
-``action/client.py``, ``Rate.sleep`` in ``timer.py``, and callbacks run below ``executors.py``.
+The stacks come from Python's faulthandler (innermost call first). The judge requests them once a subject that should
+still be running has fallen silent. In rclpy 7.1, ``Client.call`` waits in ``client.py``, the action client's blocking
+calls in ``action/client.py``, and ``Rate.sleep`` in ``timer.py``; callbacks run below ``executors.py``.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _BLOCKING = {
     "action/client.py": {"send_goal", "cancel_goal", "get_result", "_cancel_goal"},
 }
 _CALLS_BACK = {("executors.py", "await_or_execute"), ("task.py", "__call__")}
-"""The functions that call the callbacks of entities and futures."""
+"""The functions of rclpy that run the callbacks of entities and futures, as (file, function)."""
 _SPINS = {
     "spin",
     "spin_once",
@@ -37,7 +37,7 @@ _SPINS = {
 
 @dataclass(frozen=True)
 class Frame:
-    """One call: rclpy's file, or an empty text for other files, the function, and the line in its file."""
+    """One call in a stack. ``file`` is empty if it is not one of rclpy's."""
 
     rclpy: str
     function: str
@@ -48,7 +48,7 @@ Stack = Sequence[Frame]
 
 
 def stacks(part: Part) -> list[Stack]:
-    """Return the stacks of the subject's threads when it hung, innermost call first."""
+    """Return the stacks of the subject's threads at the time it hung, innermost call first."""
     found: list[list[Frame]] = []
     for event in part.of("stack"):
         for line in str(event.data["text"]).splitlines():
@@ -69,12 +69,12 @@ def _blocks(stack: Stack) -> bool:
 
 
 def _in_callback(stack: Stack) -> bool:
-    """True if an executor called the student's innermost code."""
+    """Return True if the innermost code of the student's in this stack was called by an executor."""
     return any(frame.rclpy == "executors.py" for frame in stack[_innermost_own(stack) :])
 
 
 def _innermost_own(stack: Stack) -> int:
-    """Return the index of the student's innermost call; the length of the stack if there is none."""
+    """Return the index of the innermost call in student's code; the length of the stack if there is none."""
     own = (i for i, frame in enumerate(stack) if not frame.rclpy and frame.function != "wait")
     return next(own, len(stack))
 
@@ -84,12 +84,12 @@ def _spins(stack: Stack) -> bool:
 
 
 def something_spins(part: Part) -> bool:
-    """True if one of the subject's threads was spinning when it hung."""
+    """Return True if one of the subject's threads was spinning when the subject hung."""
     return any(map(_spins, stacks(part)))
 
 
 def _spins_in_callback(stack: Stack) -> bool:
-    """True if the stack has a spin, which the student's code has called, which an executor has called."""
+    """Return True if an executor called student's code, and that code called a spin."""
     spins = [i for i, frame in enumerate(stack) if frame.rclpy and frame.function in _SPINS]
     if not spins:
         return False
@@ -102,7 +102,7 @@ def _sleeps_on_rate(stack: Stack) -> bool:
 
 
 def _stuck_callback(found: list[Stack]) -> str:
-    """Return the student's function that rclpy has called and that has not returned; empty if there is none."""
+    """Return the name of the student's callback that has not returned; empty if there is none."""
     for stack in found:
         for frame, caller in reversed(list(pairwise(stack))):
             if not frame.rclpy and (caller.rclpy, caller.function) in _CALLS_BACK:
@@ -111,25 +111,25 @@ def _stuck_callback(found: list[Stack]) -> str:
 
 
 def _that(found: list[Stack], waits: Callable[[Stack], bool]) -> Stack:
-    """Return the stack of a thread that waits like this, preferably in a callback; empty if there is none."""
+    """Return a stack for which ``waits`` is true, preferably one in a callback; empty if there is none."""
     waiting = sorted(filter(waits, found), key=_in_callback, reverse=True)
     return waiting[0] if waiting else ()
 
 
 def _waiting(stack: Stack) -> str:
-    """Return the blocking call of rclpy in which a thread waits, in the student's words; empty if there is none."""
+    """Return the blocking rclpy call in which a thread waits, by the name students use; empty if there is none."""
     calls = [frame.function for frame in stack if frame.function in _BLOCKING.get(frame.rclpy, ())]
     return calls[-1] if calls else ""
 
 
 def _place(stack: Stack) -> str:
-    """Return the student's line that led to a wait, in parentheses; empty if there is none."""
+    """Return the student's line that led to the wait, in parentheses; empty if there is none."""
     own = stack[_innermost_own(stack) :]
     return f" (line {own[0].line}, in {own[0].function})" if own else ""
 
 
 def _executes_a_goal(stack: Stack) -> bool:
-    """True if an action server called the student's code to execute a goal."""
+    """Return True if an action server called student's code to execute a goal."""
     return bool(_stuck_callback([stack])) and any(frame.rclpy == "action/server.py" for frame in stack)
 
 
@@ -224,4 +224,4 @@ def _mistake(key: str, fits: Recognise, text: str, next_step: str) -> Mistake:
 
 
 HANGS: tuple[Mistake, ...] = tuple(_mistake(*row) for row in _HANGS)
-"""Known hangs, most telling first."""
+"""The known hangs, most specific first."""

@@ -1,25 +1,25 @@
-"""Counts, lists, the difference between two texts, and the sentences that concern a student's kind of answer."""
+"""Small texts: counts, lists, the difference of two texts, and sentences only for notebooks or only for programs."""
 
 from __future__ import annotations
 
 import re2
 
 SHOWN = 16
-"""The number of characters that are quoted after the position at which two texts differ."""
+"""The number of characters to quote from the position at which two texts differ."""
 _LONG_LIST = re2.compile(r"\[(-?\d+(?:, -?\d+){4}), (?:-?\d+, ){6,}(-?\d+, -?\d+)\]")
-"""A list of more than a dozen numbers: its first five and its last two are kept."""
+"""Matches a list of more than a dozen numbers; the groups keep the first five and the last two."""
 _OF_ITS_KIND = {
     kind: re2.compile(rf"(^|[.?!] )(?:In a {kind}, .*?[.?!](?: |$))+") for kind in ("notebook", "program")
 }
 
 
 def counted(number: int, thing: str) -> str:
-    """``"1 message"``, ``"2 messages"``."""
+    """Return the number with its noun: ``"1 message"``, ``"2 messages"``."""
     return f"{number} {thing}" if number == 1 else f"{number} {thing}s"
 
 
 def first_difference(said: str, wanted: str) -> str:
-    """Return, as a sentence, where a text begins to differ from the expected one; empty if they are equal."""
+    """Return a sentence that says where a text first differs from the expected one; empty if they are equal."""
     if said == wanted:
         return ""
     same = said[
@@ -40,7 +40,7 @@ def shortened(text: str) -> str:
 
 
 def visible(text: str) -> str:
-    """Return the text with Python's escapes for spaces that look like another one, such as a line end."""
+    """Return the text with Python escapes in place of whitespace that looks like another kind, such as a line end."""
     return "".join(
         character.encode("unicode_escape").decode() if character.isspace() and character != " " else character
         for character in text
@@ -48,11 +48,11 @@ def visible(text: str) -> str:
 
 
 def of_its_kind(text: str, in_a_notebook: bool) -> str:
-    """Return the text without the sentences for the other kind of answer.
+    """Return the text without the sentences that are meant for the other kind of answer.
 
     Args:
-        text: A sentence of it that begins with ``In a notebook,`` is for students with a notebook; one that begins
-            with ``In a program,`` is for students with a program.
+        text: The text. A sentence in it that begins with ``In a notebook,`` is only for answers in a notebook; one
+            that begins with ``In a program,`` only for programs.
         in_a_notebook: True if the answer is a class or a function of a notebook.
     """
     other = _OF_ITS_KIND["program" if in_a_notebook else "notebook"]

@@ -1,6 +1,7 @@
 """Mistakes recognized from a traceback of rclpy: pattern, cause, next step.
 
-The patterns match messages of rclpy 7.1 and Python; each was reproduced. The order matters: the first match wins.
+The patterns match messages of rclpy 7.1 and of Python; each message was reproduced. The order matters, because the
+first match wins.
 """
 
 from __future__ import annotations
@@ -17,7 +18,8 @@ class Crash:
 
     Attributes:
         key: The mistake's name.
-        pattern: Found in the traceback (multi-line search); its groups may be named in ``text``.
+        pattern: Regular expression, searched in the traceback (multi-line). ``text`` and ``next_step`` may use its
+            named groups.
         text: What happened and why.
         next_step: What to do now.
     """
@@ -33,15 +35,19 @@ NOT_SPUN_WHILE_CALLING = (
     "rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0) spins the node while it waits. Or spin "
     "the node in the background while you use call."
 )
-"""The advice if a call waits for its answer, and its node is not spun."""
+"""Advice for a call that waits for its answer while its node is not spun."""
 
 _CALLED_BY_RCLPY = (
     r"(?:\A|rclpy/(?:executors|task|event_handler|action/client|action/server)\.py\".*\n(?: .*\n){1,2})"
 )
-"""Precedes an error raised where rclpy calls a callback; a notebook's traceback omits rclpy's own lines."""
+"""Matches the place in a traceback where rclpy calls a callback. In a notebook, whose tracebacks omit rclpy's own
+lines, it matches the beginning.
+"""
 _UNKNOWN_KEYWORD = r"Invalid arguments passed to constructor: '?(?P<keyword>\w+(?:, \w+)*)"
 _CALLED = r"\n(?: .*\n)*"
-"""From a line of code to Python's message about it: a program's traceback has lines of the message's own module."""
+"""Matches the lines between a line of code and Python's message about it; a program's traceback shows the message
+type's module there.
+"""
 
 KNOWN = (
     Crash(
@@ -58,7 +64,8 @@ KNOWN = (
     ),
     Crash(
         ASKS_FOR_INPUT.key,
-        # input() raises the first error in the kernel of a class, and the second one in a program without a keyboard.
+        # When the grader runs a notebook, input() raises the first error. In a program without a keyboard it raises
+        # the second.
         r"^(?:IPython\.core\.error\.)?StdinNotImplementedError\b|^EOFError: EOF when reading a line",
         ASKS_FOR_INPUT.text,
         ASKS_FOR_INPUT.next_step,
@@ -66,7 +73,7 @@ KNOWN = (
     Crash(
         "not_initialized",
         r"NotInitializedException|rclpy\.init has not been called|context (?:must be initialized|is not valid)"
-        # For an executor that was made before; spinning makes one.
+        # The last alternative is for an executor that was made earlier; spinning without one makes one.
         r"|guard_condition\.py\".*\n.*self\._context\.handle",
         "The node was made before ROS was started, or after it was shut down.",
         "In a notebook, call start_ros() before you make a node. In a program, call rclpy.init() before you make "
@@ -195,7 +202,7 @@ KNOWN = (
     ),
     Crash(
         "callback_signature",
-        # Attributes that each node has and no message has.
+        # Attributes that every node has and no message has.
         rf"\bself\.(?:get_logger|get_clock|create_\w+)\b.*{MARKS}AttributeError: '(?P<type>String|Twist|U?Int\d+"
         r"|\w+_(?:Request|Response|Goal|FeedbackMessage)|ServerGoalHandle|Future)' object has no attribute "
         r"'(?:get_logger|get_clock|create_\w+)'",
@@ -236,7 +243,7 @@ KNOWN = (
     ),
     Crash(
         "callback_returned_none",
-        # A notebook omits rclpy's own lines, so only the last line is left.
+        # A notebook's traceback omits rclpy's own lines, so only the last line remains to be matched.
         r"(?:rclpy/service\.py\".* in send_response|service_send_response)(?:.*\n)+TypeError|\A\s*TypeError\s*\z",
         "A service callback returned no response: nothing at all, a field of it, or a type without parentheses.",
         "End the callback with `return` and the whole response that it was given, such as `return response`.",

@@ -1,8 +1,9 @@
-"""A client's patience: with a server that comes late, and with answers that take a moment.
+"""Whether a client is patient: with a server that comes late, and with answers that take a moment.
 
-On a quiet machine everything is available in milliseconds, so a client that hardly waits looks as right as one that
-waits. So the judge is slow, as a server on a robot may be: slow enough to tell the two apart, and much faster than
-the few seconds that a client must allow for. If a person waits for a check cell, answers come sooner.
+On a quiet machine everything is available in milliseconds, so a client that hardly waits would look as right as one
+that waits. Therefore the judge is deliberately slow, as a real robot may be: slow enough to tell the two apart, and
+much faster than the few seconds that a client must allow for. If a student is waiting for a check cell, answers come
+sooner.
 """
 
 from __future__ import annotations
@@ -20,47 +21,52 @@ if TYPE_CHECKING:
     from autograder.kit.model import Bench, Mistake
 
 SOON = 0.3
-"""Seconds by which a server comes late for a client that has just missed it."""
+"""The server's delay in seconds in a repeated run, for a client that has just missed its server."""
 ANSWERS_LATE, ANSWERS_SOON = 0.7, 0.12
-"""Seconds that an answer is held back; fewer if a person waits, and for a client that has just missed an answer.
+"""The delay of an answer in seconds: usually the first; the second if a student is waiting, or the client just missed
+one.
 
-Neither is a usual limit in programs, such as half a second.
+Neither delay equals a limit that is usual in programs, such as half a second.
 """
 PATIENT_WITH_AN_ANSWER = 0.9
-"""Seconds after which a client that gave up on an answer was patient: on a busy machine it may have missed the
-answer.
+"""Seconds: a client that waited this long for an answer before giving up was patient. On a busy machine it may have
+missed the answer.
 """
 PATIENT_WITH_A_RESULT = 4.0
-"""The same for the result of a goal, whose feedback takes longer on a busy machine: between the 3 and the 5 seconds
-that many clients wait.
+"""The corresponding limit in seconds for a goal's result, whose feedback takes longer on a busy machine. Many clients
+wait 3 or 5 seconds; the limit lies between them.
 """
 TRIES = 3
-"""The number of times that such a client is started again: a slow machine may miss even an early answer."""
+"""The number of times that a patient client which missed its answer is started again: a slow machine may miss even an
+early answer.
+"""
 PATIENT = 1.2
-"""Seconds after which a client that gave up was patient: it may have missed the server by a moment."""
+"""Seconds: a client that waited this long for its server before giving up was patient. It may have missed the server
+by a moment.
+"""
 
 
 def answers_late(bench: Bench) -> float:
-    """Return the seconds that an answer is held back."""
+    """Return the number of seconds for which the judge holds back an answer."""
     return ANSWERS_SOON if bench.in_a_cell else ANSWERS_LATE
 
 
 def called_before_server(part: Part) -> bool:
-    """True if the last call was made before the server existed: ROS delivers such a request to no server.
+    """Return True if the last call was made before the server existed. ROS delivers such a request to no server.
 
-    Only a notebook tells of its calls. The judge compares them with the start of its own server, so the answer is the
-    same on a busy machine.
+    Only notebooks record when they call. The judge compares these times with the start of its own server, so the
+    result does not depend on the machine's load.
     """
     calls, serving = part.of("called"), part.first("serving")
     return bool(calls) and serving is not None and calls[-1].t < serving.t
 
 
 def called_too_early(called: str, wait: str) -> Mistake:
-    """The mistake of a client that calls without waiting for its server.
+    """Make the mistake of a client that calls without waiting for its server.
 
     Args:
-        called: What the client did, in words.
-        wait: The method that waits for the server.
+        called: What the client did, in words; it completes a sentence that begins with "Your client".
+        wait: The name of the method that waits for the server.
     """
 
     def found(evidence: Evidence) -> bool:
@@ -78,23 +84,23 @@ def called_too_early(called: str, wait: str) -> Mistake:
 
 
 def was_patient(part: Part) -> bool:
-    """True if a client that ended had waited for its server for :data:`PATIENT` seconds or longer."""
+    """Return True if a client that ended had waited :data:`PATIENT` seconds or longer for its server."""
     return not called_before_server(part) and _waited_since(part, part.first("interface"), PATIENT)
 
 
 def was_patient_with_an_answer(part: Part, requests: Sequence[str]) -> bool:
-    """True if a client that ended had waited long enough for the answer to its last request.
+    """Return True if a client that ended had waited long enough for the answer to its last request.
 
     Args:
         part: What was seen of the client.
-        requests: The event kinds of the requests whose answers are held back.
+        requests: The event kinds of the requests whose answers the judge holds back.
     """
     request = next((event for event in reversed(part.events) if event.kind in requests), None)
     return _waited_since(part, request, PATIENT_WITH_AN_ANSWER)
 
 
 def missed_a_result(part: Part) -> bool:
-    """True if a client that ended before its goal did had waited long enough for the result."""
+    """Return True if a client ended before its goal did, although it had waited long enough for the result."""
     result, ending = part.first("result"), part.ending
     missed = ending is not None and (result is None or ending.t <= result.t)
     return missed and _waited_since(part, part.first("result_request"), PATIENT_WITH_A_RESULT)
@@ -109,9 +115,9 @@ def _waited_since(part: Part, beginning: Event | None, seconds: float) -> bool:
 
 
 def await_goal(bench: Bench, server: ActionCounterpart, within: float) -> bool:
-    """Wait for the subject's goal, and send the subject's node another request while the answer is held back.
+    """Wait for the subject's goal. While its answer is held back, send the subject's node an unrelated request.
 
-    Any node on the graph may do so: a client that takes the first event for its answer is right only by chance.
+    Any node on the graph may send one. A client that takes the first event for its answer is right only by chance.
 
     Args:
         bench: The bench of the scenario.
@@ -128,9 +134,9 @@ def await_goal(bench: Bench, server: ActionCounterpart, within: float) -> bool:
 
 
 def hold_back(bench: Bench, kind: str) -> None:
-    """Let time pass until the first event of a kind, a request, is as old as an answer that is held back.
+    """Let time pass until the first request of a kind has waited as long as a held-back answer waits.
 
-    It takes longer on a busy machine: a subject that hardly waits needs time to report that.
+    This takes longer on a busy machine, where even a subject that hardly waits needs time to report that.
     """
     seen = bench.seen()
     request = seen.first(kind)
@@ -141,17 +147,17 @@ def hold_back(bench: Bench, kind: str) -> None:
 def again_while(
     bench: Bench, missed: Callable[[Part], bool], meet: Callable[[], bool], done: bool, times: int = TRIES
 ) -> bool:
-    """Start a subject again as long as it has just missed something that it waited for.
+    """Start a subject again while it keeps missing something that it waited for.
 
     Args:
         bench: The bench of the scenario.
-        missed: Returns True if it has, from the record of its last run.
-        meet: Makes one more run; returns True if the subject finished its work.
-        done: True if it finished its work in the run before.
-        times: The most runs to make.
+        missed: Tells, from the record of the last run, whether the subject missed something.
+        meet: Makes one more run. Returns True if the subject finished its work.
+        done: True if the subject finished its work in the run before.
+        times: The maximum number of runs to make.
 
     Returns:
-        True if it finished its work in the last run.
+        True if the subject finished its work in the last run.
     """
     for _ in range(times):
         if not done or not missed(bench.seen()):
@@ -162,20 +168,21 @@ def again_while(
 
 
 def _missed(request: str) -> Callable[[Part], bool]:
-    """True if a patient client has sent its server no request of this kind."""
+    """Return a function that tells whether a patient client sent its server no request of this kind."""
     return lambda seen: not seen.of(request) and was_patient(seen)
 
 
 def meets_late(bench: Bench, meet: Callable[[float], bool], role: str, request: str) -> bool:
-    """Let the subject meet a late server; again, with shorter delays, if a patient subject just missed it.
+    """Run the subject with a late server. If a patient subject just misses it, run again with shorter delays.
 
-    A request that a client sends in the moment in which it ends may be lost, too.
+    A request may also be lost if the client sends it at the very moment it ends.
 
     Args:
         bench: The bench of the scenario.
-        meet: Makes one run with a server this many seconds late; returns True if the subject finished its work.
+        meet: Makes one run with a server that is this many seconds late. Returns True if the subject finished its
+            work.
         role: The role of the subject's endpoint, such as ``client``.
-        request: The event kind of its request to the server.
+        request: The event kind of the subject's request to the server.
 
     Returns:
         True if the subject finished its work in the last run.
@@ -186,19 +193,19 @@ def meets_late(bench: Bench, meet: Callable[[float], bool], role: str, request: 
 
     done = again_while(bench, _missed(request), sooner, meet(LATENESS), 1)
     name, _ = bench.reference.only(role)
-    # A client that waits for another server would only wait once more.
+    # A client that waits for a different server would only wait once more, in vain.
     times = TRIES - 1 if name in bench.seen().endpoints(role) else 0
     return again_while(bench, _missed(request), sooner, done, times)
 
 
 def meets_late_action(bench: Bench, meet: Callable[[float, float], bool], requests: Sequence[str]) -> bool:
-    """Let the subject meet a late action server; again, with shorter delays, if a patient subject just missed it.
+    """Run the subject with a late action server. If a patient subject just misses it, run again with shorter delays.
 
     Args:
         bench: The bench of the scenario.
-        meet: Makes one run, given the seconds by which the server is late and an answer is held back; returns True if
+        meet: Makes one run. Its arguments are the delays of the server and of an answer, in seconds. Returns True if
             the subject finished its work.
-        requests: The event kinds of the requests whose answers are held back.
+        requests: The event kinds of the requests whose answers the judge holds back.
 
     Returns:
         True if the subject finished its work in the last run.
@@ -215,17 +222,17 @@ def meets_late_action(bench: Bench, meet: Callable[[float, float], bool], reques
 def meets_present(
     bench: Bench, meet: Callable[[], bool], request: str, *, known: bool, wanted: int = 1
 ) -> bool:
-    """Let the subject meet an available server; again if a client that can call it ended without calling.
+    """Run the subject with an available server. Repeat if a client that can call the server ended without calling.
 
-    A request that a client sends in the moment in which it ends is sometimes lost, so the client is started once
-    more. On a very busy machine a client may wait for a shorter time than it needs to discover its server; a patient
-    client is started several times.
+    A request that a client sends at the very moment it ends is sometimes lost, so the client is started once more. On
+    a very busy machine, discovering the server may take longer than the client waits; a patient client is started
+    several times.
 
     Args:
         bench: The bench of the scenario.
         meet: Makes one run; returns True if the subject finished its work.
-        request: The event kind of its request to the server.
-        known: True if the subject has called a server in an earlier run. One that never calls is not started again.
+        request: The event kind of the subject's request to the server.
+        known: True if the subject called a server in an earlier run. A subject that never calls is not started again.
         wanted: The number of requests that it should send.
 
     Returns:

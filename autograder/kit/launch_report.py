@@ -1,4 +1,4 @@
-"""A launch's report to the judge about its processes: one line of JSON for each, among its other output."""
+"""How a launch reports its processes to the judge: one line of JSON for each, among its other output."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ MARK = REPORTS[1]
 
 @dataclass(frozen=True)
 class Process:
-    """A process below a launch.
+    """A process that a launch started.
 
     Attributes:
-        pid: The process id that the process itself sees.
-        parent: The id of the process that started it, likewise.
-        argv: Its command line.
+        pid: The process id, in the PID namespace of the process itself.
+        parent: The id of the parent process, in the same namespace.
+        argv: The command line of the process.
     """
 
     pid: int
@@ -30,12 +30,12 @@ class Process:
 
 
 def process_line(process: Process) -> str:
-    """Return the line of the report."""
+    """Return the line that reports a process."""
     return MARK + json.dumps([process.pid, process.parent, *process.argv], ensure_ascii=False)
 
 
 def processes(part: Part) -> list[Process]:
-    """Return the processes that a launch started; one that became another program has an entry for each."""
+    """Return the processes that a launch started. A process that replaced its program (exec) has an entry for each."""
     texts = [str(event.data["text"]) for event in part.of("output")]
     found = [_parsed(text[len(MARK) :]) for text in texts if text.startswith(MARK)]
     return [process for process in found if process is not None]
@@ -53,15 +53,15 @@ def _parsed(text: str) -> Process | None:
 
 
 def remappings(argv: Sequence[str]) -> list[tuple[str, str]]:
-    """Return the rules ``from:=to`` that a command line passes to its node."""
+    """Return the remapping rules ``from:=to`` that a command line passes to its node."""
     return [(old, new) for _, old, new in placed_remappings(argv)]
 
 
 def placed_remappings(argv: Sequence[str]) -> list[tuple[range, str, str]]:
-    """Return the rules ``from:=to`` of a command line, each with the indexes of its words.
+    """Return the remapping rules ``from:=to`` of a command line, each with the range of arguments that make it up.
 
-    After ``--ros-args`` a rule follows ``-r`` or ``--remap``. Elsewhere a single word is a rule: rcl calls that form
-    deprecated, but obeys it (rcl/arguments.h).
+    After ``--ros-args`` a rule follows ``-r`` or ``--remap``. Elsewhere an argument ``from:=to`` alone is a rule: rcl
+    calls that form deprecated, but obeys it (rcl/arguments.h).
     """
     found, of_ros = [], False
     for place, word in enumerate(argv):

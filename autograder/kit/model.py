@@ -1,8 +1,8 @@
-"""The parts of an exercise: plain data, and the methods with which a scenario is written.
+"""The parts of an exercise as plain data, and the :class:`Bench` protocol with which its scenario is written.
 
-An exercise module defines what the judge does (a scenario), what must hold (criteria) and known mistakes (mistakes).
-It drives the judge through the :class:`Bench` protocol and never imports it, so that an exercise reads like its
-specification and can be tested without ROS.
+An exercise module defines what the judge does (the scenario), what must hold (the criteria), and known mistakes. It
+drives the judge through :class:`Bench` and never imports the judge, so an exercise reads like its specification and
+can be tested without ROS.
 """
 
 from __future__ import annotations
@@ -21,21 +21,21 @@ if TYPE_CHECKING:
 
 
 STEP = 0.05
-"""Simulated seconds in one step if the scenario gives no other number: short compared with any period in the course."""
+"""Default length of one step in simulated seconds; short compared with every period in the course."""
 
 
 class Pace(StrEnum):
-    """The kind of time in which the judge observes a subject."""
+    """The kind of time in which the judge watches a subject."""
 
     FAST = "fast"
-    """Simulated time is stepped if the subject follows it; counterparts answer as fast as they can."""
+    """Simulated time is stepped if the subject follows it, and the judge's counterparts answer as fast as they can."""
     REAL_TIME = "real time"
-    """Everything happens at the task's pace. A subject that fails fast is observed again like this."""
+    """Everything happens at the task's pace. A subject that fails at the fast pace is watched again like this."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """The decision on a criterion, with the two halves of the sentence on the card."""
+    """The decision on a criterion, with the expected and the observed behavior as the card words them."""
 
     passed: bool
     expected: str
@@ -44,13 +44,13 @@ class Finding:
 
 @dataclass(frozen=True)
 class Criterion:
-    """One requirement.
+    """One requirement of an exercise.
 
     Attributes:
-        name: A stable key.
-        title: A one-line name for people.
-        points: The points for it.
-        judge: Decides from the evidence; called once, after the scenario has ended.
+        name: A stable key for the criterion.
+        title: The criterion in one line, as students read it.
+        points: The points that the criterion is worth.
+        judge: Decides from the evidence. It is called once, after the scenario has ended.
     """
 
     name: str
@@ -64,9 +64,9 @@ class Advice:
     """The message to the student about a recognized mistake.
 
     Attributes:
-        text: What happened and why.
-        next_step: What to do now.
-        traceback: The traceback that shows the mistake, for the card; empty if something else showed it.
+        text: What happened, and why.
+        next_step: What the student should do now.
+        traceback: The traceback that revealed the mistake, for the card; empty if something else revealed it.
     """
 
     text: str
@@ -81,8 +81,8 @@ class Mistake:
     Attributes:
         key: A stable name, listed in ``docs/mistakes.md``.
         recognise: Returns the advice if the evidence shows this mistake, else None.
-        certain: True if the evidence proves the failure whatever the machine's load was, so that a second look in
-            real time would only cost time.
+        certain: True if the evidence proves the mistake however busy the machine was. Then a second look in real time
+            is not needed.
     """
 
     key: str
@@ -93,14 +93,15 @@ class Mistake:
 def mistake(
     key: str, found: Callable[[Evidence], object], text: str, next_step: str, *, certain: bool = False
 ) -> Mistake:
-    """Make a known mistake that is described in two sentences.
+    """Make a known mistake that two sentences describe.
 
     Args:
         key: A stable name, listed in ``docs/mistakes.md``.
-        found: Returns what shows the mistake; anything false if the evidence does not show it.
-        text: What happened and why; ``{}`` stands for the value that was found, ``{0[1]}`` for a part of it.
-        next_step: What to do now, with the same placeholders.
-        certain: True if the evidence proves the failure whatever the machine's load was.
+        found: Returns whatever shows the mistake; a false value, such as None or "", if the evidence does not show
+            it.
+        text: What happened, and why. ``{}`` stands for the value that was found, ``{0[1]}`` for an element of it.
+        next_step: What the student should do now, with the same placeholders.
+        certain: True if the evidence proves the mistake however busy the machine was.
     """
 
     def recognise(evidence: Evidence) -> Advice | None:
@@ -111,44 +112,44 @@ def mistake(
 
 
 class Bench(Protocol):
-    """The methods of a scenario. Every wait ends at an event or at its limit, and returns which."""
+    """The methods with which a scenario is written. Every wait ends at an event or at its limit, and says which."""
 
     pace: Pace
     before: Evidence | None
-    """In a second look: the result of the first one."""
+    """In the second look, the evidence of the first one; else None."""
     random: Random
     reference: Any
     in_a_cell: bool
-    """True if the subject runs in a notebook's kernel, so that a student may be waiting for the check cell."""
+    """True if the subject runs in a notebook's kernel. Then a student may be waiting for the check cell to finish."""
 
     def part(self, name: str, **inputs: Any) -> None:
-        """Begin a part: a fresh run of the subject; ``inputs`` are written into the transcript."""
+        """Begin a part, that is, a new run of the subject. ``inputs`` are stored in its record."""
 
     def again(self) -> None:
-        """Begin the last part again: a fresh run; the record of the first one does not count."""
+        """Begin the last part again with a new run of the subject. The record of the earlier run is discarded."""
 
     def keep(self, name: str) -> bool:
-        """In a second look: reuse a part of the first look in which the subject ended by itself.
+        """In the second look, reuse a part of the first look in which the subject ended by itself. Return True if so.
 
-        For parts in which nothing depends on the pace. Return False if there is no such part, or if the subject was
-        told how long to wait.
+        Use this for parts whose result does not depend on the pace. A part in which the subject was told how long to
+        wait is never reused.
         """
 
     def start(self, *arguments: Any, **options: Any) -> None:
-        """Start the subject; a class is made but not yet spun, a command or function runs at once.
+        """Start the subject. A class is instantiated but not yet spun; a command or function runs at once.
 
-        ``options`` are keyword arguments that only a notebook's function understands (a command ignores
-        them); for a class, ``threads`` says how many threads spin it.
+        ``options`` are keyword arguments for a notebook's function; a command ignores them. For a class, ``threads``
+        is the number of threads that spin it.
         """
 
     def release(self) -> None:
-        """Let a held subject spin; does nothing if the subject runs already."""
+        """Let a held subject spin; do nothing if the subject runs already."""
 
     def await_endpoint(self, role: str, name: str) -> bool:
-        """Wait until the subject's endpoint is on the graph and matched.
+        """Wait until the subject's endpoint is on the ROS graph and matched with the judge's.
 
-        Gives up at once when the subject has ended or is known to have made all its endpoints. If a held subject may
-        make the endpoint in a callback, it is released.
+        It gives up as soon as the subject has ended, or is known to have made all its endpoints. A held subject is
+        released if it may make the endpoint only in a callback.
 
         Args:
             role: ``"publisher"``, ``"subscription"``, ``"client"``, ``"action_client"``, ``"service"`` or
@@ -157,23 +158,23 @@ class Bench(Protocol):
         """
 
     def await_node(self) -> bool:
-        """Wait for a node of the subject on the graph. Return True if there is one, or was in a subject that ended."""
+        """Wait for a node of the subject. Return True if it is on the ROS graph, or was before the subject ended."""
 
     def await_sign_of_life(self, within: float) -> bool:
-        """Wait until the subject has said something or has a node on the graph; nothing is recorded.
+        """Wait until the subject has printed something or has a node on the graph. This records nothing.
 
         Args:
-            within: Seconds of wall time at most; gives up earlier when the subject has ended.
+            within: The limit in seconds of wall time. The wait ends earlier if the subject ends.
         """
 
     def listen(self, topic: str, type_name: str, *, latched: bool = False) -> None:
-        """Subscribe as the course's listener does: reliable, so that a best-effort talker is found out.
+        """Subscribe as the course's listener does: reliably, so that a best-effort talker is noticed.
 
         Args:
-            topic: The full name.
-            type_name: Such as ``"std_msgs/msg/String"``.
-            latched: True to request earlier messages, too (transient local). Then a publisher that keeps nothing for
-                late subscribers is not heard at all, and the mismatch is recorded.
+            topic: The full name of the topic.
+            type_name: The message type, such as ``"std_msgs/msg/String"``.
+            latched: True to request earlier messages as well (transient local). A publisher that keeps none for late
+                subscribers is then not heard at all, and the QoS mismatch is recorded.
         """
 
     def speak(self, topic: str, type_name: str) -> Speaker:
@@ -187,20 +188,20 @@ class Bench(Protocol):
         *,
         hold: int = 0,
     ) -> Server:
-        """Serve; each request and response is recorded.
+        """Serve a service, and record each request and response.
 
         Args:
-            service: The full name.
-            type_name: Such as ``"std_srvs/srv/Empty"``.
-            answer: Returns the response's fields for the request's fields.
-            hold: The number, from 1, of the request whose answer is held back until it is released; 0 for none.
+            service: The full name of the service.
+            type_name: The service type, such as ``"std_srvs/srv/Empty"``.
+            answer: Returns the fields of the response, given the fields of the request.
+            hold: Which request, counted from 1, is not answered until :meth:`Server.release` is called; 0 for none.
         """
 
     def call(self, service: str, type_name: str) -> Caller:
-        """Make a client for the subject's service; each call and answer is recorded."""
+        """Make a client for the subject's service, and record each call and each answer."""
 
     def call_action(self, action: str, type_name: str) -> ActionCaller:
-        """Make a client for the subject's action; each goal and everything that comes back is recorded."""
+        """Make a client for the subject's action, and record each goal and everything that comes back."""
 
     def serve_action(
         self,
@@ -212,46 +213,46 @@ class Bench(Protocol):
         goal_answer_takes: float = 0.0,
         cancel_answer_takes: float = 0.0,
     ) -> ActionCounterpart:
-        """Serve an action whose every step the scenario decides.
+        """Serve an action. The scenario decides each step of its server.
 
-        The answers to goals and cancel requests are sent this many seconds of wall time after the requests.
+        ``goal_answer_takes`` and ``cancel_answer_takes`` are the delays of the answers, in seconds of wall time.
         """
 
     def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> None:
-        """Put a node of the judge on the graph for the subject to look at; ``{topic: type}`` for each side."""
+        """Put a node of the judge on the graph, for the subject to look at. Give its endpoints as ``{topic: type}``."""
 
     def compare_type(self, service: str, like: str) -> None:
         """Record whether the subject's service type has the fields of the type ``like``."""
 
     def note_its_log(self) -> None:
-        """Record each different text of its log once, for the reference output."""
+        """Record each different text that the subject logs once, for the reference output."""
 
     def seen(self) -> Part:
-        """Return the events of this part so far."""
+        """Return the events of this part that were recorded so far."""
 
     def heard(self, topic: str) -> int:
         """Return the number of messages that arrived on a topic so far in this part."""
 
     def doubt(self) -> None:
-        """Require that this look is confirmed in real time."""
+        """Require that this look is confirmed by a second one in real time."""
 
     def settle(self) -> None:
-        """Wait until the subject's executors have taken what was sent to them, if they still spin.
+        """Wait until the subject's executors have processed what was sent to them, if they still spin.
 
-        Without it a busy machine would make a quick subject look slow.
+        Without this, a fast subject would look slow on a busy machine.
         """
 
     def await_attention(self) -> None:
-        """Wait until the nodes that the judge publishes to are spun and have discovered the judge.
+        """Wait until the nodes to which the judge publishes are spun and have discovered the judge's publishers.
 
-        A best-effort subscription loses messages until its own side has discovered the publisher, however long the
-        publisher has known the subscription.
+        A best-effort subscription loses messages until it has itself discovered the publisher, however long ago the
+        publisher discovered the subscription.
         """
 
     def note_whether_it_spins(self) -> None:
-        """Send the subject's nodes a request that any spun node answers; record if one does not answer.
+        """Send the subject's nodes a request that every spun node answers, and record whether one does not.
 
-        In that case the subject is asked for its stacks, which ends a command.
+        If one does not, the subject is asked for the stacks of its threads, which ends a command.
         """
 
     def note_where_it_hangs(self) -> None:
@@ -265,46 +266,47 @@ class Bench(Protocol):
         quiet: float | None = None,
         step: float = STEP,
     ) -> bool:
-        """Let ``seconds`` of the subject's time pass: simulated time if it follows, else real time.
+        """Let ``seconds`` pass for the subject: in simulated time if the subject follows it, else in real time.
 
         Args:
-            seconds: The most seconds to pass.
-            until: Stop when this returns True.
-            quiet: In real time, stop when nothing at all happened for this many seconds.
-            step: Simulated seconds in one step. A timer with a shorter period is called once a step, so times have
-                this precision; each step costs a few milliseconds on both sides.
+            seconds: The maximum number of seconds to pass.
+            until: Time stops passing when this function returns True.
+            quiet: In real time, stop when no event was recorded for this many seconds.
+            step: The length of one step in simulated seconds. A timer with a shorter period fires once a step, so
+                times are only this precise; each step costs the judge and the subject a few milliseconds.
 
         Returns:
-            False if simulated time could not go on, because the subject's executor no longer spins.
+            False if simulated time could not go on because the subject's executor no longer spins.
         """
 
     def pass_time(self, seconds: float, role: str, name: str) -> None:
-        """Let ``seconds`` pass for a subject in real time, so that its timers do now what they would do later.
+        """Let ``seconds`` pass quickly for a subject in real time, so that its timers fire now instead of later.
 
-        Its clock is simulated meanwhile, and real again afterwards; if it does not follow, the time is real.
+        Meanwhile the subject's clock is simulated, and afterwards real again. If the subject does not follow
+        simulated time, the seconds pass in real time.
 
         Args:
             seconds: Seconds of the subject's time.
-            role: With ``name``: the endpoint whose node is meant.
-            name: The full name of a topic, service or action.
+            role: The role of the endpoint whose node is meant.
+            name: The full name of that endpoint's topic, service or action.
         """
 
     def wait_until(
         self, condition: Callable[[Evidence], bool], within: float, *, quiet: float | None = None
     ) -> bool:
-        """Wait for something in the evidence of this part; gives up when the subject has ended.
+        """Wait until a condition on the evidence of this part holds. The wait ends early if the subject has ended.
 
         Args:
             condition: Returns True when the wait is over.
             within: The limit in seconds of wall time.
-            quiet: Give up earlier when nothing at all happened for this many seconds.
+            quiet: Give up earlier if no event was recorded for this many seconds.
         """
 
     def let_wait(self, seconds: float) -> None:
-        """Let the subject wait ``seconds`` of wall time for a late server, or until the subject ends."""
+        """Let the subject wait ``seconds`` of wall time for a late server, or less if the subject ends earlier."""
 
     def watch_graph(self, condition: Callable[[Evidence], bool], within: float) -> bool:
-        """Wait likewise for something on the graph, which is polled: endpoints, and the nodes that own them."""
+        """Wait until a condition on the ROS graph holds: endpoints and the nodes that own them. It polls the graph."""
 
     def press_ctrl_c(self, within: float) -> bool:
         """Press Ctrl-C, as in the subject's terminal, and wait until the subject has ended.
@@ -313,39 +315,39 @@ class Bench(Protocol):
             within: The limit in seconds of wall time.
 
         Returns:
-            True if Ctrl-C ended it; False also if it had ended before, in which case nothing is pressed.
+            True if Ctrl-C ended the subject. False also if it had ended before; then nothing is pressed.
         """
 
     def await_end(self, within: float) -> bool:
         """Wait until the subject has ended by itself, at most ``within`` seconds of wall time."""
 
     def stop(self) -> None:
-        """End the subject and remove what the judge made for this part."""
+        """End the subject, and remove everything that the judge made for this part."""
 
 
 @dataclass(frozen=True)
 class Exercise:
-    """One graded behavior.
+    """A graded exercise.
 
     Attributes:
-        id: Such as ``"lab_1_2.talker"``.
-        title: The name for people.
+        id: The exercise's id, such as ``"lab_1_2.talker"``.
+        title: The title that students read.
         task: One sentence that states the task.
         scenario: Drives the bench through all parts.
-        criteria: The requirements, in the order of the card.
-        mistakes: Known mistakes, most telling first.
-        text: The sentences of the task's text -> the names of the criteria that judge them, separated by blanks. A
-            requirement that no criterion judges is listed as not graded below the task.
-        remarks: Functions for remarks on the card that cost no points; each returns a sentence, or an empty text.
-        roles: The roles of the subject's endpoints, such as ``("publisher",)``; `record` waits for one of them.
-        limit: Seconds of wall time after which the judge gives up on a check, all looks together. A command, which
-            may build first, has more (`autograder/judge/subjects/command.py`).
-        arguments: A command's arguments, in words; empty if it takes none.
-        sample_arguments: Arguments with which ``record`` starts the reference solution to see its interface.
-        second_look: True if a subject that fails fast is observed again in real time.
-        runner: What `autograder.workspaces` does with a path given instead of a command; None if a path cannot be a
-            subject.
-        wraps_commands: True if commands are run by that runner, too.
+        criteria: The requirements, in the order in which the card shows them.
+        mistakes: The known mistakes, most specific first.
+        text: The sentences of the task's text -> the names of the criteria that judge each, separated by spaces. A
+            sentence that no criterion judges is listed as not graded below the task.
+        remarks: Functions that return remarks for the card, which cost no points: a sentence, or an empty text.
+        roles: The roles of the subject's endpoints, such as ``("publisher",)``. `record` waits for one of them.
+        limit: Time limit of a check in seconds of wall time, for both looks together. A command may build first, so
+            it has more (`autograder/judge/subjects/command.py`).
+        arguments: The arguments that a command takes, in words; empty if it takes none.
+        sample_arguments: Example arguments, with which ``record`` starts the reference solution to see its interface.
+        second_look: True if a subject that fails at the fast pace is watched again in real time.
+        runner: How `autograder.workspaces` runs a path that is given instead of a command; None if the subject cannot
+            be a path.
+        wraps_commands: True if that runner also runs commands.
         recorded: The kinds of events that a reference output keeps; None for the kinds that every exercise keeps.
     """
 
@@ -372,11 +374,11 @@ class Exercise:
         return sum(criterion.points for criterion in self.criteria)
 
     def judge_as_one(self, evidence: Evidence, right: str) -> Finding:
-        """The first criterion that does not hold; where all hold, that.
+        """Return the first criterion's finding that fails; if all criteria hold, a finding that says so.
 
         Args:
-            evidence: All that was seen.
-            right: What was seen where all hold, in a few words.
+            evidence: Everything that the judge recorded.
+            right: The observed behavior in a few words, for the case that all criteria hold.
         """
         findings = [criterion.judge(evidence) for criterion in self.criteria]
         holds = Finding(True, findings[0].expected, right)

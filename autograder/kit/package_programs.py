@@ -1,4 +1,4 @@
-"""A package's programs, as reported before and after the build, and the modules of their entry points."""
+"""A package's programs, as reported before and after its build, and the modules that their entry points name."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ if TYPE_CHECKING:
     from autograder.kit.workspace_report import PackageReport, WorkspaceReport
 
 BEGINNING = {Pace.FAST: 4.0, Pace.REAL_TIME: 15.0}
-"""Seconds of wall time within which a program or its build must print its first line."""
+"""Time limit in seconds of wall time, for each pace, in which a program or its build must print its first line."""
 
 
 @dataclass(frozen=True)
 class Entry:
-    """The entry point that a task requires.
+    """The entry point in setup.py that a task requires.
 
     Attributes:
-        package: The package.
-        program: The program, as ``ros2 run`` knows it.
-        file: The name of its file without ``.py``; empty if it is the program's name.
+        package: The name of the package.
+        program: The name of the program for ``ros2 run``.
+        file: The name of the program's file without ``.py``; empty if it equals the program's name.
     """
 
     package: str
@@ -37,12 +37,12 @@ class Entry:
 
     @property
     def module(self) -> str:
-        """The name of its file, without ``.py``."""
+        """The name of the program's file, without ``.py``."""
         return self.file or self.program
 
     @property
     def line(self) -> str:
-        """The entry point's line in setup.py."""
+        """The line in setup.py that declares the entry point."""
         return f"'{self.program} = {self.package}.{self.module}:main'"
 
 
@@ -50,20 +50,20 @@ FORM = "a string of this form: executable = package.module:function, with no sla
 
 
 def await_build(bench: Bench) -> None:
-    """Wait until the workspace of a subject that was just started is built, if it is one."""
-    # A command may print nothing while it waits for the judge, so this wait has a limit.
+    """Wait until the workspace of a just started subject is built. Return at once if the subject is not a workspace."""
+    # A command may print nothing while it waits for the judge, so this wait has a time limit.
     bench.await_sign_of_life(BEGINNING[bench.pace])
     if bench.wait_until(lambda evidence: report_of(evidence.main, "found") is not None, 0.0):
         bench.wait_until(lambda evidence: report_of(evidence.main) is not None, BUILDING)
 
 
 def package_of(report: WorkspaceReport | None, name: str) -> PackageReport | None:
-    """Return the package of that name; None if it is not in the workspace, or there is no workspace."""
+    """Return the package with this name; None if the workspace does not contain it, or if there is no workspace."""
     return next((package for package in report.packages if package.name == name), None) if report else None
 
 
 def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
-    """The package exists, but its setup.py does not name the program, or names something that does not exist."""
+    """Return advice if setup.py does not declare the task's program, or names a function that does not exist."""
     report = report_of(evidence.main)
     if report is not None and report.built and report.missing == entry.program:
         own = package_of(report, entry.package)
@@ -76,7 +76,8 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
                 f"{_again(evidence)}",
             )
         named = ", ".join(own.programs) if own else ""
-        # A student who has no entry point yet is told the format; the line itself would be the answer.
+        # Without any entry point so far, the advice shows only the format, because the line itself would be the
+        # answer.
         return Advice(
             f"The package is built, but it has no program {entry.program}: "
             + (
@@ -94,7 +95,8 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
                 f"Write {entry.line}: behind the module a colon, and the function. {_again(evidence)}",
                 part.traceback,
             )
-    # Everything below the start of a program is Python's own code: no file of the student has imported anything yet.
+    # A traceback that shows only Python's own code below the start of a program: it failed before it imported any
+    # file of the student's.
     started = (part.traceback for part in evidence if _LOADS in part.traceback)
     tracebacks = "\n".join(text for text in started if not own_line(text))
     found = re2.search(
@@ -114,7 +116,7 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
 
 
 _LOADS = "next(matches).load()"
-"""The line that imports the module, in the file that a build makes for an entry point."""
+"""The line that imports the program's module, in the script that a build makes for an entry point."""
 _NO_FUNCTION = re2.compile(
     r"load_entry_point\(.*\)\(\)\)\n(?:[ ~^]*\n)?TypeError: 'module' object is not callable"
 )
@@ -122,7 +124,7 @@ _LED_NOWHERE = re2.compile(r"(?m)^ModuleNotFoundError: No module named '(?P<modu
 
 
 def _again(evidence: Evidence) -> str:
-    """Return the next step after a change: the judge builds a workspace, but `ros2 run` starts an earlier build."""
+    """Return the next step after a change. The judge builds a workspace; `ros2 run` starts an earlier build."""
     return (
         "Then build and check again."
         if report_of(evidence.main) is None
@@ -131,7 +133,7 @@ def _again(evidence: Evidence) -> str:
 
 
 def _unknown_module(tracebacks: str, entry: Entry, again: str) -> Advice | None:
-    """Return advice if the entry point names its module without the package before it."""
+    """Return advice if the entry point names its module without the package's name in front."""
     found = _LED_NOWHERE.search(tracebacks)
     if found is None or found["module"] == entry.package:
         return None
@@ -144,7 +146,7 @@ def _unknown_module(tracebacks: str, entry: Entry, again: str) -> Advice | None:
 
 
 def no_executable(evidence: Evidence, entry: Entry) -> Advice | None:
-    """`ros2 run` finds the package, but no such program in it."""
+    """Return advice if `ros2 run` finds the package, but not the program in it."""
     if not any("No executable found" in str(event.data["text"]) for event in evidence.main.of("output")):
         return None
     return Advice(
@@ -154,7 +156,7 @@ def no_executable(evidence: Evidence, entry: Entry) -> Advice | None:
 
 
 def package_name(evidence: Evidence, package: str) -> Advice | None:
-    """The workspace contains packages, but none with the task's name."""
+    """Return advice if the workspace contains packages, but none with the name from the task."""
     report = report_of(evidence.main)
     if report is None or not report.built or report.missing != package:
         return None
@@ -167,7 +169,7 @@ def package_name(evidence: Evidence, package: str) -> Advice | None:
 
 
 def wrong_folder(evidence: Evidence, entry: Entry) -> Advice | None:
-    """The program's file is in the package, but not among its modules."""
+    """Return advice if the program's file is in the package, but not in the folder of the package's modules."""
     package, file = entry.package, f"{entry.module}.py"
     report = report_of(evidence.main)
     own = package_of(report, package)
@@ -184,9 +186,9 @@ def wrong_folder(evidence: Evidence, entry: Entry) -> Advice | None:
 
 
 def lost_entry_point(report: WorkspaceReport | None, package: str, program: str) -> bool:
-    """True if a module of an earlier lab is in the package, but no program starts it any more.
+    """Return True if the package contains the module of an earlier lab, but no program starts that module any more.
 
-    Installed programs count: an entry point can be written, or computed, in ways that setup.py's text does not show.
+    Installed programs count as well, because setup.py may compute an entry point that its text does not show.
     """
     own = package_of(report, package)
     if own is None or f"{package}/{program}.py" not in own.modules or program in own.installed:
@@ -200,5 +202,5 @@ def _module(entry: str) -> str:
 
 
 def _dotted(file: str) -> str:
-    """Return a file's name as Python imports it."""
+    """Return a file's path as a module name that Python can import."""
     return file.removesuffix(".py").replace("/", ".")

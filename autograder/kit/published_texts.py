@@ -1,4 +1,4 @@
-"""A publisher as it was heard, and questions about its texts."""
+"""A publisher as the judge heard it, with questions about the texts that it published."""
 
 from __future__ import annotations
 
@@ -18,23 +18,27 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part
 
 SURE = 2
-"""Messages after which a publisher certainly existed: a single one may come before the judge can receive it."""
+"""The number of messages after which a publisher certainly existed. A single one may be missed: it can come before the
+judge can receive it.
+"""
 SLOWLY = 1.5
-"""Intervals of the reference in one of a slow publisher; also how many of its own intervals it may be silent at the
-end.
+"""A publisher is slow if its intervals are longer than the reference's by this factor. At the end, its silence may
+also last this many of its own intervals.
 """
 BURST = 0.3
-"""Seconds within which a program that has ended may have published everything at once, on a busy machine."""
+"""Seconds: if a program that has ended published for less than this, it may have published everything at once, given a
+busy machine.
+"""
 _NUMBER, _WHOLE = re2.compile(r"-?\d+(?:[.,]\d+|e[+-]?\d+)*"), re2.compile(r"0|-?[1-9]\d{0,17}")
 _DIGITS = re2.compile(r"\d{1,18}")
 
 
 @dataclass(frozen=True)
 class Publisher:
-    """A publisher, as it was heard.
+    """A publisher as the judge heard it.
 
     Attributes:
-        topic: The topic on which it should publish.
+        topic: The topic on which the task says to publish.
         part: The run in which the judge listened.
         enough: The number of messages that the judge waited for; 0 for the reference.
     """
@@ -50,28 +54,29 @@ class Publisher:
 
     @cached_property
     def texts(self) -> list[str]:
-        """The texts in their field ``data``."""
+        """The ``data`` field of each message."""
         return [str(event.data["fields"].get("data")) for event in self.messages]
 
     @cached_property
     def counters(self) -> list[int]:
-        """The last number of each text, if it is a whole number; greetings are left out."""
+        """The last number of each text, if that is a whole number. Greetings are left out."""
         return counters(self.texts[self.greetings :])
 
     @cached_property
     def templates(self) -> list[str]:
-        """The texts with a ``#`` for each whole number."""
+        """The texts with each whole number replaced by ``#``."""
         return [template(text) for text in self.texts]
 
     @cached_property
     def greetings(self) -> int:
-        """The number of messages before it begins to count: their text differs, and no number continues from theirs.
+        """The number of messages before it begins to count. Their text differs, and their numbers do not lead on.
 
-        Such a message, published together with the publisher itself, is heard or not by chance, and counts the same.
+        Whether such a message is heard depends on chance if it is published as soon as the publisher exists, so it
+        must not change the result.
         """
         begins = self.templates.index(Counter(self.templates).most_common(1)[0][0]) if self.texts else 0
         around = last_numbers(self.texts[begins - 1 : begins + 1]) if begins else []
-        # A number in another form also continues: 10 follows 09.
+        # A number written in another form also continues the count: 10 follows 09.
         leads_on = (
             len(around) > 1 and all(map(_DIGITS.fullmatch, around)) and int(around[1]) == int(around[0]) + 1
         )
@@ -79,40 +84,40 @@ class Publisher:
 
     @property
     def number_of_first(self) -> int:
-        """The number by DDS of the first counting message; DDS numbers each publisher's messages from 1.
+        """The DDS sequence number of the first message that counts. DDS numbers each publisher's messages from 1.
 
-        Greetings that were heard are left out, so it tells how many earlier messages were not heard.
+        Greetings that were heard are subtracted, so the number tells how many earlier messages were not heard.
         """
         counting = self.messages[self.greetings :]
         return max(1, int(counting[0].data.get("number", 1)) - self.greetings) if counting else 1
 
     @property
     def step(self) -> int:
-        """The difference between its first two numbers; 0 if it does not count. Asked of the reference."""
+        """The difference between its first two numbers; 0 if it does not count. Meant for the reference."""
         first = self.counters[:2]
         return first[-1] - first[0] if first else 0
 
     def place(self, number: int) -> int:
-        """Return the place that a number has among its numbers, from 0, below zero if it comes before the first."""
+        """Return the position of a number in the publisher's count, from 0; negative if it is before the first."""
         return (number - self.counters[0]) // self.step if self.step else 0
 
     @property
     def has_numbers_alone(self) -> bool:
-        """True if its messages are whole numbers without a text."""
+        """True if the texts of its messages are whole numbers and nothing else."""
         return self.templates[:1] == ["#"]
 
     @property
     def begun(self) -> int:
-        """The number of publishers heard from their first message on: DDS numbers each publisher's messages from 1."""
+        """The number of publishers that were heard from their first message on, known from DDS's message numbers."""
         return sum(message.data.get("number") == 1 for message in self.messages)
 
     @property
     def went_on(self) -> bool:
-        """True if it published for more than a moment, so that chance does not decide whether it is heard."""
+        """True if it published long enough that hearing it does not depend on chance."""
         if not self.messages:
             return False
         first, last = self.messages[0], self.messages[-1]
-        # By the publisher's clock: messages sent at once may arrive one after the other.
+        # By the publisher's clock, because messages sent at the same time may arrive one after the other.
         seconds = float(last.data.get("sent", last.t)) - float(first.data.get("sent", first.t))
         if self.part.ending is not None and last.sim is None and seconds < BURST:
             return False
@@ -120,12 +125,12 @@ class Publisher:
 
     @property
     def pauses(self) -> list[float]:
-        """The seconds of its time between messages."""
+        """The pauses between its messages, in seconds of the subject's time."""
         times = simulated(self.messages) or sent_times(self.messages)
         return [after - before for before, after in pairwise(times)]
 
     def goes_on_slowly(self, expected: Publisher) -> bool:
-        """True if it publishes at longer intervals than the reference, and did so to the end of the run."""
+        """Return True if its intervals are longer than the reference's, and it published until the end of the run."""
         if self.part.ending is not None or len(self.pauses) < SURE:
             return False
         silent = self.part.events[-1].moment - self.messages[-1].moment
@@ -133,10 +138,10 @@ class Publisher:
 
     @property
     def endpoints(self) -> dict[str, str]:
-        """Its publishers, topic -> type; empty for a program that ended at once.
+        """Its publishers as topic -> type; empty for a program that ended at once.
 
-        Chance decides whether the graph showed those before they were gone. A notebook's class is held until they are
-        known, and one with incompatible QoS existed when that was noticed.
+        Whether the graph shows such short-lived publishers depends on chance. A notebook's class is held until its
+        publishers are known, and a publisher with incompatible QoS is known from the mismatch that was recorded.
         """
         ending, misfit = self.part.ending, self.part.first("mismatch", self.topic)
         met = (
@@ -148,11 +153,11 @@ class Publisher:
         return self.part.endpoints("publisher") if met else {}
 
     def at_once(self, expected: Publisher) -> bool:
-        """True if everything that it published or said it published is of one moment, or came at four times the pace.
+        """Return True if it published everything within a moment, or at four times the right pace.
 
-        On a busy machine a program may go on for longer than a moment. The first messages may come before the judge
-        can receive them, and the last ones may be lost with the program: its own words, and the moment of discovery,
-        tell of those.
+        On a busy machine a program may need longer than a moment for this. Besides, its first messages may come
+        before the judge can receive them, and its last ones may be lost when it ends. Its own log lines, and the time
+        of discovery, show that such messages existed.
         """
         said = [e.t for e in self.part.of("output") if expected.templates[0] in template(str(e.data["text"]))]
         met = [event.t for event in self.part.of("matched", self.topic)[:1]]
@@ -167,15 +172,15 @@ class Publisher:
 
 
 def template(text: str) -> str:
-    """Return a text with a ``#`` for each whole number."""
+    """Return a text with each whole number replaced by ``#``."""
     return str(_NUMBER.sub(lambda number: "#" if _WHOLE.fullmatch(number[0]) else number[0], text))
 
 
 def counters(texts: Sequence[str]) -> list[int]:
-    """Return the last number of each text, if it is a whole number."""
+    """Return the last number of each text, if that is a whole number."""
     return [int(number) for number in last_numbers(texts) if _WHOLE.fullmatch(number)]
 
 
 def last_numbers(texts: Sequence[str]) -> list[str]:
-    """Return the last number of each text that has one, in any form."""
+    """Return the last number of each text, as it is written; texts without a number are left out."""
     return [numbers[-1] for text in texts if (numbers := _NUMBER.findall(text))]

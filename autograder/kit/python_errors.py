@@ -1,7 +1,7 @@
-"""Python's own errors in a beginner's program: one row for each wording, with its meaning and the next step.
+"""Python's own errors in beginners' programs: for each wording of an error, its meaning and the next step.
 
-The rows match messages of Python 3.11 and 3.12 and rclpy 7.1. The first match wins. A row is worth its lines if two
-answers in the bank, or a public question, need it: the card quotes Python's own message in any case.
+The rows match messages of Python 3.11 and 3.12 and of rclpy 7.1. The first match wins. Add a row only if two answers
+in the bank, or a question asked in public, need it: the card quotes Python's own message anyway.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 Row = tuple[str, str, str]
-"""A pattern that is searched in a traceback, and the two texts, which may contain groups of the pattern."""
+"""A pattern to search for in a traceback, the meaning, and the next step. Both texts may use the pattern's groups."""
 
 
 class Meaning(NamedTuple):
-    """The meaning of an error.
+    """What an error means, and what to do about it.
 
     Attributes:
-        why: What is wrong, in a sentence; it may be empty.
-        next_step: What to do now.
+        why: A sentence that says what is wrong; it may be empty.
+        next_step: What the student should do now.
     """
 
     why: str
@@ -67,7 +67,7 @@ READING: Sequence[Row] = (
         "before it.",
     ),
 )
-"""Python's messages about a text that it cannot parse."""
+"""Messages with which Python reports that it cannot parse a program."""
 
 _IMPORTED_FROM = {
     "action_msgs.msg": "GoalStatus",
@@ -79,12 +79,12 @@ _IMPORTED_FROM = {
     "rclpy.qos": "DurabilityPolicy|QoSProfile|ReliabilityPolicy",
     "std_msgs.msg": "String",
 }
-"""The module of each name that beginners import from another one, or forget to import."""
+"""Names that beginners often import from the wrong module, or forget to import, by the right module."""
 _NOT_STUDENTS = (
     r"list|dict|tuple|set|str|bytes|bool|int|float|\w+GoalHandle|Publisher|Subscription|Timer|Client|Service"
     r"|ActionClient|ActionServer|RcutilsLogger"
 )
-"""Types that come from libraries, not from the student."""
+"""Matches the names of types that come from libraries, not from the student."""
 
 RUNNING: Sequence[Row] = (
     *(
@@ -189,7 +189,7 @@ RUNNING: Sequence[Row] = (
         "{{message.data}}. To add numbers, turn the string into a number first: int(...).",
     ),
     (
-        # The executor keeps its nodes in a set; a notebook's traceback omits rclpy's own lines.
+        # The executor keeps its nodes in a set, which needs a hash. A notebook's traceback omits rclpy's own lines.
         r"(?:\A|rclpy/executors\.py\".*\n(?: .*\n){1,2})TypeError: unhashable type: '(?P<class>\w+)'",
         "ROS cannot keep your node: its class {class} has no hash, which @dataclass, or a method __eq__ of the class, "
         "takes away.",
@@ -197,7 +197,7 @@ RUNNING: Sequence[Row] = (
         "super().__init__('your_node_name') as its first line. Set the fields below that, as in self.count = 0.",
     ),
     (
-        # A notebook's traceback omits rclpy's own line, which reads node.subscriptions.
+        # A notebook's traceback omits rclpy's own line, in which node.subscriptions is read.
         rf"(?:\bspin\w*\((?P<class>[A-Za-z_]\w*)[,)].*\n(?:.*\n)*?|node\.subscriptions.*{MARKS})"
         r"TypeError: 'property' object is not iterable",
         "A spin takes a node, and got the class of one.",
@@ -216,7 +216,7 @@ RUNNING: Sequence[Row] = (
         "needed, give the whole list. Two numbers are added with +, and not with sum.",
     ),
     (
-        # Raised where rclpy calls the callback; a notebook's traceback omits rclpy's own lines.
+        # The error is raised where rclpy calls the callback; a notebook's traceback omits rclpy's own lines.
         r"(?:\A|rclpy/(?:executors|task)\.py\".*\n(?: .*\n){1,2})TypeError: '(?P<kind>\w+)' object is not callable",
         "ROS was to call a method of yours, and was given a value of the type {kind} in its place.",
         "Look at what create_timer(...), or whatever takes a callback, has in this place: the name of the method, with "
@@ -291,11 +291,11 @@ RUNNING: Sequence[Row] = (
         "create_... and of what spins, with the lab's text: types, names, methods and their order.",
     ),
 )
-"""Python's messages about a program that runs."""
+"""Messages with which Python reports an error in a running program."""
 
 
 def meaning(traceback: str) -> Meaning:
-    """Return the meaning of the error at the end of a traceback."""
+    """Return the meaning of the error with which a traceback ends."""
     for pattern, why, next_step in (*READING, *RUNNING):
         found = _compiled(pattern).search(traceback)
         if found is not None:

@@ -1,7 +1,7 @@
-"""The student's own names, as far as the quoted line in a traceback shows them.
+"""The names that the student's code uses, as far as the quoted line of a traceback shows them.
 
-Advice on a card says ``fut.result()`` if the program names its future ``fut``. The last line of code in a traceback
-is enough for that; if it does not show the name, the advice uses a general term.
+Advice on a card says ``fut.result()`` if the program calls its future ``fut``. The last line of code in a traceback
+is enough for that. If it does not show the name, the advice uses a general term.
 """
 
 from __future__ import annotations
@@ -9,23 +9,24 @@ from __future__ import annotations
 import re2
 
 MARKS = r"\n(?:[ ~^]*\n)?"
-"""From a line of code to Python's message about it: perhaps with a line of marks below the code."""
+"""Matches the end of a line of code up to Python's message, with an optional line of ``^`` or ``~`` marks between them.
+"""
 _FRAME_WITH_CODE = re2.compile(r'(?m)^ {2}File "(?P<file>[^"]*)", line \d+.*\n {4,}(?P<code>\S.*)$')
-"""A frame of a traceback, with the line of code that is quoted below it."""
+"""Matches a frame of a traceback and the line of code quoted below it."""
 _LIBRARY = re2.compile(r"/lib/python3(?:\.\d+)?/|/(?:site|dist)-packages/|^/opt/ros/|^<frozen")
 _BUILT = re2.compile(
     r"/install/(?:[^/.]+/)?(?:local/)?lib/python3[^/]*/(?:site|dist)-packages/(?P<package>\w+)"
 )
-"""A package that a build has installed, such as a student's own; or ROS, if it was built from source."""
+"""Matches the path of a package installed by a colcon build: the student's own, or ROS if it was built from source."""
 _ROS = ("rclpy", "launch", "launch_ros", "ros2cli", "ros2run")
 _MISSED = re2.compile(r"AttributeError: .*(?:has no attribute|object attribute) '(?P<name>\w+)'")
 _OWNER = r"(?:^|[^\w.)\]])(?P<owner>[A-Za-z_][\w.]*(?:(?:\(\)|\[[^\[\]]*\])[\w.]*)*)\.{name}\b"
-"""The text before a dot and a name: names and dots, calls without arguments, indexes."""
+"""Matches the expression before a dot and a given name: names and dots, calls without arguments, indexes."""
 _RESULT = ".result()"
 
 
 class Name(str):
-    """A name in a template, with another text if it is unknown: ``{owner:your future}``."""
+    """A name for use in a template, with a general text if the name is unknown: ``{owner:your future}``."""
 
     __slots__ = ()
 
@@ -34,22 +35,23 @@ class Name(str):
 
 
 def is_a_library(file: str) -> bool:
-    """True for a file of Python, of ROS or of an installed package, but not of a student's own package."""
+    """Return True for a file of Python, ROS or an installed package, but False for a student's own package."""
     built = _BUILT.search(file)
     return _LIBRARY.search(file) is not None and (built is None or built["package"] in _ROS)
 
 
 def own_line(traceback: str) -> str:
-    """The innermost line of code in a traceback, if it is the student's; empty otherwise."""
+    """Return the innermost line of code in a traceback if it is the student's; else an empty text."""
     frames = list(_FRAME_WITH_CODE.finditer(traceback))
     return "" if not frames or is_a_library(frames[-1]["file"]) else str(frames[-1]["code"])
 
 
 def names(traceback: str) -> dict[str, Name]:
-    """Return the names in a traceback for a template: ``owner`` and ``future``, empty if they are unknown.
+    """Return the names that templates can use from a traceback: ``owner`` and ``future``; empty if unknown.
 
-    In ``fut.result().sum``, if ``sum`` does not exist, the owner is ``fut.result()`` and the future is ``fut``. A
-    call is never the name of a future: it would return another one each time.
+    Suppose that ``fut.result().sum`` fails because ``sum`` does not exist. Then the owner is ``fut.result()``, and
+    the future is ``fut``. A call is never used as the name of a future, because each call would return a different
+    one.
     """
     owner = _owner(traceback)
     future = owner.removesuffix(_RESULT) if owner.endswith(_RESULT) else ""
@@ -57,7 +59,7 @@ def names(traceback: str) -> dict[str, Name]:
 
 
 def _owner(traceback: str) -> str:
-    """Return what the student's line has before the missing attribute; empty if it is ambiguous."""
+    """Return the expression before the missing attribute in the student's line; empty if it is ambiguous."""
     missed = _MISSED.search(traceback)
     if missed is None:
         return ""

@@ -1,8 +1,8 @@
-"""The rate of the talker: by the simulated clock if the talker follows it, else by the talker's own clock.
+"""The rate of a talker, by simulated time if the talker follows it, else by the talker's own clock.
 
-In simulated time intervals are exact, so all of them count. In real time a message may be late on a busy machine, so
-one in a row of messages may be late, and the judge waits for such a row. The times are the publisher's own, unless
-they disagree with the times of arrival.
+In simulated time intervals are exact, so all of them count. In real time a busy machine may delay a message. So the
+judge waits until several successive messages keep the rate, and one of these may be late. The times are the
+publisher's own, unless they contradict the times of arrival.
 """
 
 from __future__ import annotations
@@ -23,34 +23,36 @@ if TYPE_CHECKING:
 ROW = 7
 """The number of successive messages that show a rate in real time."""
 LATE = 6
-"""One message in so many may be late."""
+"""One message in this many may be late."""
 SIMULATED_TOLERANCE = 0.05
-"""The share of the reference's interval by which the simulated mean may differ."""
+"""The tolerance for the mean interval in simulated time, as a fraction of the reference's interval."""
 SIMULATED_JITTER = 0.1
-"""Simulated seconds by which one interval may differ: two steps of the judge's clock, or one long step."""
+"""The tolerance for a single interval, in simulated seconds: two steps of the judge's clock, or one long step."""
 SLOWER, FASTER = 0.18, 0.1
-"""The shares of the reference's interval by which the real median may differ: load makes a talker only slower."""
+"""The tolerances for the median interval in real time, as fractions of the reference's interval. Being slower is
+tolerated more, because load only makes a talker slower.
+"""
 AT_ONCE = 0.1
-"""Two messages form a burst if the time between them is less than this share of the period."""
+"""Two messages form a burst if the time between them is less than this fraction of the period."""
 UNEVEN = 0.3
-"""An interval in real time is too long or too short if it differs from the period by more than this share of it."""
+"""The tolerance for a single interval in real time, as a fraction of the period."""
 ON_THE_WAY = 0.3
-"""Seconds that a message may travel; if it seems to take longer, or less than nothing, its time of sending is not
-used.
+"""The most seconds between the sending and the arrival of a message. If they seem more, or negative, the time of
+sending is ignored.
 """
 ROUNDING = 0.005
-"""Seconds by which two readings of one clock may seem to be in the wrong order."""
+"""Seconds by which a later reading of the same clock may seem to be earlier, because of rounding."""
 
 
 @dataclass(frozen=True)
 class Rate:
-    """A measured rate.
+    """The measured rate of a publisher.
 
     Attributes:
-        period: The mean seconds between two messages.
-        intervals: The seconds between each two.
-        even: True if the intervals are equal, within the tolerance.
-        kept: True if the rate is the required one.
+        period: The mean time between two messages, in seconds.
+        intervals: The time between each two successive messages, in seconds.
+        even: True if all intervals are equal, within the tolerance.
+        kept: True if the measured rate is the required one.
     """
 
     period: float
@@ -60,9 +62,9 @@ class Rate:
 
 
 def simulated(messages: Sequence[Event]) -> list[float]:
-    """Return the simulated times of messages, if they follow that clock to the end.
+    """Return the messages' simulated times; empty if they do not follow the simulated clock to the end.
 
-    The first message is left out: the jump to simulated time distorts it.
+    The first message is left out, because the jump to simulated time distorts its time.
     """
     follows = bool(messages) and messages[-1].sim is not None
     return [event.sim for event in messages if event.sim is not None][1:] if follows else []
@@ -74,7 +76,7 @@ def rate_of(messages: Sequence[Event], wanted: float, row: int = ROW) -> Rate | 
     Args:
         messages: The messages that the judge received.
         wanted: The reference's period, in seconds.
-        row: The number of successive messages that must keep the rate in real time; the first such row counts.
+        row: In real time, the number of successive messages that must keep the rate. The first such group decides.
     """
     if times := simulated(messages):
         return _exact(times, wanted) if len(times) > 1 else None
@@ -85,10 +87,10 @@ def rate_of(messages: Sequence[Event], wanted: float, row: int = ROW) -> Rate | 
 
 
 def sent_times(messages: Sequence[Event]) -> list[float]:
-    """Return the time at which each message was sent: the publisher's own time, if it is plausible.
+    """Return the time at which each message was sent: the publisher's own time if that is plausible.
 
-    A busy judge receives messages late and close together, so the publisher's clock is better; but a publisher with a
-    manipulated clock can report any time. Both read the clock of one machine.
+    A busy judge receives messages late and close together, so the publisher's times are better. But a publisher that
+    falsifies its clock could report any time, so they are checked. Both processes read the same machine's clock.
     """
     return [_sent(event) for event in messages]
 
@@ -100,23 +102,21 @@ def _sent(event: Event) -> float:
 
 
 def burst_at_the_start(messages: Sequence[Event], unheard: int, wanted: float) -> str:
-    """Return what shows that a publisher began with a burst of messages, in words; else empty.
+    """Return in words what shows that a publisher began with a burst of messages; empty if nothing does.
 
-    messages: The messages that the judge received, from the first one that counts.
-        messages: As the judge heard them, from the first that counts on.
-        unheard: The number of earlier messages that the judge could not receive. At the right rate each took one
-            period, so together at most the time since the program began.
-        wanted: The reference's period, in seconds.
+    messages: The messages that the judge received, from the first one that counts. unheard: The number of earlier
+    messages, which the judge could not receive. At the right rate each takes one period, so together they cannot take
+    longer than the time since the program began. wanted: The reference's period, in seconds.
     """
     if not messages:
         return ""
     first = messages[0]
     arrived = float(first.data.get("arrived", first.t))
-    # Only the publisher's clock is used: messages held up during discovery rightly arrive at once.
+    # Only the publisher's clock is used, because messages that were held up during discovery arrive all at once.
     in_real_time = (one for one in messages if one.sim is None or one is first)
     sent = [float(one.data.get("sent", one.data.get("arrived", one.t))) for one in in_real_time]
     since = sent[0] - (arrived - first.t)
-    # The jump to simulated time may have moved the first received message forward.
+    # The jump to simulated time may have brought the first received message forward.
     if (unheard - (first.sim is not None)) * wanted * (1 - FASTER) > since:
         return f"{counted(unheard + 1, 'message')} in the first {since:.1f} s"
     gaps = [after - before for before, after in pairwise(sent)]
@@ -135,7 +135,7 @@ def _exact(times: Sequence[float], wanted: float) -> Rate:
 def _at_a_glance(times: Sequence[float], wanted: float) -> Rate:
     gaps = [later - earlier for earlier, later in pairwise(times)]
     period, most = median(gaps), UNEVEN * wanted
-    # A late message makes one interval longer, and the next one shorter if the timer keeps its schedule.
+    # A late message makes one interval longer. The next one is shorter if the timer keeps its schedule.
     even = all(
         sum(off > most for off in offs) <= len(gaps) // LATE
         for offs in ([gap - period for gap in gaps], [period - gap for gap in gaps])
@@ -145,19 +145,19 @@ def _at_a_glance(times: Sequence[float], wanted: float) -> Rate:
 
 
 def confirmed(rate: Rate, before: Rate, wanted: float) -> bool:
-    """True if a rate in real time shows the same wrong period as in simulated time.
+    """Return True if a rate in real time shows the same wrong period as an earlier rate in simulated time.
 
-    A thread that sleeps by that clock may seem slow, but only in simulated time.
+    A thread that sleeps in real time may seem slow, but only when measured in simulated time.
     """
     wrong = abs(before.period - wanted) > SIMULATED_TOLERANCE * wanted
     return wrong and abs(rate.period - before.period) < abs(rate.period - wanted)
 
 
 def keeps_rate(seen: Part, expected: Part) -> Finding:
-    """Judge, for one topic, that messages come as often as the reference's.
+    """Judge, for a single topic, whether messages come as often as the reference's.
 
     Raises:
-        ValueError: The reference has no rate.
+        ValueError: The reference has too few messages for a rate.
     """
     messages, wanted = seen.of("message"), _period(expected)
     rate = rate_of(messages, wanted)
@@ -167,7 +167,7 @@ def keeps_rate(seen: Part, expected: Part) -> Finding:
 
 
 def another_rate(seen: Part, expected: Part) -> str:
-    """Return how often it publishes on one topic if that is not the reference's rate; else an empty text."""
+    """Return in words how often it publishes on a topic if that is not the reference's rate; else an empty text."""
     rate = rate_of(seen.of("message"), _period(expected))
     return keeps_rate(seen, expected).seen if rate is not None and not rate.kept else ""
 

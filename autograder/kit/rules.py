@@ -1,6 +1,7 @@
-"""Equality of contents, and rules for a subject that reports a state from time to time, depending on its inputs.
+"""Comparison of message contents, and rules for a subject that reports a state from time to time.
 
-For a subject that answers what it is given, see ``recipes/relay.py`` and ``recipes/machine.py``.
+What such a subject must report depends on what it was given. For a subject that answers each input, see
+``recipes/relay.py`` and ``recipes/machine.py``.
 """
 
 from __future__ import annotations
@@ -22,32 +23,32 @@ if TYPE_CHECKING:
 
 
 class _SomeText:
-    """Any text that is not blank."""
+    """Equal to every text that is not blank."""
 
     def __str__(self) -> str:
         return "a text"
 
 
 SOME_TEXT = _SomeText()
-"""Stands in an expected reply for any text of the student's own."""
+"""Use this in an expected reply for a text that students may choose."""
 
 
 def value(event: Event) -> Any:
-    """Return the content of a message, a request or an answer: its field ``data``, or all its fields if it has none."""
+    """Return the content of a message, request or answer: its field ``data``, or all fields if it has no such field."""
     return event.data["fields"].get("data", event.data["fields"])
 
 
 def values(kind: str, name: str | None = None) -> Callable[[Part], list[Any]]:
-    """Return a function for the contents of all events of a kind, in order; only those of ``name`` if it is given."""
+    """Return a function for the contents of all events of a kind, in order; with ``name``, only of events with it."""
     return lambda seen: [value(event) for event in seen.of(kind, name)]
 
 
 SENT = values("sent")
-"""What the judge published."""
+"""Returns the contents of the messages that the judge published."""
 
 
 class Given(NamedTuple):
-    """Something that a subject was given: its age in seconds of the subject's time, its :func:`value`, its name."""
+    """An input of the subject: its age in seconds of the subject's time, its :func:`value`, and its name."""
 
     age: float
     value: Any
@@ -55,17 +56,20 @@ class Given(NamedTuple):
 
 
 State = Callable[[Sequence[Given]], Any]
-"""From everything that a subject was given until a moment, in order, to what it must say, or to what holds, then."""
+"""A function of everything that a subject was given up to a moment, in order. It returns what the subject must report,
+or whether a condition holds, at that moment.
+"""
 
 
 @dataclass(frozen=True)
 class StateRule:
-    """A rule for a subject that reports a state from time to time, depending on what it was given, and when.
+    """A rule for a subject that reports a state from time to time. The state depends on what it was given, and when.
 
     Attributes:
-        rule: Returns what it must say.
-        slack: Seconds of tolerance: a report that was right this long before, or will be this long after, is accepted.
-        given: The kind of the events in which it is given something.
+        rule: Returns what the subject must report.
+        slack: Tolerance in seconds: a report also counts as right if it was right this long before, or will be this
+            long after.
+        given: The kind of event that records an input of the subject.
     """
 
     rule: State
@@ -73,9 +77,10 @@ class StateRule:
     given: str = "sent"
 
     def when(self, holds: State) -> Judge[Part]:
-        """Return a criterion: while something holds, its reports are right.
+        """Return a criterion: at all times at which a condition holds, the subject's reports are right.
 
-        It must report a quarter as often as the reference solution; another criterion judges its rate.
+        The subject must report at least a quarter as often as the reference solution; another criterion judges the
+        rate.
         """
 
         def judge(seen: Part, expected: Part) -> Finding:
@@ -91,7 +96,7 @@ class StateRule:
         return judge
 
     def taken_for(self, *wrong: State) -> Callable[[Part, Part], bool]:
-        """Return a mistake: all its reports follow one of these wrong rules, and not the right one."""
+        """Return a mistake: all reports follow one of these wrong rules, and not the right one."""
 
         def recognise(seen: Part, _: Part) -> bool:
             said = list(self._said(seen))
@@ -104,19 +109,22 @@ class StateRule:
         return recognise
 
     def only_in_answer(self, seen: Part, _: Part) -> bool:
-        """Return a mistake: it reports once for each thing that it is given, and never by itself."""
+        """Return True if the subject reports once for each input that it is given, and never by itself."""
         given = [len(later) for _, (*_, later) in self._said(seen)]
         return bool(given) and all(number <= so_far for number, so_far in enumerate(given, 1))
 
     def _decided(self, part: Part, holds: State) -> Iterator[tuple[Any, Any]]:
-        """Yield the due and the actual report whenever only one report is right, and the condition certainly holds."""
+        """Yield the required and the actual report for each time at which only one report is right.
+
+        Times at which the condition may not hold are left out.
+        """
         for what, views in self._said(part):
             due, *others = map(self.rule, views)
             if all(map(holds, views)) and all(same(due, other) for other in others):
                 yield due, what
 
     def _said(self, part: Part) -> Iterator[tuple[Any, list[list[Given]]]]:
-        """Yield each report with what the subject had been given a little earlier, at that time, and a little later."""
+        """Yield each report with what the subject had been given shortly before, at that time, and shortly after."""
         given: list[Event] = []
         for event in part.events:
             if event.kind == self.given:
@@ -133,13 +141,13 @@ class StateRule:
 
 
 def _moment(event: Event) -> float:
-    """Return the time of a report: in real time without the time that it took to arrive."""
+    """Return the time of a report; in real time, the time at which it was sent."""
     on_its_way = float(event.data.get("arrived", event.t)) - sent_times([event])[0]
     return event.moment - (on_its_way if event.sim is None else 0.0)
 
 
 def same(one: Any, other: Any, tolerance: float = 1e-6) -> bool:
-    """True if two contents, or rows of contents, are equal.
+    """Return True if two contents, or lists of contents, are equal.
 
     Floating-point numbers may differ by ``tolerance`` (absolute, or relative to the larger one). NaN equals NaN, and
     :data:`SOME_TEXT` equals every text that is not blank.
@@ -157,5 +165,5 @@ def same(one: Any, other: Any, tolerance: float = 1e-6) -> bool:
 
 
 def in_words(made: Sequence[object]) -> str:
-    """Return a row of contents as the card shows it."""
+    """Return a list of contents as the card shows it."""
     return ", ".join(f"{one:.10g}" if isinstance(one, float) else str(one) for one in made) or "nothing"

@@ -1,19 +1,21 @@
-"""What to do with a path that is given instead of a command."""
+"""What the workspace program should do if the subject is given as a path and not as a command."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 ALONE = "--alone"
-"""The first argument for starting one program instead of a launch; the rest is as for ``ros2 run``."""
+"""The first argument of a start that runs one program and not the launch. The remaining arguments are those of ``ros2
+run``.
+"""
 
 
 @dataclass(frozen=True)
 class RunsProgram:
-    """Build the workspace, and run a program of one of its packages.
+    """Build the workspace, and run a program from one of its packages.
 
     Attributes:
-        package: The package.
+        package: The name of the package.
         program: The program's name for ``ros2 run``.
     """
 
@@ -23,10 +25,10 @@ class RunsProgram:
 
 @dataclass(frozen=True)
 class RunsPrograms:
-    """Build the workspace, and run the program of one of its packages that each start names first.
+    """Build the workspace, and run programs from one of its packages; the first argument of a start names one.
 
     Attributes:
-        package: The package.
+        package: The name of the package.
         programs: The programs' names for ``ros2 run``, in the order of the task.
     """
 
@@ -36,11 +38,11 @@ class RunsPrograms:
 
 @dataclass(frozen=True)
 class ServesInterface:
-    """Build the workspace, and serve a service type that it generates with a node of the judge.
+    """Build the workspace, and let a node of the judge serve a service type that the workspace defines.
 
     Attributes:
-        file: The file of the service type, such as ``"AddTwoInts.srv"``, in any package.
-        service: The name under which it is served.
+        file: The file that defines the service type, such as ``"AddTwoInts.srv"``; it may be in any package.
+        service: The name of the service under which it is served.
     """
 
     file: str
@@ -49,20 +51,21 @@ class ServesInterface:
 
 @dataclass(frozen=True)
 class Launches:
-    """Launch the launch file, with what it needs from the workspace around it.
+    """Launch the given launch file. If it lies in a workspace, build the packages that it needs first.
 
-    A start whose arguments begin with :data:`ALONE` runs one program, as the launch would find it.
+    A start whose first argument is :data:`ALONE` runs one program instead, in the environment that the launch would
+    have.
     """
 
 
 @dataclass(frozen=True)
 class LaunchesFromPackage:
-    """The workspace is built, and a launch file that one of its packages has installed is launched.
+    """Build the workspace, and launch a launch file that one of its packages has installed.
 
-    A start whose arguments begin with :data:`ALONE` is one of a program, as with :class:`Launches`.
+    A start whose first argument is :data:`ALONE` runs one program instead, as with :class:`Launches`.
 
     Attributes:
-        package: The package.
+        package: The name of the package.
         file: The name of the launch file without the ending of its language, such as ``"remap.launch"``.
     """
 

@@ -1,4 +1,4 @@
-"""A service client as it was seen in its runs, and questions about it."""
+"""A service client as it behaved in its runs, with questions about it."""
 
 from __future__ import annotations
 
@@ -23,22 +23,23 @@ BIASED = "the answers are surprising"
 EXTREME = "64-bit numbers"
 ABSENT = "there is no service"
 CALLED = (LATE, BIASED, EXTREME)
-"""The parts in which the service answers."""
+"""The names of the parts in which the service answers."""
 
 HANGS_AFTER = 8.0
 """Seconds without any event after which a client is taken to hang.
 
-A program that calls before the service is there waits so long in both looks: 21 seconds in all on a quiet machine. No
-event decides that sooner. A request without a service reaches no reader, and ROS lets the judge read requests only as
-a server, which the client would see: the topic `rq/add_two_intsRequest` belongs to services, and a subscription, even
-one with `avoid_ros_namespace_conventions`, reads `/rq/add_two_intsRequest`. The stack of a client whose call was lost
-is also that of one whose timer waits for the service, and which is right. So a second run has to confirm the silence.
+A program that calls before the service exists waits this long in both looks: 21 seconds in all on a quiet machine. No
+event can decide the matter earlier. A request without a service reaches no reader. ROS lets the judge read requests
+only as a server, which the client would see: the topic `rq/add_two_intsRequest` belongs to services, and a
+subscription, even one with `avoid_ros_namespace_conventions`, reads `/rq/add_two_intsRequest`. The stack of a client
+whose call was lost looks like that of a right client, whose timer waits for the service. So a second run has to
+confirm that nothing happens.
 """
 
 
 @dataclass(frozen=True)
 class Client:
-    """A service client, as it was seen, or as it was recorded from the reference solution.
+    """A service client as it behaved in its runs, or as it was recorded from the reference solution.
 
     Attributes:
         evidence: All runs of the client.
@@ -58,61 +59,61 @@ class Client:
 
     @property
     def calls(self) -> int:
-        """The number of calls if the service comes late."""
+        """The number of calls in the run in which the service comes late."""
         return len(requests(self.late))
 
     @property
     def had_client(self) -> bool:
-        """True if a client was seen in any run."""
+        """True if the client was seen on the ROS graph in any run."""
         return isinstance(self.evidence, Evidence) and self.evidence.ever_had("client")
 
     def called_each_time(self) -> bool:
-        """True if each run with a service has a call: then timing did not decide the number of calls."""
+        """True if each run with a service has a call. Then the number of calls did not depend on timing."""
         return all(map(requests, self.served))
 
     def ended_each_time(self) -> bool:
-        """True if each run ended by itself: then timing did not decide anything."""
+        """True if the client ended by itself in each run. Then nothing depended on timing."""
         return all(part.ending for part in self.evidence.parts)
 
     def called(self, wanted: int) -> bool:
-        """True if it made this many calls in each run with a service."""
+        """Return True if it made at least this many calls in each run with a service."""
         return all(len(requests(part)) == wanted for part in self.served)
 
 
 def requests(part: Part) -> list[Event]:
-    """Return the calls, in order."""
+    """Return the calls of a part, in order of time."""
     return part.of("request")
 
 
 def answers(part: Part) -> list[int]:
-    """Return the answers, in order."""
+    """Return the answers of a part, in order of time."""
     return [int(event.data["fields"]["sum"]) for event in part.of("response")]
 
 
 def pair(event: Event) -> list[int]:
     """Return the two numbers of a call, the smaller first."""
-    # For the sum it does not matter which number is a and which is b.
+    # A sum does not depend on which number is a and which is b.
     return sorted((int(event.data["fields"]["a"]), int(event.data["fields"]["b"])))
 
 
 def reports(part: Part) -> bool:
-    """True if the last answer is said after it was given, and if a function with a return value returns that."""
+    """Return True if the client reports the last answer that it got, and a function that returns a value returns it."""
     given = part.of("response")
     said = bool(given) and mentions(part.said(after=given[-1]), answers(part)[-1])
     return said and not says_otherwise(part)
 
 
 def returns_another(part: Part) -> bool:
-    """True if a notebook's function returned anything but the last answer, whatever it logged."""
+    """Return True if a notebook's function returned anything but the last answer, whatever it logged."""
     given = answers(part)
     return bool(given) and part.returned not in (None, str(given[-1]))
 
 
 def says_otherwise(part: Part) -> bool:
-    """True if one of its reports of the last answer is wrong, even if another one is right.
+    """Return True if one of the client's reports of the last answer is wrong, even if another report is right.
 
-    A function that raised an exception returned nothing to its caller. A line with the answer and the wrong sign
-    tells its reader a wrong sum.
+    A function that raised an exception returned nothing, so its value is not compared. A line that contains the
+    answer with the wrong sign counts as wrong.
     """
     if returns_another(part) or (part.ending is not None and part.ending.name == "raised"):
         return True
@@ -125,9 +126,10 @@ def says_otherwise(part: Part) -> bool:
 
 
 def has_reported(part: Part, calls: int) -> bool:
-    """True if an answer is said after it was given: the one to the call of that number (from 1), or a later one.
+    """Return True if the client reported the answer to its call with this number (from 1), or to a later call.
 
-    A client that goes on calling is stopped at some moment, and the result must not depend on which.
+    Any of these answers counts, because a client that goes on calling is stopped at some moment, and the result must
+    not depend on which.
     """
     return any(
         mentions(part.said(after=given), int(given.data["fields"]["sum"]))
@@ -136,18 +138,18 @@ def has_reported(part: Part, calls: int) -> bool:
 
 
 def new_words(part: Part, given: Event | None = None) -> list[str]:
-    """Return the words after an answer, or after the last one, without late echoes."""
+    """Return what the client said after an answer (by default the last one), without late copies of earlier lines."""
     given = given or next(reversed(part.of("response")), None)
     return list(filter(str.strip, said_first_after(given, part)))
 
 
 def braces_left(part: Part) -> Advice | None:
-    """The client said a variable's name in braces instead of the sum: Python fills them only in an f-string."""
+    """Return advice if the client printed a variable's name in braces, which only an f-string fills in."""
     return not_filled_in(new_words(part))
 
 
 def reports_the_sum(evidence: Evidence) -> Finding:
-    """The last answer is logged, printed or returned."""
+    """Decide whether the client logs, prints or returns the last answer."""
     calls = max(1, Client(evidence.reference).calls)
     silent = next(
         (
@@ -162,17 +164,17 @@ def reports_the_sum(evidence: Evidence) -> Finding:
     given = answers(silent)
     if returns_another(silent):
         return Finding(False, f"{given[-1]} said and returned", f"it returned {silent.returned}")
-    # The answer to an earlier call is not the sum.
+    # The answer to an earlier call is not the final sum.
     wanted = f"{given[-1]} said at the end" if len(given) >= calls else "the final sum, in each run"
     lines = silent.said(after=silent.of("response")[-1]) if given else silent.said()
-    # A message of Python's may end with a line that only marks a character of the one above.
+    # The last line of a Python message may consist only of marks below the line before it, so it is skipped.
     lines = [line for line in lines if re2.search(r"[\pL\pN]", line)]
     wrong = [line for line in lines if given and not mentions([line], given[-1])] or lines
     return Finding(False, wanted, f"“{wrong[-1]}”" if wrong else "nothing was said")
 
 
 def gives_up_in_time(evidence: Evidence) -> Finding:
-    """Without a service the client gives up, or goes on, as the one rule for all clients requires."""
+    """Decide whether the client, without a service, gives up or keeps waiting as the rule for all clients requires."""
     part = evidence.part(ABSENT)
     if own_sum(part) is not None:
         wrong = "named a sum that no service gave"
@@ -183,9 +185,9 @@ def gives_up_in_time(evidence: Evidence) -> Finding:
 
 
 def own_sum(part: Part) -> int | None:
-    """Return the sum of the inputs if a client said it in the run without a service: it added up by itself.
+    """Return the sum if the client reported it in the run without a service, that is, added the numbers itself.
 
-    A sum that is one of the inputs shows nothing.
+    A sum that equals one of the inputs proves nothing.
     """
     numbers = part.inputs.get("numbers", ())
     total = sum(numbers)
@@ -193,7 +195,7 @@ def own_sum(part: Part) -> int | None:
 
 
 def served_otherwise(evidence: Evidence) -> list[Part]:
-    """Return the runs in which the client had its service."""
+    """Return the runs in which the client had its service and could not mean a missing one."""
     absent = evidence.part(ABSENT)
     elsewhere = giving_up.looks_elsewhere(evidence, absent, "client")
     return giving_up.served_otherwise(
@@ -205,7 +207,7 @@ no_limit = giving_up.remark(ABSENT)
 
 
 def how_it_went(part: Part) -> str:
-    """Return the end of a part, in words."""
+    """Return in words how the client ended a part."""
     if not part.events:
         return "not reached"
     ending = part.ending
@@ -215,7 +217,7 @@ def how_it_went(part: Part) -> str:
 
 
 def cut_short(client: Client) -> str:
-    """Return the event that ended the judge's runs early, because the client hung; empty if all runs were made."""
+    """Return why the judge left out later runs, namely a client that hung; empty if all runs were made."""
     hung = next((part for part in client.served if part.events and part.ending is None), None)
     if hung is None or all(part.events for part in client.served):
         return ""
@@ -225,7 +227,7 @@ def cut_short(client: Client) -> str:
 
 
 def ended_before_its_answer(part: Part) -> bool:
-    """True if the subject ended before an answer was sent, or before a call of it was sent."""
+    """Return True if the subject ended before one of its calls was answered, or without having made a call."""
     if part.ending is None:
         return False
     asked = max(len(requests(part)), len(part.of("called")))

@@ -1,4 +1,4 @@
-"""Known mistakes of clients that call a service and report its answers."""
+"""Known mistakes of clients that call a service and report the answers."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 def _does_not_wait_for_answers(evidence: Evidence) -> bool:
     served, calls = Client(evidence).served, Client(evidence.reference).calls
-    # A client that made all its calls although another answer came just as late does wait for answers.
+    # If a client made all its calls even though another answer came just as late, it does wait for answers.
     waits = any(len(requests(part)) >= calls for part in served if part.of("response"))
     return any(
         ended_before_its_answer(part)
@@ -45,9 +45,11 @@ def _does_not_wait_for_answers(evidence: Evidence) -> bool:
 
 
 def _gave_up_on_its_answer(part: Part, served: Sequence[Part]) -> bool:
-    """True if it reports, before its answer, what it reports in no run with a quick answer, and reported those.
+    """Return True if the client printed, before its answer came, a line that it prints in no run with a quick answer.
 
-    A process takes time to end, so the answer may be sent while the process is ending.
+    In the runs with a quick answer it must have reported the answer.
+
+    A process takes time to end, so the answer may be sent while the client is already ending.
     """
     asked, given = part.first("request"), part.first("response")
     quick = [other for other in served if other is not part and reports(other)]
@@ -59,10 +61,11 @@ def _gave_up_on_its_answer(part: Part, served: Sequence[Part]) -> bool:
 
 
 def _made_nothing_of_its_answer(part: Part) -> bool:
-    """True if the subject ended with its first answer, without another call or a number that follows from it.
+    """Return True if the subject ended at its first answer, without a further call or a number derived from the answer.
 
-    A process takes time to end, so the answer may be sent while a client that has not waited for it is ending. If a
-    client makes one call, only an exception shows that it did not wait, rather than just not reporting the sum.
+    A process takes time to end, so the answer may be sent while a client that did not wait for it is already ending.
+    If a client makes only one call, only an exception proves that it did not wait; otherwise it may just not have
+    reported the sum.
     """
     if part.ending is None or len(requests(part)) != 1 or len(part.of("response")) != 1:
         return False
@@ -81,7 +84,7 @@ ANSWER_NOT_AWAITED = mistake(
 
 
 def _dislikes_zero(evidence: Evidence) -> bool:
-    """True if everything is right except when the service answered 0."""
+    """Return True if the client is wrong only where the service answered 0."""
     served = Client(evidence).served
     wrong = [part for part in served if part.ending and not reports(part)]
     zero = all(answers(part)[-1:] == [0] and not ended_before_its_answer(part) for part in wrong)

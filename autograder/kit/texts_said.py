@@ -1,4 +1,7 @@
-"""A subject's lines: numbers in them, and a listener's texts: heard, made up, or said more than once."""
+"""Questions about a subject's lines: the numbers in them, and the texts that a listener reports.
+
+A reported text may be one that was sent, an invented one, or one that was reported more than once.
+"""
 
 from __future__ import annotations
 
@@ -22,36 +25,36 @@ if TYPE_CHECKING:
 _QUOTED = re2.compile(r"[\"“«].*[\pL\pN_].*[\"”»]")
 _OPENING, _CLOSING = tuple("\"'“‘«`"), tuple("\"'”’»`")
 _A_TALKERS = re2.compile(r"\W*[Hh]ello,? [Ww]orld!?\W*\d+\W*")
-"""The texts of talkers in this course and in the official tutorials."""
+"""Matches texts of talkers in this course and in the official tutorials."""
 _TWO_WORDS = re2.compile(r"\b([a-z]+) ([a-z]+) \d{4}\b")
-"""The special parts of the judge's texts, see :func:`autograder.kit.recipes.sent_texts.random_texts`."""
+"""Matches the special part of the judge's random texts, see :func:`autograder.kit.recipes.sent_texts.random_texts`."""
 _BRACES = re2.compile(r"\{[\pL_][^{}]*\}")
-"""The part of a text that an f-string would have filled in."""
+"""Matches the part of a text that an f-string would have filled in."""
 _BYTE = ("\\x00", "\0")
-"""A zero byte, raw or as Python shows it. A serialized text has such bytes before and after it."""
+"""A zero byte, as Python shows it and raw. A serialized text has such bytes before and after it."""
 MUCH = 5
-"""The number of successive characters of a text that a line has only if it was made from that text."""
+"""The number of successive characters of a text that a line contains only if it was made from that text."""
 OFTEN = 3
-"""The number of times that repeating only the last text is too often."""
+"""A text that is reported last may be repeated, but not this many times."""
 GROWING = 6
-"""The number of successive lines, each with all earlier texts, that are more than a look back at the last few."""
+"""The number of successive lines that each repeat all earlier texts. Fewer may be a look back at recent texts."""
 
 
 def tells(line: str, text: str) -> bool:
-    """True if a line contains a text unchanged, and not as part of the bytes of a serialized message."""
+    """Return True if a line contains a text unchanged, and not within the bytes of a serialized message."""
     found = _frame(line, text)
     return found is not None and not found.before.endswith(_BYTE) and not found.after.startswith(_BYTE)
 
 
 def is_said(text: str, part: Part, *, after: Event | None = None) -> bool:
-    """True if the subject said a text; with ``after``, only after that event."""
+    """Return True if the subject said a text; with ``after``, only after that event."""
     return any(tells(line, text) for line in part.said(after=after))
 
 
 def said_first_after(event: Event | None, part: Part) -> list[str]:
-    """Return the lines that the subject said after an event and not before it; none if the event is missing.
+    """Return the lines that the subject said for the first time after an event; none if the event is missing.
 
-    A log line comes twice, as output and on /rosout, and the second copy may be late.
+    A log line is recorded twice, as output and on /rosout, and the second copy may come late.
     """
     if event is None:
         return []
@@ -61,7 +64,7 @@ def said_first_after(event: Event | None, part: Part) -> list[str]:
 
 
 def not_filled_in(lines: Sequence[str]) -> Advice | None:
-    """Return the advice for the first line with a variable's name in braces: Python fills them only in an f-string."""
+    """Return advice for the first line that contains a variable's name in braces: only an f-string fills in braces."""
     line = next((line for line in lines if _BRACES.search(line)), None)
     if line is None:
         return None
@@ -72,7 +75,7 @@ def not_filled_in(lines: Sequence[str]) -> Advice | None:
 
 
 def has_much_of(line: str, text: str) -> bool:
-    """True if a line contains a part of a text that is too long to be there by chance, in upper or lower case."""
+    """Return True if a line contains so long a part of a text that this cannot be chance. Case does not matter."""
     if tells(line, text) or any(byte in line for byte in _BYTE):
         return False
     where, what = line.lower(), text.lower()
@@ -81,18 +84,18 @@ def has_much_of(line: str, text: str) -> bool:
 
 @dataclass(frozen=True)
 class Frame:
-    """The words with which a program surrounds a text.
+    """The words with which a program surrounds the texts that it reports.
 
     Attributes:
-        before: The words before the text in its line.
-        after: The words after it.
+        before: The words before the text, in the same line.
+        after: The words after the text.
     """
 
     before: str
     after: str
 
     def content(self, line: str) -> str | None:
-        """Return the part of a line in the place of the text; None if the line has other words."""
+        """Return the part of a line that stands where the text would be; None if the words around it differ."""
         long_enough = len(line) >= len(self.before) + len(self.after)
         if not (long_enough and line.startswith(self.before) and line.endswith(self.after)):
             return None
@@ -100,35 +103,35 @@ class Frame:
 
     @property
     def is_telling(self) -> bool:
-        """True if it is too long to be in other lines by chance."""
+        """Return True if the surrounding words are too long to appear in other lines by chance."""
         return len(self.before.strip()) > 3
 
     @property
     def has_quotes(self) -> bool:
-        """True if the text is in quotation marks."""
+        """Return True if the surrounding words put the text in quotation marks."""
         return self.before.endswith(_OPENING) and self.after.startswith(_CLOSING)
 
     @property
     def quotes(self) -> bool:
-        """True if the marks surround only the text, not parts of every line, as in JSON or in ``msg="…"``."""
+        """Return True if the quotation marks belong to the text, and not to every line, as in JSON or ``msg="…"``."""
         rest = self.before[:-1]
         return self.has_quotes and not rest.endswith("=") and not any(mark in rest for mark in _OPENING)
 
     def is_claim(self, content: str) -> bool:
-        """True if a line with this content claims to contain a received text.
+        """Return True if a line with this content claims to report a received text.
 
-        Many programs put their name before each line, even one that says what they wait for. So a content without
-        quotation marks is a claim only if it looks like a talker's text.
+        Many programs begin each line with their name, even a line that says what they wait for. So a content without
+        quotation marks counts as a claim only if it looks like a talker's text.
         """
         return self.quotes or (self.has_quotes and not content) or _A_TALKERS.fullmatch(content) is not None
 
 
 def invented(part: Part, sent: Sequence[str]) -> list[str]:
-    """Return the texts that it claims to have heard although they were never sent.
+    """Return the texts that the subject claims to have heard although they were never sent.
 
-    The subject's way of saying is learned from the first line with a sent text: the words before and after it. A line
-    with the same words around another text was invented. If it said none of the texts, a line with a quoted text
-    counts as such a claim.
+    The surrounding words are learned from the first line that contains a sent text. A line with the same words around
+    a different text was invented. If the subject reported none of the sent texts, every line with a quoted text
+    counts as a claim.
     """
     found = _frames(part, sent)
     if not found:
@@ -138,7 +141,7 @@ def invented(part: Part, sent: Sequence[str]) -> list[str]:
 
 
 def _guessed(part: Part, sent: Sequence[str]) -> Iterator[str]:
-    """Yield the lines with a text of the judge's kind and words that was not sent, as a guessing program says."""
+    """Yield the lines that contain a text of the judge's form that was not sent, as a program that guesses would."""
     known = {found[0] for text in sent for found in _TWO_WORDS.finditer(text)}
     words = {word for text in known for word in text.split()}
     for line in part.said():
@@ -147,10 +150,11 @@ def _guessed(part: Part, sent: Sequence[str]) -> Iterator[str]:
 
 
 def changed(part: Part, sent: Sequence[str], text: str) -> list[str]:
-    """Return the lines in which it said something else in the place of a text that was sent."""
+    """Return the lines in which the subject reported something else where a sent text belongs."""
     found = _frames(part, sent)
     if not found:
-        # The texts decide which of them a change affects; if the first one is changed, none is said unchanged.
+        # Whether a line is affected depends on the texts. If even the first text is changed, none is reported
+        # unchanged.
         return [line for line in _others(part, sent) if has_much_of(line, text)]
     return [
         line
@@ -166,7 +170,7 @@ def _frames(part: Part, sent: Sequence[str]) -> set[Frame]:
 
 
 def _others(part: Part, sent: Sequence[str]) -> list[str]:
-    """Return the lines without any sent text."""
+    """Return the lines that contain none of the sent texts."""
     return [line for line in part.said() if not any(_frame(line, text) for text in sent)]
 
 
@@ -179,10 +183,13 @@ def _in_frames(part: Part, sent: Sequence[str], frames: set[Frame]) -> Iterator[
 
 
 def repeated(part: Part, sent: Sequence[str]) -> dict[str, int]:
-    """Return how often each text was said, if more often than it was sent, in the same words and in the same way.
+    """Return the texts that were reported more often than they were sent, each with its count.
 
-    A log line and a printed one are two ways, and so are two loggers. Only the words count in which a text is said
-    first: a line of another kind may mention it again. A line number or a time does not make it another kind.
+    Only reports in the same words and by the same way count.
+
+    Logging and printing are two ways, and so are two loggers. Only the words in which a text is reported first are
+    counted, because a line with other words may mention the text again. Words that differ only in a number, such as a
+    line number or a time, are the same words.
     """
     channels: dict[tuple[str, ...], list[str]] = {}
     for channel, line in _by_channel(part):
@@ -201,27 +208,27 @@ def repeated(part: Part, sent: Sequence[str]) -> dict[str, int]:
 
 
 def retold(part: Part, sent: Sequence[str]) -> str:
-    """Return the third of the lines that repeat, with each new text, all earlier texts; empty if there are none.
+    """Return the third line of those that repeat all earlier texts with each new one; empty if there are none.
 
-    For each text, the line with the fewest texts counts: a program that says each text in a line of its own may also
-    show all of them. Several texts in one line, such as the last two, a batch, or a summary, are not such a
+    For each text, the line with the fewest texts counts, because a program may report each text in a line of its own
+    and also show all of them. A few texts in one line, such as the last two, a batch or a summary, are not such a
     repetition.
     """
     lines = [(line, {text for text in sent if tells(line, text)}) for line in part.said()]
     holding = [[one for one in lines if text in one[1]] for text in dict.fromkeys(sent)]
-    # Two texts may have the same line.
+    # Two texts may have the same shortest line.
     shortest = dict(min(those, key=lambda one: len(one[1])) for those in holding if those)
     grows = all(earlier < later for earlier, later in pairwise(shortest.values()))
     return list(shortest)[2] if grows and len(shortest) >= GROWING else ""
 
 
 def _claim(lines: Sequence[str], text: str) -> str | None:
-    """Return the line in which a text is said first."""
+    """Return the line in which a text is reported first; None if there is none."""
     return next((line for line in lines if tells(line, text)), None)
 
 
 def _kind(line: str, text: str) -> tuple[str, ...] | None:
-    """Return the words around a text, with all numbers made equal; None if the text is not in the line."""
+    """Return the words around a text, with all numbers made equal; None if the line does not contain the text."""
     frame = _frame(line, text)
     return tuple(re2.sub(r"[0-9]+", "0", words) for words in (frame.before, frame.after)) if frame else None
 
@@ -244,20 +251,20 @@ def _frame(line: str, text: str) -> Frame | None:
 
 @functools.lru_cache(maxsize=256)
 def _forms(text: str) -> tuple[str, ...]:
-    """Return a text unchanged, with its letters escaped as JSON and YAML may do, and as its bytes are printed."""
+    """Return the forms of a text in output: unchanged, with letters escaped as in JSON, and as printed bytes."""
     return (text,) if text.isascii() else (text, ascii(text)[1:-1], repr(text.encode())[2:-1])
 
 
 _DASH = r"[\d\-−][\-−]"
-"""A dash that is not a sign: after a digit, or one of a row of dashes."""
+"""Matches a dash that is not a minus sign: after a digit, or in a row of dashes."""
 _UNSIGNED = rf"(?:^|[^\d\-−]|{_DASH})"
-"""The characters before a number without a sign."""
+"""Matches the characters before a number that has no sign."""
 _UNSIGNED_ZERO = rf"(?:^|[^\d.\-−]|{_DASH}|(?:^|\D)\.)"
-"""The same before a 0: the 0 of 0.5 and of 1.0 is not a number of its own, but one at the end of a row of dots is."""
+"""The same for a 0. The 0 in 0.5 and in 1.0 is not a number of its own, but a 0 after a row of dots is."""
 
 
 def mentions(lines: Sequence[str], number: int) -> bool:
-    """True if one of the lines contains the number, with or without separators between its digits."""
+    """Return True if one of the lines contains the number, with or without separators between its digits."""
     digits = r"[,_' .]?".join(str(abs(number)))
     before, after = _UNSIGNED, r"(?:\D|$)"
     if number < 0:

@@ -1,4 +1,4 @@
-"""Mistakes in a workspace, recognized from the report of its build and from the messages of ``ros2``."""
+"""Mistakes in a workspace, recognized from the report of the build and from messages of ``ros2``."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ if TYPE_CHECKING:
 
 
 def build_report(part: Part) -> WorkspaceReport | None:
-    """Return the report of the build; if there is none, the report from before it."""
+    """Return the report made after the build; if there is none, the one made before the build."""
     return report_of(part) or report_of(part, "found")
 
 
 def seen_of_build(report: WorkspaceReport) -> str:
-    """Return the outcome of a build, in a few words for a card."""
+    """Return the outcome of a build, in a few words for the card."""
     if report.trouble in ("build", "entry_point"):
         return f"colcon could not build {report.package or 'it'}: {report.line}"
     return report.line or report.trouble.replace("_", " ")
 
 
 def changed_since_build(evidence: Evidence) -> str:
-    """The remark on a workspace in which the student has changed sources since the last `colcon build`."""
+    """Return the card's remark if the student has changed sources since the last `colcon build`; else an empty text."""
     report = build_report(evidence.main)
     if report is None or not report.changed:
         return ""
@@ -37,7 +37,7 @@ def changed_since_build(evidence: Evidence) -> str:
 
 
 def _trouble(evidence: Evidence, *kinds: str) -> WorkspaceReport | None:
-    """Return the report of the build if its trouble is of one of these kinds."""
+    """Return the report of the build if its trouble is one of these kinds; else None."""
     report = build_report(evidence.main)
     return report if report is not None and report.trouble in kinds else None
 
@@ -61,7 +61,7 @@ def _build_failed(evidence: Evidence) -> Advice | None:
 
 
 def _unreadable(evidence: Evidence) -> tuple[str, WorkspaceReport] | None:
-    """Return the file that Python could not parse when its package was built, and the report."""
+    """Return the file that Python could not parse during the build, with the report; None if there is none."""
     report = _trouble(evidence, "build")
     if report is None or not re2.search(r"(?:Syntax|Indentation|Tab)Error", report.line):
         return None
@@ -100,5 +100,5 @@ BUILD = (
     ),
     Mistake("build_failed", _build_failed, certain=True),
 )
-"""A workspace that cannot be built."""
-"""A package that the environment of a command does not hold."""
+"""Mistakes that keep a workspace from being built."""
+"""The mistake that ROS, in a command's environment, does not know the package."""

@@ -1,9 +1,10 @@
-"""The report about a workspace: one line of JSON after a mark, among a program's other output.
+"""The report about a workspace: one line of JSON after a marker, among a program's other output.
 
-The judge sees a workspace's programs on the wire. The program that builds the workspace reports what is not visible
-there (such as the line at which the build failed), before the student's own program prints anything: only the first
-report counts. A line holds less than a workspace. So the packages that the exercise needs come first, and a report
-tells whether it contains all of them: what was left out is never judged as missing or wrong.
+The judge sees a workspace's programs on the wire. Facts that are not visible there, such as the line at which the
+build failed, are reported by the program that builds the workspace. It does so before the student's own program
+prints anything, and only the first report counts. One line may be too short for a large workspace. So the packages
+that the exercise needs come first, and the report tells whether it contains all of them: a package that was left out
+is never judged as missing or wrong.
 """
 
 from __future__ import annotations
@@ -21,25 +22,26 @@ if TYPE_CHECKING:
 
 MARK = REPORTS[0]
 MAX_LINE = 3_900
-"""The limit on a report in bytes: the judge reads lines of at most 4,000."""
+"""The maximum length of a report in bytes; the judge reads lines of at most 4,000."""
 _LIMITS = (2_500, 1_200, 600, 200, 50)
-"""The limits on each text of a report in characters, tried in turn until its line is short enough."""
+"""Maximum lengths, in characters, of each text in a report. They are tried in turn until the line is short enough."""
 AMENT_PACKAGE = "ament_package()"
-"""The missing thing in the report on a package that was built but that ROS does not find."""
+"""The value of ``missing`` for a package that was built but that ROS does not find."""
 BUILDING = 180.0
-"""Seconds of wall time that a build may take: a Python package needs one, an interface package ten."""
+"""The time limit of a build, in seconds of wall time. A Python package needs one second, an interface package ten."""
 _FEW = 10
-"""The number of other packages that are named if there is no space for all."""
+"""The number of other packages that are named if there is no space to name all."""
 
 
 @dataclass(frozen=True)
 class Interface:
-    """An interface file of a package.
+    """A file of a package that defines a message, a service or an action.
 
     Attributes:
-        file: The path inside the package, such as ``"srv/AddTwoInts.srv"``.
-        text: The content without comments; None if the exercise is not about it, or if it was left out.
-        listed: Whether the package's CMakeLists.txt names it, or is too long to be looked into.
+        file: The path of the file inside the package, such as ``"srv/AddTwoInts.srv"``.
+        text: The content without comments; None if the exercise does not need it, or if it was left out to save
+            space.
+        listed: True if the package's CMakeLists.txt names the file, or is too long to be searched.
     """
 
     file: str
@@ -49,20 +51,20 @@ class Interface:
 
 @dataclass(frozen=True)
 class PackageReport:
-    """A package of the workspace as its files describe it.
+    """A package of the workspace, as the files of the package describe it.
 
     Attributes:
-        name: The name in its package.xml.
+        name: The package's name in its package.xml.
         build_type: ``"ament_python"`` or ``"ament_cmake"``.
-        programs: Its console scripts, as ``name = module:function``: the installed ones, or before the build those
-            that can be read in setup.py.
-        interfaces: Its interface files.
+        programs: The package's console scripts, as ``name = module:function``. Before the build, those that
+            setup.py's text shows; after it, the installed ones.
+        interfaces: The interface files of the package.
         dependencies: All dependencies in package.xml, including ``member_of_group``.
-        modules: Its Python files, as paths inside the package.
-        commented: What package.xml would depend on, too, if the lines inside its comments counted.
-        installed: The programs that `ros2 run` finds of it, by name; empty before the build.
-        launch_files: Its launch files, as paths inside the package; after the build those that are installed, as paths
-            below the folder of the package in ``install``.
+        modules: The package's Python files, as paths inside the package.
+        commented: The dependencies that package.xml would have in addition if its comments counted.
+        installed: The names of the package's programs that `ros2 run` finds; empty before the build.
+        launch_files: The package's launch files, as paths inside the package. After the build, the installed ones, as
+            paths below the package's folder in ``install``.
     """
 
     name: str
@@ -78,20 +80,21 @@ class PackageReport:
 
 @dataclass(frozen=True)
 class WorkspaceReport:
-    """The outcome of a build.
+    """The state of a workspace before its build, or the outcome of the build.
 
     Attributes:
         phase: ``"found"`` before the build, ``"built"`` after it.
         built: True if every package was built.
         trouble: The kind of trouble: ``"no_workspace"``, ``"no_package"``, ``"bad_package"``, ``"entry_point"``,
             ``"build"`` or empty.
-        package: The package that failed; empty if none did.
-        line: The most telling line of a failure.
-        log: The end of the log of a failure.
-        packages: The packages of the workspace, those that the exercise needs first.
-        missing: Of what the exercise asks for (a program, an interface), what is not there after the build.
-        complete: Whether nothing of the packages that the exercise needs was left out.
-        changed: The sources, in words, that the student has changed since the last `colcon build`; empty in a class.
+        package: The name of the package that failed; empty if none did.
+        line: The line of the log that explains the failure best.
+        log: The end of the log of the failed build.
+        packages: The packages of the workspace. Those that the exercise needs come first.
+        missing: The programs and interfaces that the exercise needs and the build did not produce.
+        complete: True if the report contains everything about the packages that the exercise needs.
+        changed: The sources that the student has changed since the last `colcon build`, in words; empty when grading
+            a class.
     """
 
     phase: str
@@ -107,11 +110,12 @@ class WorkspaceReport:
 
 
 def as_line(report: WorkspaceReport, others: Sequence[PackageReport] = ()) -> str:
-    """Return the line of the report; what does not fit is left out.
+    """Return the report as a line. Details for which there is no space are left out.
 
     Args:
         report: A report on the packages that the exercise needs.
-        others: The other packages of the workspace: in full, by name or not at all, depending on the space.
+        others: The other packages of the workspace. They are reported in full, by name or not at all, depending on
+            the space.
     """
     whole = _written(report)
     named = [PackageReport(package.name, package.build_type) for package in others]
@@ -132,17 +136,19 @@ def as_line(report: WorkspaceReport, others: Sequence[PackageReport] = ()) -> st
 
 
 def _shortened(package: PackageReport, limit: int) -> PackageReport:
-    """Return a package without its longer definitions and the ends of its lists; unchanged if all of it is short."""
+    """Return a package without its longer definitions and the ends of its lists; unchanged if everything is short."""
     few = limit // 20
     return replace(
         package,
         programs=package.programs[:few],
         interfaces=[_left_out(i) if len(i.text or "") > limit else i for i in package.interfaces[:few]],
-        # Dependencies that a task may require come first: those that generate interfaces.
+        # Dependencies that generate interfaces come first, because a task may require them.
         dependencies=sorted(package.dependencies, key=lambda name: not name.startswith("rosidl_"))[
             : max(few, 5)
         ],
-        modules=package.modules[: limit // 60],  # none where all else needs the room
+        modules=package.modules[
+            : limit // 60
+        ],  # empty for the smallest limit, because other fields need the space
         commented=package.commented[: limit // 60],
         installed=package.installed[:few],
         launch_files=package.launch_files[: max(few, 5)],
@@ -155,23 +161,23 @@ def _left_out(interface: Interface) -> Interface:
 
 def _written(report: WorkspaceReport) -> str:
     line = MARK + json.dumps(asdict(report), ensure_ascii=False, separators=(",", ":"))
-    # The name of a file that is not UTF-8 has lone surrogates in Python, which cannot be printed.
+    # A file name that is not UTF-8 contains lone surrogates in Python, which cannot be printed.
     return line.encode(errors="replace").decode()
 
 
 def report_of(part: Part, phase: str = "built") -> WorkspaceReport | None:
-    """Return the first report of a phase; None if there is none, for example if a command built nothing."""
+    """Return the first report of a phase; None if there is none, for example because a command built nothing."""
     return next((report for _, report in _reports(part) if report.phase == phase), None)
 
 
 def tells_of_a_build(line: str) -> bool:
-    """True if a line of output is the report of a finished build."""
+    """Return True if a line of output is the report of a finished build."""
     report = _parsed(line.removeprefix(MARK)) if line.startswith(MARK) else None
     return report is not None and report.phase == "built"
 
 
 def build_ended(part: Part) -> float:
-    """Return the time in a part at which the workspace was built, in seconds; 0 if nothing was built."""
+    """Return the time at which the workspace was built, in seconds since the part began; 0 if nothing was built."""
     return next((event.t for event, report in _reports(part) if report.phase == "built"), 0.0)
 
 

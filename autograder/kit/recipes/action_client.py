@@ -1,8 +1,8 @@
-"""A client of an action: the judge is the server.
+"""A recipe for a client of an action. The judge is the server.
 
-The judge's numbers are not Fibonacci numbers, not sorted, one of them occurs twice, and the result differs from the
-last feedback, so that only a client that shows what it receives can be right. The server comes late once, refuses a
-goal, aborts another one, and is absent in the last part.
+Only a client that shows what it receives can be right: the judge's numbers are not Fibonacci numbers and not sorted,
+one of them occurs twice, and the result differs from the last feedback. The server comes late in one run, refuses the
+goal in another, aborts it in a third, and is absent in the last.
 """
 
 from __future__ import annotations
@@ -45,34 +45,34 @@ if TYPE_CHECKING:
     from autograder.kit.model import Advice
 
 ORDERS = {LATE: (41, 46), REFUSED: (-9, -1), ABORTED: (0, 0), ABSENT: (11, 30)}
-"""The smallest and the largest order that the client gets; a negative one and 0 are valid numbers, too."""
+"""For each part, the smallest and the largest order that the client gets. Negative numbers and 0 are valid orders."""
 SHOWN_WITHIN = {Pace.FAST: 0.5, Pace.REAL_TIME: 1.5}
-"""The most seconds for a client to show a feedback message before the next one is sent."""
+"""The maximum time in seconds for a client to show a feedback message before the next one is sent."""
 HASTE = {Pace.FAST: 0.1, Pace.REAL_TIME: 0.075}
-"""The same for a client that has not shown one, so that the result of its goal comes after some 3.5 s: between the 3
-and the 5 seconds that many clients wait.
+"""The same for a client that failed to show one. It makes the goal's result come after some 3.5 s, between the 3 and
+the 5 seconds that many clients wait.
 """
 AT_PACE = 3
-"""The number of feedback messages at the end that come at the pace of the lab's server, whether earlier ones were
-shown or not: a client that shows the newest one by a timer leaves some out.
+"""The number of feedback messages at the end that are sent at the pace of the lab's server, whether or not earlier ones
+were shown. A client that shows the newest message by a timer shows only some of the earlier ones.
 """
 LAB_PACE = 0.5
-"""Seconds of the client's time between two of these."""
+"""Seconds, in the client's time, between two feedback messages at the lab's pace."""
 RESULT = 28
-"""The least numbers of a result, to detect a client that shows only the first ten or twenty.
+"""The minimum length of a result, long enough to detect a client that shows only the first ten or twenty numbers.
 
-A result for a larger order has one number more than the order, as in the lab.
+For a larger order the result has one number more than the order, as in the lab.
 """
 GOAL_LIMIT = 15.0
-"""Seconds within which a goal must arrive once the client is on the graph."""
+"""Time limit in seconds for a goal to arrive once the client is on the graph."""
 END_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 8.0}
-"""Seconds within which a client must request the result, must have reported it, must have ended after a refusal."""
+"""Time limit in seconds for each of these: the client requests the result, reports it, or ends after a refusal."""
 AFTERMATH = 1.0
-"""Seconds to wait, after a client has reported, for its end or for more output."""
+"""Seconds to wait, after a client has reported, for the client to end or print more."""
 
 
 def scenario(bench: Bench) -> None:
-    """Four runs: a goal that succeeds at a late server, then one refused, one aborted, and no server, in any order."""
+    """Make four runs: one succeeds at a late server; then, in random order, one refused, one aborted, one unserved."""
     if late(bench) and not called_before_server(bench.seen()):
         known = bool(bench.seen().of("goal"))
         for run in bench.random.sample((refused, aborted, unserved), 3):
@@ -80,10 +80,10 @@ def scenario(bench: Bench) -> None:
 
 
 def begin(bench: Bench, name: str) -> dict[str, Any]:
-    """Begin a part. Return the inputs with which the subject is started."""
+    """Begin a part, and return the inputs with which the subject is started."""
     order = bench.random.randint(*ORDERS[name])
     inputs = {
-        # On a command line, -3 could look like an option.
+        # On a command line, -3 could be mistaken for an option.
         "order": order if bench.in_a_cell else abs(order),
         PATIENCE: drawn_patience(
             bench, PATIENCES_WITHOUT_A_SERVER[bench.pace] if name == ABSENT else PATIENCES
@@ -99,7 +99,7 @@ def start(bench: Bench, inputs: Mapping[str, Any]) -> None:
 
 
 def late(bench: Bench) -> bool:
-    """Make one run with a late server. Return True if the subject finished its work."""
+    """Make one run with a server that comes late. Return True if the subject finished its work."""
     inputs = begin(bench, LATE)
 
     def meet(lateness: float, held: float) -> bool:
@@ -117,14 +117,14 @@ def late(bench: Bench) -> bool:
 def meets_late_server(
     bench: Bench, inputs: Mapping[str, Any], lateness: float, held: float, shown_within: Mapping[Pace, float]
 ) -> bool:
-    """Start the subject and let it wait for its server. Return True if the subject finished its work.
+    """Start the subject, and start its server some seconds later. Return True if the subject finished its work.
 
     Args:
         bench: The bench of the scenario.
         inputs: The inputs of the subject.
-        lateness: Seconds by which the server comes after its client.
-        held: Seconds that the answer to the goal is held back.
-        shown_within: Seconds for showing each feedback message, until one was not shown.
+        lateness: The delay in seconds between the start of the client and of the server.
+        held: The number of seconds for which the answer to the goal is held back.
+        shown_within: Time limit in seconds for showing each feedback message, until the client fails to show one.
     """
     action, type_name = bench.reference.only("action_client")
     start(bench, inputs)
@@ -136,14 +136,14 @@ def meets_late_server(
 
 
 def meets_server(bench: Bench, *, accept: bool = True) -> ActionCounterpart:
-    """Serve as soon as the judge has discovered the subject, which was just started.
+    """Start the subject's server as soon as the judge has discovered the subject, which was just started.
 
-    If the server already existed, a client may discover it first, and then chance decides whether the goal of a
+    If the server existed earlier, a client might discover it first. Then chance would decide whether the goal of a
     client that ends at once reaches the judge.
 
     Args:
         bench: The bench of the scenario.
-        accept: True to accept goals.
+        accept: True to accept goals, False to refuse them.
     """
     action, type_name = bench.reference.only("action_client")
     bench.await_endpoint("action_client", action)
@@ -151,7 +151,7 @@ def meets_server(bench: Bench, *, accept: bool = True) -> ActionCounterpart:
 
 
 def aborted(bench: Bench, known: bool) -> None:
-    """Make one run with an aborted goal; ``known`` is True if the subject has sent a goal before."""
+    """Make one run with an aborted goal. ``known`` is True if the subject has already sent a goal."""
     inputs = begin(bench, ABORTED)
 
     def meet() -> bool:
@@ -165,37 +165,38 @@ def aborted(bench: Bench, known: bool) -> None:
 def works_on_a_goal(
     bench: Bench, server: ActionCounterpart, status: str, feedbacks: int, shown_within: float
 ) -> bool:
-    """Send feedback for the subject's goal and end the goal. Return True if the subject finished its work.
+    """Send feedback for the subject's goal, then end the goal. Return True if the subject finished its work.
 
     Args:
         bench: The bench of the scenario.
         server: The judge's server.
-        status: The end of the goal, such as ``"succeeded"``.
-        feedbacks: The number of feedback messages before that.
-        shown_within: Seconds for showing each of them, until one was not shown.
+        status: How to end the goal, such as ``"succeeded"``.
+        feedbacks: The number of feedback messages to send first.
+        shown_within: Time limit in seconds for showing each message, until the client fails to show one.
     """
-    # So large that a subject cannot say all possible numbers.
+    # The numbers are so large that a subject cannot print all possible ones.
     numbers = bench.random.sample(range(10**8, 10**9), feedbacks + 2)
     newest = bench.random.sample(range(10**8, 10**9), feedbacks)
     length = max(RESULT, bench.seen().inputs["order"] + 1)
     result = bench.random.sample(range(10**9, 2 * 10**9), length - 1)
-    # The repeated number is neither the first nor the last: leaving out either of those is always noticed.
+    # The repeated number is neither the first nor the last one, whose absence would be noticed in any case.
     result.insert(-1, result[1])
     done = await_goal(bench, server, GOAL_LIMIT)
     if done:
-        # The first feedback must not come together with the goal's answer: chance would decide what a client
-        # receives that takes one event and ends. A client that goes on requests the result next.
+        # The first feedback must not come together with the answer to the goal: chance would then decide what a
+        # client receives that takes one event and ends. A client that goes on will next request the result.
         server.await_result_request(SHOWN_WITHIN[bench.pace])
         action, _ = bench.reference.only("action_client")
         for count, last in enumerate(newest, start=2):
-            # The last number of a message is in no other message: leaving out a message is always noticed.
+            # The last number of each message is in no other message, so leaving out a message is always noticed.
             server.send_feedback(partial_sequence=[*numbers[:count], last])
             left = feedbacks + 1 - count
             if 0 < left < AT_PACE:
                 bench.pass_time(LAB_PACE, "action_client", action)
             elif not bench.wait_until(lambda seen: not unshown_feedback(seen.main), shown_within):
                 shown_within = HASTE[bench.pace]
-                # Its queue holds ten messages: a client on a busy machine must have taken those that it has.
+                # The client's queue holds ten messages, so a client on a busy machine must first have taken those
+                # that are in it.
                 bench.settle()
         server.await_result_request(END_LIMIT[bench.pace])
         hold_back(bench, "result_request")
@@ -210,25 +211,25 @@ def works_on_a_goal(
 
 
 def is_done(evidence: Evidence) -> bool:
-    """True if the subject has ended or, as a program may, has said something of the result and keeps spinning."""
+    """Return True if the subject has ended, or, as a program may, has reported part of the result and still spins."""
     part = evidence.main
     result = part.first("result")
     return part.ending is not None or (result is not None and bool(part.said(after=result)))
 
 
 def refused(bench: Bench, known: bool) -> None:
-    """One run with a server that refuses every goal."""
+    """Make one run with a server that refuses every goal."""
     inputs = begin(bench, REFUSED)
     refuse(bench, lambda: start(bench, inputs), known=known)
 
 
 def refuse(bench: Bench, begin_it: Callable[[], object], *, known: bool) -> None:
-    """Refuse the goal of the subject; the part ends with that.
+    """Refuse the goal of the subject, and end the part.
 
     Args:
         bench: The bench of the scenario.
         begin_it: Starts the subject.
-        known: True if it has sent a goal before.
+        known: True if the subject has already sent a goal.
     """
 
     def meet() -> bool:
@@ -242,7 +243,7 @@ def refuse(bench: Bench, begin_it: Callable[[], object], *, known: bool) -> None
 
 
 def unserved(bench: Bench, _: bool) -> None:
-    """One run without a server."""
+    """Make one run without a server."""
     action, _ = bench.reference.only("action_client")
     inputs = begin(bench, ABSENT)
     start(bench, inputs)
@@ -260,11 +261,11 @@ _WHAT_IS_SAID = (
     goals.ABORT_NOT_REPORTED,
     goals.SILENT_END,
 )
-"""The criteria about a client's requests and words: certain if it ended by itself in every part."""
+"""Criteria about what a client requests and reports. They are certain if it ended by itself in every part."""
 
 
 def _not_by_refusal(mistake: Mistake) -> Mistake:
-    """Return the same mistake, but not for an error that only a refused goal causes; that is checked later."""
+    """Return the mistake, except for an error that only a refused goal causes; that is checked later."""
 
     def recognise(evidence: Evidence) -> Advice | None:
         return None if goals.crashed_by_refusal(evidence) else mistake.recognise(evidence)
@@ -277,8 +278,8 @@ class ActionClient(SeenAsItIs):
 
     Args:
         scenario: Drives the bench. The action's name and type are ``bench.reference.only("action_client")``.
-        ladder: The mistakes, most telling first: after those that prevent a right goal, and before those that are
-            checked if nothing more exact fits.
+        ladder: The common mistakes, most specific first. They follow those that prevent a right goal, and precede
+            those that are checked only if nothing more specific fits.
     """
 
     roles = ("action_client",)
@@ -300,7 +301,7 @@ class ActionClient(SeenAsItIs):
 
 
 def sends_goals() -> ActionClient:
-    """Return the recipe for a client that sends one goal of a given order, and reports how it ended."""
+    """Return the recipe for a client that sends one goal of a given order and reports how it ended."""
     return ActionClient(
         scenario,
         goals.WRONG_ORDER,
@@ -315,7 +316,7 @@ def sends_goals() -> ActionClient:
         *(replace(hang, certain=True) for hang in HANGS),
         common.AWAITS_IN_VAIN,
         common.went_deaf("action_client"),
-        # Never certain: a client without processor time may leave feedback unread when its result comes.
+        # Never certain: a client that got no processor time may not have read its feedback when the result comes.
         goals.FEEDBACK_NOT_SHOWN,
         *map(common.only_if_ended, _WHAT_IS_SAID),
         goals.STAYS_AFTER_REFUSAL,

@@ -1,4 +1,4 @@
-"""An action server: the judge sends it goals, one of which is canceled while the server works on it."""
+"""A recipe for an action server. The judge sends it goals, one of which it cancels while the server works on it."""
 
 from __future__ import annotations
 
@@ -21,9 +21,11 @@ if TYPE_CHECKING:
     from autograder.kit.model import Bench
 
 AT_ONCE = 0.3
-"""Seconds within which only a server that takes no time per number computes many numbers."""
+"""Seconds: a server that computes many numbers within this time takes no time for each."""
 MANY = 2
-"""The number of feedback messages in a row that show that a server reads no request while it works."""
+"""This many feedback messages in a row without an answer to the cancel request show that the server reads no requests
+while it works.
+"""
 
 
 class SendsGoals(SeenAsItIs):
@@ -48,7 +50,7 @@ class SendsGoals(SeenAsItIs):
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:
-        """The common mistakes, most telling first."""
+        """The common mistakes, most specific first."""
         return (
             common.two_servers(
                 "action_server",
@@ -56,7 +58,7 @@ class SendsGoals(SeenAsItIs):
                 "Make one ActionServer only, and one node.",
             ),
             Mistake("result_missing", _result_missing, certain=True),
-            # Asked before all crashes, because a goal that should have been refused may cause a crash.
+            # These are checked before all crashes, because a goal that should have been refused may cause a crash.
             OWN,
             *common.CRASHES,
             common.endpoint_name("action_server"),
@@ -76,7 +78,7 @@ class SendsGoals(SeenAsItIs):
         )
 
     def _goal_not_succeeded(self, evidence: Evidence) -> Advice | None:
-        """The goal is aborted: the subject says so, or does not report success."""
+        """Return advice if the server aborted a goal or did not report success for it."""
         aborted = [seen for seen in self._good(evidence) if seen.status == ABORTED]
         if not aborted or traceback_of(evidence):
             return None
@@ -87,7 +89,7 @@ class SendsGoals(SeenAsItIs):
         )
 
     def _cancel_refused(self, evidence: Evidence) -> Advice | None:
-        """The server refused the cancel request."""
+        """Return advice if the server refused the cancel request."""
         long = self.canceled(evidence)
         if long.cancelled_too_late and long.sent_after(long.cancel_answered_at):
             return Advice(
@@ -107,11 +109,11 @@ class SendsGoals(SeenAsItIs):
         )
 
     def _cancel_refused_on_its_way(self, evidence: Evidence) -> Advice | None:
-        """The same, for a goal that had not ended, so that the timing of the request does not matter."""
+        """Return the same advice only if the goal had not ended, so that the timing of the request does not matter."""
         return None if self.canceled(evidence).cancelled_too_late else self._cancel_refused(evidence)
 
     def _cancel_not_read(self, evidence: Evidence) -> Advice | None:
-        """The goal goes on, and the cancel request is not answered."""
+        """Return advice if the server works on and does not answer the cancel request."""
         long = self.canceled(evidence)
         if long.cancel_accepted or long.unread < MANY or is_quick(long):
             return None
@@ -125,7 +127,7 @@ class SendsGoals(SeenAsItIs):
         )
 
     def _cancel_ignored(self, evidence: Evidence) -> Advice | None:
-        """The cancel request was accepted, but the goal went on."""
+        """Return advice if the server accepted the cancel request and worked on."""
         long = self.canceled(evidence)
         if not long.cancel_accepted or long.status == CANCELED:
             return None
@@ -138,18 +140,18 @@ class SendsGoals(SeenAsItIs):
 
 
 def is_quick(seen: Goal) -> bool:
-    """True if a goal took no time."""
+    """Return True if the server took hardly any time for the goal."""
     return seen.seconds is not None and seen.seconds < AT_ONCE
 
 
 def _result_missing(evidence: Evidence) -> Advice | None:
-    """The execute callback returned no result."""
+    """Return advice if the execute callback returned no result."""
     _, kind = evidence.reference.only("action_server")
     fields = next(
         (list(seen.result) for part in evidence.reference.parts for seen in all_goals(part) if seen.result),
         [],
     )
-    # rclpy's error when it sends the result, and the replacement for it in autograder/notebook.
+    # The first is rclpy's error when it sends the result; the second is the clearer one of autograder/notebook.
     absent = rf"'NoneType' object has no attribute '_?(?:{'|'.join(fields)})'|" if fields else ""
     said = f"{absent}must return a result of the action"
     traceback = traceback_of(evidence)
@@ -165,7 +167,7 @@ def _result_missing(evidence: Evidence) -> Advice | None:
 
 
 def _exception_in_execute(evidence: Evidence) -> Advice | None:
-    """The execute callback raised an exception, so rclpy aborted the goal."""
+    """Return advice if the execute callback raised an exception, upon which rclpy aborted the goal."""
     traceback = traceback_of(evidence)
     if not traceback or not any(seen.status == ABORTED for part in evidence for seen in all_goals(part)):
         return None

@@ -1,6 +1,7 @@
-"""The texts and numbers of a publisher: two criteria on its messages, and the mistakes that fail them.
+"""The texts and numbers of a publisher: two criteria on its messages, and the mistakes behind their failures.
 
-The reference solution's first messages show what is due: the text around the number, the first number and the step.
+The first messages of the reference solution define what is right: the text around the number, the first number, and
+the step.
 """
 
 from __future__ import annotations
@@ -19,13 +20,13 @@ if TYPE_CHECKING:
     from autograder.kit.published_texts import Publisher
 
 MANY = 3
-"""The number of publishers in succession that are too many to be two nodes or two timers."""
+"""A run with this many publishers, one after the other, has more than two nodes or two timers would make."""
 _UNFILLED = re2.compile(r"\{[^{}]*\}|%[ds]|\(?\bself\.\w+\)?")
 _FRACTION = re2.compile(r"\d[.,]\d")
 
 
 def says_text(seen: Publisher, expected: Publisher) -> Finding:
-    """Every text is the reference's, apart from the number."""
+    """Decide whether every text equals the reference's, apart from the number."""
     odd = [
         text for text, form in zip(seen.texts, seen.templates, strict=True) if form not in expected.templates
     ]
@@ -37,7 +38,7 @@ def says_text(seen: Publisher, expected: Publisher) -> Finding:
 
 
 def counts(seen: Publisher, expected: Publisher) -> Finding:
-    """The numbers are the reference's, from the first message on.
+    """Decide whether the numbers are the reference's, from the first message on.
 
     Raises:
         ValueError: The reference solution does not count.
@@ -71,16 +72,16 @@ def field_typo(seen: Publisher, _: Publisher) -> Advice | None:
 
 @dataclass(frozen=True)
 class Counting:
-    """The mistakes of a publisher that counts.
+    """The known mistakes of a publisher that counts.
 
     Attributes:
-        variable: The counter's name in the advice, such as ``"self.count"``.
+        variable: The name that the advice uses for the counter, such as ``"self.count"``.
     """
 
     variable: str
 
     def wrong_text(self, seen: Publisher, expected: Publisher) -> Advice | None:
-        """Return advice if messages arrive with a different text."""
+        """Return advice if messages arrive with a text different from the reference's."""
         texts = seen.texts[seen.greetings :]
         odd = next((said for said in texts if template(said) not in expected.templates), None)
         if odd is None:
@@ -183,10 +184,11 @@ class Counting:
 
 
 def _first_number(seen: Publisher, expected: Publisher) -> int | None:
-    """Return the number of its first message, even if it came before the judge could receive it; None without one.
+    """Return the number in its first message, even if the judge could not receive that message; None if unknown.
 
-    A loop may publish in the moment in which it makes its publisher, too early for any listener. Lost messages are
-    known by their numbers in DDS. A number that the reference begins after means that not all lost messages counted.
+    A loop may publish in the moment in which it makes its publisher, too early for any listener. DDS numbers the
+    messages, so the judge knows how many were lost. If the first number that was heard cannot be reached from the
+    reference's first number in that many messages, some of the lost messages did not count.
     """
     first = counters(seen.texts[seen.greetings :][:1])
     return first[0] - expected.step * (seen.number_of_first - 1) if first else None
@@ -197,14 +199,14 @@ def _starts_right(seen: Publisher, expected: Publisher) -> bool:
 
 
 def _uncounted(seen: Publisher, expected: Publisher) -> int:
-    """Return how many of the messages lost at the start were too many, for a counter that begins at the start."""
+    """Return how many messages were lost at the start beyond those for which the counter accounts."""
     if _first_number(seen, expected) is None or (place := expected.place(seen.counters[0])) < 0:
         return 0
     return max(0, seen.number_of_first - 1 - place)
 
 
 def _slip(numbers: list[int], step: int) -> int:
-    """Return the index of the first number that does not follow from the one before; 0 if all do."""
+    """Return the index of the first number that does not follow from the number before it; 0 if all do."""
     return next((place for place, (a, b) in enumerate(pairwise(numbers), 1) if b - a != step), 0)
 
 
@@ -213,6 +215,6 @@ def _row(numbers: list[int]) -> str:
 
 
 def _around(numbers: list[int], place: int) -> str:
-    """Return the numbers around an index; the first ones if it is near the beginning."""
+    """Return, as text, the numbers around an index; the first ones if the index is near the beginning."""
     first = max(0, place - 3)
     return "…, " * bool(first) + _row(numbers[first : first + 6])

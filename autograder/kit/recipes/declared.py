@@ -1,7 +1,8 @@
-"""The common part of declared exercises: the author says what is due; steps, verdict and mistakes follow from that.
+"""The common part of declared exercises: an author declares the right output, and the rest follows from that.
 
-A ``Relay`` listens on one topic and publishes on another. A ``Machine`` has a state that a service changes and a
-topic reports. A common wrong answer is a variant of the function that says what is due.
+The rest is the scenario, the verdict and the mistakes. A ``Relay`` listens on one topic and publishes on another. A
+``Machine`` has a state that a service changes and a topic reports. A common wrong answer is described as a variant of
+the function that returns the right output.
 """
 
 from __future__ import annotations
@@ -23,16 +24,16 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class Declared:
-    """The common part of declared exercises.
+    """The base class of declared exercises.
 
     Args:
-        exercise_id: Such as ``"lab_8_1.filter"``.
-        title: The title of the card: the lab and the subject.
+        exercise_id: The lab's folder and the file's name, such as ``"lab_8_1.filter"``.
+        title: The title of the card, naming the lab and the subject.
         task: One sentence that states the task.
         scenario: Drives the bench.
-        roles: The endpoints of the subject, the most telling first.
-        given: The kind of event of an input that the subject has certainly received. A subject with fewer inputs than
-            the reference solution passes no criterion about its outputs.
+        roles: The roles of the subject's endpoints, the most telling first.
+        given: The kind of event that records an input that the subject has certainly received. A subject that got
+            fewer inputs than the reference solution passes no criterion about its outputs.
     """
 
     def __init__(
@@ -51,20 +52,20 @@ class Declared:
         self._tolerance = 1e-6
 
     def asks(self, name: str, points: float, title: str, role: str, words: str = "") -> None:
-        """Add a criterion: the endpoints of a role have the names and types of the reference solution's.
+        """Add a criterion: the subject's endpoints of a role have the same names and types as the reference solution's.
 
         Args:
-            name: A stable key.
-            points: The points for it.
-            title: One line for people.
-            role: Such as ``"subscription"``.
-            words: The words of the task that the criterion judges, as ``lab.md`` has them.
+            name: A stable key for the criterion.
+            points: The points that the criterion is worth.
+            title: The criterion in one line, as the card shows it.
+            role: The role of the endpoints, such as ``"subscription"``.
+            words: The sentence of the task that the criterion judges, exactly as in ``lab.md``.
         """
         self._draft.asks(name, points, title, self._subject.has(role))
         self._judges(name, words)
 
     def exercise(self) -> Exercise:
-        """Return the exercise, after everything was added."""
+        """Return the finished exercise. Call this after adding all criteria and mistakes."""
         return self._draft.exercise(text=self._text)
 
     def _compares(
@@ -89,7 +90,7 @@ class Declared:
         self._judges(name, words)
 
     def _got_through(self, seen: Part, expected: Part) -> bool:
-        """Return True if the subject was given as much as the reference solution."""
+        """Return True if the subject received as many inputs as the reference solution."""
         return len(seen.of(self._given)) >= len(expected.of(self._given))
 
     def _judges(self, name: str, words: str) -> None:
@@ -101,26 +102,26 @@ class Declared:
 
 
 def variant(right: Function, changed: Function | Mapping[str, Any]) -> Function | partial[Any]:
-    """Return a wrong function: the given one, or the right one with other values of its arguments."""
+    """Return a wrong function: the given one, or the right one with other values for some of its arguments."""
     return partial(right, **changed) if isinstance(changed, Mapping) else changed
 
 
 def fields(seen: Part, kind: str) -> list[Mapping[str, Any]]:
-    """Return the fields of each event of a kind."""
+    """Return the fields of each event of this kind."""
     return [event.data["fields"] for event in seen.of(kind)]
 
 
 def picked(seen: Part, kind: str, path: str) -> list[Any]:
-    """Return one field of each event of a kind, by its path."""
+    """Return one field, given by its path, of each event of this kind."""
     return [pick(one, path) for one in fields(seen, kind)]
 
 
 def pick(fields: Any, path: str) -> Any:
-    """Return the field with a path such as ``"pose.position.x"``."""
+    """Return the value of the field with a path such as ``"pose.position.x"``."""
     return reduce(lambda part, key: part[key], path.split("."), fields)
 
 
 def put(fields: dict[str, Any], path: str, given: Any) -> None:
-    """Set the field with a path."""
+    """Set the value of the field with this path."""
     *above, last = path.split(".")
     reduce(lambda part, key: part.setdefault(key, {}), above, fields)[last] = given

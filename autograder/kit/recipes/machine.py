@@ -1,4 +1,4 @@
-"""A node with a state that a service changes, declared by how the state steps from one request to the next."""
+"""A recipe for a node with a state that a service changes. The author declares how each request changes the state."""
 
 from __future__ import annotations
 
@@ -21,25 +21,27 @@ if TYPE_CHECKING:
 __all__ = ["SOME_TEXT", "Machine"]
 
 QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
-"""Seconds of wall time without any event after which the judge no longer waits for an answer or a message."""
+"""If no event comes for this many seconds of wall time, the judge stops waiting for an answer or a message."""
 PAUSE = 0.5
-"""Seconds of the subject's time after each answer in which a timer of the subject may report the change."""
+"""How long the judge waits after each answer, in seconds of the subject's time, because a timer of the subject may
+report the change.
+"""
 ON_AND_OFF = (False, True, True, False, False, True, True, False, False, True, False)
-"""Requests for a state that is on or off: each change is requested twice."""
+"""Requests for a state that is on or off. Each state is requested twice in a row."""
 
 Step = Callable[..., tuple[Any, Mapping[str, Any]]]
-"""Returns the new state and the fields of the reply for the state and the request."""
+"""A function of the state and the request that returns the new state and the fields of the reply."""
 
 
 @dataclass(frozen=True)
 class Call:
-    """One call of a machine's service, with the declared result.
+    """One call of the service, with the result that the declaration requires.
 
     Attributes:
-        asked: The request: its field ``data``, or all fields of a request without that one.
-        reply: The fields of the reply that is due.
-        state: The state after the call.
-        changed: True if the call changed the state.
+        asked: The request: the value of its field ``data``, or all fields if it has no such field.
+        reply: The required fields of the reply.
+        state: The required state after the call.
+        changed: True if the call changes the state.
     """
 
     asked: Any
@@ -49,19 +51,19 @@ class Call:
 
 
 class Machine(Declared):
-    """A node with a state that a service changes, and that a topic reports at each change, also to late listeners.
+    """A node with a state that a service changes. A topic reports each change, and the last one also to late listeners.
 
     Args:
-        exercise_id: Such as ``"lab_8_1.mode"``.
-        title: The title of the card: the lab and the subject.
+        exercise_id: The lab's folder and the file's name, such as ``"lab_8_1.mode"``.
+        title: The title of the card, naming the lab and the subject.
         task: One sentence that states the task.
-        state: The first state.
-        step: Returns the new state and the reply for the state and the request; :data:`SOME_TEXT` in a reply stands
-            for any text.
-        asks: The requests, one after the other, or a function that draws them, as many in each run. A dictionary is a
-            whole request, anything else its field ``data``.
-        late_after: The number of calls after which the judge subscribes to the topic.
-        field: The path of the field of a message that has the state.
+        state: The state at the beginning.
+        step: Returns the new state and the reply, given the state and the request. :data:`SOME_TEXT` in a reply
+            allows any text.
+        asks: The requests, one after the other, or a function that draws them, the same number in each run. A
+            dictionary is a whole request, anything else the value of its field ``data``.
+        late_after: The judge subscribes to the topic after this number of calls.
+        field: The path of the field that contains the state in the topic's messages.
     """
 
     def __init__(
@@ -81,13 +83,13 @@ class Machine(Declared):
         self._late_after, self._field = late_after, field
 
     def replies(self, field: str, points: float, title: str, words: str = "") -> None:
-        """Add a criterion, named after a field: the field is right in each reply in which ``step`` sets it.
+        """Add a criterion, named after a field of the reply: that field is right in each reply if ``step`` sets it.
 
         Args:
-            field: The reply's field.
-            points: The points for it.
-            title: One line for people.
-            words: The words of the task that the criterion judges.
+            field: The field of the reply.
+            points: The points that the criterion is worth.
+            title: The criterion in one line, as the card shows it.
+            words: The sentence of the task that the criterion judges.
         """
 
         def due(seen: Part) -> list[Any]:
@@ -100,7 +102,7 @@ class Machine(Declared):
         self._compares(field, points, title, due, came, words)
 
     def once_at_each_change(self, name: str, points: float, title: str, words: str = "") -> None:
-        """Add a criterion: one message comes at each change, and no other one; arguments as in :meth:`asks`."""
+        """Add a criterion: exactly one message comes at each change. For the arguments see :meth:`asks`."""
 
         def judge(seen: Part, expected: Part) -> Finding:
             course = self._course(seen, self._step)
@@ -119,7 +121,7 @@ class Machine(Declared):
         self._judges(name, words)
 
     def late_joiner_gets_the_last(self, name: str, points: float, title: str, words: str = "") -> None:
-        """Add a criterion: a late subscriber receives the present state; arguments as in :meth:`asks`."""
+        """Add a criterion: a late subscriber receives the current state. For the arguments see :meth:`asks`."""
 
         def due(seen: Part) -> list[Any]:
             return [call.state for call in self._course(seen, self._step)][: self._late_after][-1:]
@@ -135,7 +137,7 @@ class Machine(Declared):
         self._compares(name, points, title, due, came, words)
 
     def wrong(self, key: str, step: Step | Mapping[str, Any], says: str, next_step: str) -> None:
-        """Add a mistake: all replies are those of a variant of ``step``; arguments as in :meth:`Relay.wrong`."""
+        """Add a mistake: all replies are those of a variant of ``step``. For the arguments see :meth:`Relay.wrong`."""
         wrong = variant(self._step, step)
 
         def replied(seen: Part, step: Step) -> bool:
@@ -150,7 +152,7 @@ class Machine(Declared):
         self._knows(key, found, says, next_step)
 
     def told_too_often(self, key: str = "told_too_often") -> None:
-        """Add a mistake: more messages than changes."""
+        """Add a mistake: the node publishes more messages than there are changes."""
 
         def found(seen: Part) -> bool:
             most = sum(call.changed for call in self._course(seen, self._step))
@@ -164,7 +166,7 @@ class Machine(Declared):
         )
 
     def not_latched(self, key: str = "not_latched") -> None:
-        """Add a mistake: the publisher keeps nothing for late listeners."""
+        """Add a mistake: the publisher does not keep its last message for late subscribers."""
         self._knows(
             key,
             lambda seen: any(event.data["policy"] == "durability" for event in seen.of("mismatch")),
@@ -207,7 +209,7 @@ class Machine(Declared):
             bench.listen(topic, type_name)
 
     def _course(self, seen: Part, step: Step) -> list[Call]:
-        """Return the calls, each with the result of a machine that uses this step function."""
+        """Return the calls, each with the result that a machine with this step function would give."""
         state, course = self._state, []
         for asked in map(value, seen.of("asked")):
             new, reply = step(state, asked)

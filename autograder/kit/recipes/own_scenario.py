@@ -1,4 +1,4 @@
-"""Subjects for which the exercise has its own scenario: the recipe adds the common mistakes."""
+"""Recipes for subjects for which the exercise writes its own scenario. The recipe adds the common mistakes."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ if TYPE_CHECKING:
 _NOUN = {"publisher": "a publisher on", "subscription": "a subscription to", "client": "a client of"}
 _NOUN |= {"service": "a service", "action_client": "a client of the action", "action_server": "an action"}
 SERVED = 3.0
-"""Seconds of wall time within which a service on the graph must become callable."""
+"""Time limit in seconds of wall time for a service that is on the graph to become callable."""
 
 
 @dataclass(frozen=True)
 class Met:
-    """A subject that is discovered and spun, with the judge's endpoints that it talks to.
+    """A subject that the judge has discovered and that is spun, together with the judge's endpoints for it.
 
     Attributes:
         bench: The bench of the scenario.
-        topics: The topics on which the reference publishes; sorted by name, like the others.
-        speakers: A publisher of the judge for each topic that the reference subscribes to.
-        callers: A client of the judge for each of the reference's services.
+        topics: The topics on which the reference solution publishes. Like the other lists, sorted by name.
+        speakers: A publisher of the judge for each topic to which the reference solution subscribes.
+        callers: A client of the judge for each service of the reference solution.
     """
 
     bench: Bench
@@ -42,16 +42,16 @@ class Met:
 
     @property
     def heard(self) -> int:
-        """The number of messages received so far, on the only topic or the first one."""
+        """The number of messages received so far on the first of the topics, which is often the only one."""
         return self.bench.heard(self.topics[0])
 
 
 def once_met(happens: Callable[[Met], bool]) -> Callable[[Bench], None]:
-    """Return the scenario of one part: the judge discovers the subject at all endpoints, then ``happens`` runs.
+    """Return a scenario with one part: the judge discovers all endpoints of the subject, then calls ``happens``.
 
     Args:
-        happens: Returns True if everything that it waited for came; otherwise the judge checks whether the subject is
-            spun.
+        happens: Returns True if everything that it waited for arrived. If not, the judge checks whether the subject
+            is spun.
     """
 
     def scenario(bench: Bench) -> None:
@@ -79,10 +79,10 @@ class OwnScenario:
     """The recipe for a subject with endpoints of some roles. Its view is the record of the first part.
 
     Args:
-        scenario: Drives the bench, such as one of :func:`once_met`. Your own gets name and type from
-            ``bench.reference.only(role)``; if a role has several endpoints, their types by name are in
-            ``bench.reference.interface[role]``.
-        roles: Such as ``"publisher"``, the most telling first.
+        scenario: Drives the bench; for example one made by :func:`once_met`. A scenario of your own gets an
+            endpoint's name and type from ``bench.reference.only(role)``; if a role has several endpoints,
+            ``bench.reference.interface[role]`` has their types by name.
+        roles: The roles of the subject's endpoints, such as ``"publisher"``, the most telling first.
     """
 
     def __init__(self, scenario: Callable[[Bench], None], *roles: str) -> None:
@@ -90,13 +90,13 @@ class OwnScenario:
         self.scenario = scenario
 
     def seen(self, evidence: Evidence) -> Part:
-        """The judge's evidence of the subject."""
+        """Return the record of the subject in its first part."""
         return evidence.main
 
     def expected(self, evidence: Evidence) -> Part:
-        """The recording of the reference solution, with its endpoints.
+        """Return the record of the reference solution, with its endpoints.
 
-        While the reference is being recorded, this is the record itself.
+        While the reference is being recorded, this is the record that is being made.
         """
         if not evidence.reference.parts:
             return evidence.main
@@ -104,7 +104,7 @@ class OwnScenario:
         return replace(recorded, events=[Event(0.0, "interface", "graph", interface), *recorded.events])
 
     def has(self, role: str) -> Callable[[Evidence], Finding]:
-        """Return a function for :meth:`autograder.kit.draft.Draft.asks`: a role has the reference's names and types."""
+        """Return a criterion for :meth:`autograder.kit.draft.Draft.asks`: names and types equal the reference's."""
 
         def judge(evidence: Evidence) -> Finding:
             wanted, made = evidence.reference.interface.get(role, {}), evidence.main.endpoints(role)
@@ -118,7 +118,7 @@ class OwnScenario:
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:
-        """The common mistakes, most telling first."""
+        """The common mistakes, most specific first."""
         on_topics = [role for role in self.roles if role in ("publisher", "subscription")]
         return (
             *common.CRASHES,
@@ -142,13 +142,13 @@ def _in_words(role: str, endpoints: Mapping[str, str]) -> str:
 
 
 class OwnLadder(SeenAsItIs):
-    """The recipe for a subject without an endpoint: the exercise lists the common mistakes that it may show.
+    """The recipe for a subject without endpoints. The exercise lists which common mistakes the subject may show.
 
-    Its view is all evidence.
+    The view of this recipe is the whole evidence.
 
     Args:
         scenario: Drives the bench.
-        ladder: The common mistakes, most telling first, with placeholders for the exercise's own.
+        ladder: The common mistakes, most specific first, with placeholders for the exercise's own.
     """
 
     roles = ()

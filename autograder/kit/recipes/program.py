@@ -1,4 +1,4 @@
-"""A program of a package, which the judge builds and runs: it is a node, and says a line."""
+"""A recipe for a program of a package. The judge builds and runs it; it must have a node and log a line."""
 
 from __future__ import annotations
 
@@ -19,18 +19,19 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
 
 SAYING = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
-"""Seconds of wall time, after its node appeared, within which it must have said its line."""
+"""Time limit in seconds of wall time for the program to log its line, from the moment its node appeared."""
 LATE = 0.3
-"""Seconds without any event after which the log of a program that said its line is complete."""
+"""Once the program has logged its line, its log counts as complete after this many seconds without any event."""
 COMPARED, LONG = 200, 400
-"""The most lines, and characters of a line, that are compared: comparing a flood would take minutes."""
+"""The maximum number of lines, and of characters of a line, to compare: comparing a flood of output would take minutes.
+"""
 
 
 class Ran:
-    """A program, as it was seen.
+    """A program as it behaved in its run.
 
     Args:
-        evidence: All evidence.
+        evidence: The whole evidence.
     """
 
     def __init__(self, evidence: Evidence) -> None:
@@ -50,23 +51,23 @@ class Ran:
 
     @property
     def has_node(self) -> bool:
-        """True if it made a node; the name of a node that existed only for a moment may be unknown."""
+        """True if the program made a node. The name of a node that existed only for a moment may be unknown."""
         return any(part.had_node for part in self._evidence)
 
     @property
     def words(self) -> list[str]:
-        """The program's words, without messages of ``ros2`` about a program that it cannot run."""
+        """What the program logged and printed, without messages of ``ros2`` about a program that it cannot run."""
         return [word for part in self._evidence for word in _words(part)]
 
     @property
     def says_it(self) -> bool:
-        """True if the line is in the program's words."""
+        """True if the program logged or printed the line."""
         line = self.line
         return bool(line) and any(_says(said, line) for part in self._evidence for said in part.said())
 
     @property
     def nearest(self) -> str:
-        """The program's line that is most similar to the expected one; empty if it said nothing."""
+        """The program's line that is most similar to the expected one; empty if the program said nothing."""
         if self.says_it:
             return self.line
         words = self.words
@@ -76,7 +77,7 @@ class Ran:
 
     @property
     def first_difference(self) -> str:
-        """The place where that line begins to differ from the expected one, as a sentence."""
+        """A sentence that says where the most similar line begins to differ from the expected one."""
         return first_difference(self.nearest, self.line)
 
 
@@ -85,7 +86,7 @@ _LETTER = re2.compile(r"[A-Za-z0-9]")
 
 
 def _says(said: str, line: str) -> bool:
-    """True if a text contains a line, with no letter or digit directly next to it."""
+    """Return True if a text contains a line, with no letter or digit directly before or after it."""
     before, found, after = _COLOUR.sub(" ", said).partition(line)
     return bool(found) and not _LETTER.match(before[-1:]) and not _LETTER.match(after)
 
@@ -102,9 +103,9 @@ class Program:
     """The recipe for a program of a package.
 
     Args:
-        package: The package's name in the task.
-        program: The program's name in the task: ``ros2 run PACKAGE PROGRAM``.
-        part: The name of its run in the reference output.
+        package: The name of the package in the task.
+        program: The name of the program in the task, as in ``ros2 run PACKAGE PROGRAM``.
+        part: The name of the program's run in the reference output.
     """
 
     roles = ()
@@ -114,15 +115,15 @@ class Program:
         self.runner = RunsProgram(package, program)
 
     def seen(self, evidence: Evidence) -> Ran:
-        """The program, as it was seen."""
+        """Return the view of the student's program."""
         return Ran(evidence)
 
     def expected(self, evidence: Evidence) -> Ran:
-        """The same: only the line is taken from the reference output, and it knows that."""
+        """Return the same view: it already takes the expected line from the reference output."""
         return Ran(evidence)
 
     def scenario(self, bench: Bench) -> None:
-        """Build and run it; look for its node and its line."""
+        """Build and run the program, and look for its node and its line."""
         bench.part(self._part)
         bench.start()
         programs.await_build(bench)
@@ -134,7 +135,7 @@ class Program:
         bench.stop()
 
     def starts(self, evidence: Evidence) -> Finding:
-        """The package builds, and ``ros2 run`` starts its program."""
+        """Decide whether the package builds and ``ros2 run`` starts its program."""
         expected = f"colcon builds {self._entry.package}, and ros2 run starts {self._entry.program}"
         report = workspace.build_report(evidence.main)
         ends = ("constructed", "returned", "raised")
@@ -147,25 +148,25 @@ class Program:
         if programs.entry_point(evidence, self._entry):
             return Finding(False, expected, "built; its entry point leads nowhere")
         seen = Ran(evidence)
-        # A program that raises an exception was started; the other criteria judge what it did not do.
+        # A program that raised an exception did start. The other criteria judge what it failed to do.
         ran = seen.has_node or bool(seen.words) or any(part.traceback for part in evidence)
         return Finding(ran, expected, "built and started" if ran else "the program did nothing")
 
     def is_a_node(self, evidence: Evidence) -> Finding:
-        """A node of the program is on the graph."""
+        """Decide whether a node of the program is on the graph."""
         ran = Ran(evidence)
         unnamed = "a node, for a moment" if ran.has_node else "no node"
         return Finding(ran.has_node, "a node on the graph", ", ".join(ran.nodes) or unnamed)
 
     def says_the_line(self, evidence: Evidence) -> Finding:
-        """The reference's line is in the program's log (or printed)."""
+        """Decide whether the program logged or printed the reference's line."""
         seen = Ran(evidence)
         near, recording = seen.nearest, not evidence.reference.parts
         return Finding(seen.says_it or recording, f"“{seen.line}”", f"“{near}”" if near else "nothing")
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:
-        """The common mistakes, most telling first."""
+        """The common mistakes, most specific first."""
         entry = self._entry
         return (
             *workspace.BUILD,

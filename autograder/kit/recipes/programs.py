@@ -1,4 +1,4 @@
-"""The programs of a package: each is run as in a terminal of its own, judged like its node, and ended with Ctrl-C."""
+"""A recipe for the programs of a package. Each is run as in a terminal, judged like its node, and ended with Ctrl-C."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
 ENDING = {Pace.FAST: 3.0, Pace.REAL_TIME: 10.0}
-"""Seconds of wall time within which a program must have ended after Ctrl-C; it takes a tenth of one."""
+"""Time limit in seconds of wall time for a program to end after Ctrl-C. A tenth of a second is usual."""
 
 _ROLES = ("publisher", "subscription", "client", "service", "action_client", "action_server")
 
@@ -31,12 +31,13 @@ class Program:
     """A program of the package.
 
     Attributes:
-        name: The name for ``ros2 run``.
-        node: The exercise about its node alone. The program must fulfill everything in it.
-        title: The title of the program's criterion, one line for people.
-        points: The points for that criterion.
-        file: The name of its file without ``.py``; empty if it is the program's name.
-        ends_by_itself: True if it ends by itself, as a client with its answer does. Ctrl-C ends it if it goes on.
+        name: The name of the program for ``ros2 run``.
+        node: The exercise about the program's node. The program must meet all criteria of that exercise.
+        title: The title of the criterion about this program, as the card shows it.
+        points: The points that this criterion is worth.
+        file: The name of the program's file without ``.py``; empty if it equals the program's name.
+        ends_by_itself: True if the program ends by itself, as a client does after its answer. If it does not, the
+            judge presses Ctrl-C.
     """
 
     name: str
@@ -48,16 +49,16 @@ class Program:
 
     @property
     def prefix(self) -> str:
-        """The beginning of the names of its parts."""
+        """The prefix of the names of this program's parts."""
         return f"{self.name}: "
 
     def parts(self, every: Iterable[Part]) -> list[Part]:
-        """Return its runs, from start to end, under the names that the exercise of its node uses."""
+        """Return this program's runs, under the names that the exercise about its node uses."""
         own = [part for part in every if part.name.startswith(self.prefix)]
         return [replace(part, name=part.name.removeprefix(self.prefix)) for part in own]
 
     def view(self, evidence: Evidence) -> Evidence:
-        """Return the evidence for the exercise of its node: its own runs, up to Ctrl-C."""
+        """Return the evidence for the exercise about its node: this program's runs, up to Ctrl-C."""
         expected = evidence.reference
         ends = {role: expected.interface.get(role, {}) for role in self.node.roles}
         return Evidence(
@@ -68,11 +69,11 @@ class Program:
         )
 
     def judge(self, evidence: Evidence) -> Finding:
-        """The first criterion of its node that does not hold; where all do, that."""
+        """Return the first finding that fails in the exercise about its node; if none fails, a finding that says so."""
         return self.node.judge_as_one(self.view(evidence), "all that is asked of its node")
 
     def ending(self, evidence: Evidence) -> str:
-        """Return its reaction to Ctrl-C, in a few words; empty if Ctrl-C ended it."""
+        """Return in a few words how the program reacted to Ctrl-C; empty if Ctrl-C ended it."""
         parts = self.parts(evidence)
         if self.ends_by_itself and parts:
             return _its_own_end(parts)
@@ -86,7 +87,7 @@ class Program:
 
 
 class _OneProgram:
-    """A bench for the scenario of one program's node: it passes on all calls except the methods below."""
+    """A bench for the scenario of one program's node. It passes on all calls except those of the methods below."""
 
     def __init__(self, bench: Bench, program: Program) -> None:
         self._bench, self._program = bench, program
@@ -129,13 +130,14 @@ def _before_ctrl_c(part: Part) -> Part:
 
 
 def _its_own_end(parts: Sequence[Part]) -> str:
-    """Return the fault in the end of a program that should end by itself; empty if it did."""
+    """Return what is wrong with the end of a program that should end by itself; empty if it did."""
     if any(part.ending is None and part.first("subject", INTERRUPTED) for part in parts):
         return "went on"
-    # If the judge asked for its stacks, it had fallen silent, however it ended afterwards.
+    # A program that had fallen silent counts as hung, however it ended after the judge asked for its stacks.
     if any(part.ending is None or part.of("stack") for part in parts):
         return "did not come to its end"
-    # A program that waits in vain may report it by an exception; one that never got further has not finished.
+    # A program that waits in vain may report that with an exception. But if every run ended so, the program never did
+    # its work.
     return "failed each time" if all(_before_ctrl_c(part).traceback for part in parts) else ""
 
 
@@ -147,21 +149,21 @@ class Programs:
     """An exercise about the programs of a package, which the judge builds and runs one after the other.
 
     Args:
-        name: The package.
+        name: The name of the package.
         programs: The programs, in the order of the task.
-        keeps: Programs of an earlier lab; if their modules exist, their entry points must exist, too.
+        keeps: Programs of an earlier lab. If the package has their modules, it must also have their entry points.
     """
 
     def __init__(self, name: str, *programs: Program, keeps: Sequence[str] = ()) -> None:
         self._name, self._programs, self._keeps = name, programs, keeps
 
     def exercise(self, exercise_id: str, title: str, task: str, **more: Any) -> Exercise:
-        """Return the exercise: two points each for entry points and for ending, and the criteria of the programs.
+        """Return the exercise: two points each for the entry points and for the ends, and the criteria of the programs.
 
         Args:
-            exercise_id: Such as ``"lab_1_2.programs"``.
-            title: For the card.
-            task: One sentence: what is asked for.
+            exercise_id: The exercise's id, such as ``"lab_1_2.programs"``.
+            title: The title of the card.
+            task: One sentence that states the task.
             more: Further attributes of :class:`autograder.kit.model.Exercise`.
         """
         names = tuple(program.name for program in self._programs)
@@ -234,14 +236,15 @@ class Programs:
 
     def _ending(self, program: Program, evidence: Evidence) -> str:
         if program.ends_by_itself and not self._is_there(program, evidence):
-            return "did not start"  # what has not begun comes to an end, too
+            # a program that did not start has an ending event as well, so this is checked first
+            return "did not start"
         view, entry = program.view(evidence), self._entry(program)
         ending = program.ending(evidence)
         nowhere = ending and (package.entry_point(view, entry) or package.no_executable(view, entry))
         return "did not start" if nowhere else ending
 
     def _ends(self, all_on_ctrl_c: str) -> str:
-        """Return the expected ends of the programs, in words; ``all_on_ctrl_c`` if none ends by itself."""
+        """Return in words how the programs should end; ``all_on_ctrl_c`` if none of them ends by itself."""
         alone = [program.name for program in self._programs if program.ends_by_itself]
         others = [program.name for program in self._programs if not program.ends_by_itself]
         return f"{_and(others)} ends on Ctrl-C, {_and(alone)} by itself" if alone else all_on_ctrl_c
@@ -279,7 +282,7 @@ class Programs:
             yield Mistake("ignores_ctrl_c", partial(_ignores_ctrl_c, program))
 
     def _another_program(self, evidence: Evidence) -> Advice | None:
-        """A program shows nothing of its own node, but everything of another program's node."""
+        """Return advice if a program does nothing of its own task, but everything that another program should do."""
         for program in self._programs:
             shown = {role for part in program.view(evidence) for role in _ROLES if part.endpoints(role)}
             for other in self._programs:
@@ -305,10 +308,10 @@ class Programs:
 
 
 class _Wrong:
-    """A wrong program, in which one mistake after the other is looked for.
+    """A program that fails its criterion, in which one mistake after the other is looked for.
 
-    Whether it is wrong is decided once for each evidence: there are about a hundred mistakes, and each decision may
-    take a tenth of a second of the few that the judge has for all of them.
+    Whether a program fails is decided only once for each evidence. There are about a hundred mistakes, and each
+    decision may take a tenth of a second of the few seconds that the judge has for all of them.
     """
 
     def __init__(self, program: Program) -> None:
@@ -322,7 +325,7 @@ class _Wrong:
         return self._known[1]
 
     def recognise(self, mistake: Mistake, evidence: Evidence) -> Advice | None:
-        """Return the advice of a common mistake, if this program is wrong."""
+        """Return the advice of a common mistake if this program fails and shows the mistake."""
         view = self._view(evidence)
         advice = mistake.recognise(view) if view else None
         return replace(advice, text=f"{self._program.name}: {advice.text}") if advice else None
@@ -334,7 +337,7 @@ _MADE_OF_NOTHING = re2.compile(
 
 
 def _class_not_in_its_file(program: Program, evidence: Evidence) -> Advice | None:
-    """The program uses a class that its file does not contain."""
+    """Return advice if the program uses a class that its file does not contain."""
     traceback = traceback_of(evidence)
     found = _MADE_OF_NOTHING.search(traceback)
     if found is None or found["made"] != found["unknown"]:

@@ -1,4 +1,4 @@
-"""A publisher: the judge listens in simulated time if the publisher follows it, and longer if something looks wrong."""
+"""A recipe for a publisher. The judge listens in simulated time if possible, and longer if something looks wrong."""
 
 from __future__ import annotations
 
@@ -22,33 +22,36 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Reference
 
 USUAL_PERIOD = 0.5
-"""Seconds that replace the reference's period while the reference is being recorded."""
+"""The period in seconds to assume while the reference itself is being recorded."""
 LONG_STEP = 2 * STEP
-"""Simulated seconds in one step while the judge listens for more.
+"""The length of a step, in simulated seconds, while the judge listens for more messages.
 
-A timer that is shorter than a step is called once a step, so its messages seem uneven over steps of two lengths, and
-are checked again in real time.
+A timer whose period is shorter than a step fires once a step. As the judge uses steps of two lengths, its messages
+then seem uneven, and are checked again in real time.
 """
 SILENCE = {Pace.FAST: 3.0, Pace.REAL_TIME: 4.5}
-"""Seconds without any event after which the judge stops waiting.
+"""If no event comes for this many seconds, the judge stops waiting.
 
-A message that was lost during discovery delays all later ones until its writer's next heartbeat, 3 s later (Fast
+A message that was lost during discovery delays all later ones until the publisher's next heartbeat, 3 s later (Fast
 DDS, ``heartbeatPeriod``).
 """
 PERSISTENT = 13
-"""Messages after which a publisher in real time is taken to go on: more than the ten of many loops."""
+"""The number of messages in real time after which a publisher is assumed to go on: more than the ten of many loops."""
 LOST = 1
-"""Messages that a program may have sent before the judge can receive them, on a machine that is not busy."""
+"""The number of messages that a program may have sent before the judge can receive them, on an idle machine."""
 PERSISTS = 1.0
-"""Seconds in which a program must not end by itself once it was heard: simulated time may have passed in a moment."""
+"""Seconds for which a program must still run after it was heard, because simulated time may have passed within a
+moment.
+"""
 
 
 class Hears:
     """The recipe for a publisher.
 
     Args:
-        messages: The number of messages to wait for, in simulated time and if nothing else is known.
-        long_run: The number of messages if they cost little, or if something looks wrong: some faults come late.
+        messages: The number of messages to wait for in simulated time, and if nothing else is known.
+        long_run: The number of messages to wait for if they take little time or something looks wrong: some faults
+            come late.
     """
 
     roles = ("publisher",)
@@ -61,19 +64,19 @@ class Hears:
         self._variable = "self.count"
 
     def each_text(self, judge: Judge[Publisher]) -> Judge[Publisher]:
-        """Mark the criterion on each single message: a wrong rate is reported only if this criterion holds."""
+        """Mark a criterion as one about each single message. A wrong rate is reported only if this criterion holds."""
         self._text = judge
         return judge
 
     def whole_course(self, judge: Judge[Publisher]) -> Judge[Publisher]:
-        """Mark the criterion on all messages together: if it does not hold, the judge listens for more of them."""
+        """Mark a criterion as one about all messages together. If it fails, the judge listens for more messages."""
         self._course = judge
         return judge
 
     # --- the bench -------------------------------------------------------------------------------------------
 
     def scenario(self, bench: Bench) -> None:
-        """Listen until enough messages were received, or twice the needed time has passed."""
+        """Listen until enough messages were received, or until twice the time needed for them has passed."""
         topic, type_name = bench.reference.only("publisher")
         bench.part("talking")
         bench.listen(topic, type_name)
@@ -87,14 +90,14 @@ class Hears:
         enough = self._enough(bench.before) if bench.pace is Pace.REAL_TIME else self._messages
         _listen(bench, topic, enough, period)
         if bench.wait_until(lambda evidence: _lost(evidence, topic) > LOST, 0.0):
-            bench.doubt()  # only real times distinguish a burst from a slow start
+            bench.doubt()  # only times in real time distinguish a burst from a slow start
         if bench.pace is Pace.FAST and bench.wait_until(self._is_simulated, 0.0):
             enough = self._long_run
             _listen(bench, topic, enough, period, LONG_STEP)
             if not bench.in_a_cell:
                 bench.await_end(PERSISTS)
         elif bench.pace is Pace.REAL_TIME and bench.heard(topic) >= enough:
-            # A row of messages without a late one has twice its time to come.
+            # The time limit is twice the time that such a row of messages takes, because one of them may be late.
             bench.wait_until(
                 lambda evidence: self.keeps_rate(evidence).passed, self._row(bench.before) * period
             )
@@ -102,7 +105,7 @@ class Hears:
             bench.note_whether_it_spins()
 
     def _is_simulated(self, evidence: Evidence) -> bool:
-        """True if its messages follow the simulated clock; the first ones may be earlier."""
+        """Return True if the messages follow the simulated clock; the first ones may precede simulated time."""
         topic, _ = evidence.reference.only("publisher")
         return len(simulated(evidence.main.of("message", topic))) >= self._messages // 2
 
@@ -111,7 +114,7 @@ class Hears:
         return self._row(before) if before is not None and self._is_simulated(before) else PERSISTENT
 
     def _row(self, before: Evidence | None) -> int:
-        """Return how many messages in a row must keep the rate in real time: many after a fault in simulated time."""
+        """Return how many successive messages must keep the rate in real time: more after a fault in simulated time."""
         if before is None or not self._is_simulated(before):
             return ROW
         rate = self._simulated_rate(before)
@@ -124,38 +127,38 @@ class Hears:
     # --- views -----------------------------------------------------------------------------------------------
 
     def seen(self, evidence: Evidence) -> Publisher:
-        """The subject, as it was heard."""
+        """Return the view of the subject as a publisher."""
         topic, _ = evidence.reference.only("publisher")
         if evidence.real_time:
             enough = self._enough(evidence.before)
         else:
             enough = self._long_run if self._is_simulated(evidence) else self._messages
         heard = evidence.main.of("message", topic)
-        # A program that has ended by itself never publishes enough, because the task has no end.
+        # A program that ended by itself has never published enough, because the task has no end.
         return Publisher(
             topic, evidence.main, max(enough, len(heard) + 1) if evidence.main.ending else enough
         )
 
     def expected(self, evidence: Evidence) -> Publisher:
-        """The reference solution, as it was recorded."""
+        """Return the view of the recorded reference solution."""
         topic, _ = evidence.reference.only("publisher")
         return Publisher(topic, evidence.reference.part("talking"))
 
     # --- criteria --------------------------------------------------------------------------------------------
 
     def says_text(self) -> Callable[[Evidence], Finding]:
-        """Return the criterion that each text is the reference's, the number aside; its mistakes become known."""
+        """Return a criterion: each text equals the reference's, apart from the number. Also add its mistakes."""
         self._text = counting.says_text
         return self._criterion(counting.says_text)
 
     def counts(self, variable: str = "self.count") -> Callable[[Evidence], Finding]:
-        """Return the criterion that the numbers are the reference's; its mistakes become known.
+        """Return a criterion: the numbers are the reference's. Also add its mistakes.
 
-        The last whole number of a text counts, or the number that a message holds. First number and step are those of
-        the reference solution, which may count down.
+        The number of a message is the last whole number of its text, or the number that the message contains. The
+        first number and the step are those of the reference solution, which may count down.
 
         Args:
-            variable: The counter's name in the advice.
+            variable: The name that the advice uses for the counter.
         """
         self._course, self._variable = counting.counts, variable
         return self._criterion(counting.counts)
@@ -164,7 +167,7 @@ class Hears:
         return lambda evidence: judge(self.seen(evidence), self.expected(evidence))
 
     def on_topic(self, evidence: Evidence) -> Finding:
-        """A publisher of the subject is on the topic."""
+        """Decide whether the subject has a publisher on the topic."""
         topic, _ = evidence.reference.only("publisher")
         heard = self.seen(evidence)
         published = heard.endpoints
@@ -173,7 +176,7 @@ class Hears:
         return Finding(topic in published, f"a publisher on {topic}", seen)
 
     def has_type(self, evidence: Evidence) -> Finding:
-        """The publisher has the reference's message type."""
+        """Decide whether the publisher has the reference's message type."""
         topic, type_name = evidence.reference.only("publisher")
         heard = self.seen(evidence)
         seen = heard.endpoints.get(heard.part.real_name(topic))
@@ -181,13 +184,13 @@ class Hears:
         return Finding(seen == type_name, type_name, seen or nothing)
 
     def keeps_rate(self, evidence: Evidence) -> Finding:
-        """The intervals are those of the reference."""
+        """Decide whether the intervals between messages equal the reference's."""
         topic, _ = evidence.reference.only("publisher")
         wanted = reference_period(evidence.reference)
         messages = evidence.main.of("message", topic)
         before = self._simulated_rate(evidence.before)
-        # Exact in simulated time; in real time a busy machine may distort it.
-        # If a program ends by itself, chance decides how much was seen in simulated time.
+        # Simulated time is exact; real time on a busy machine is not. If a program ends by itself, chance decides how
+        # much of it was seen in simulated time.
         exact = (
             evidence.before
             and before
@@ -209,7 +212,7 @@ class Hears:
         return Finding(rate.kept, expected, seen)
 
     def _burst(self, evidence: Evidence) -> str:
-        """Return the burst in which it began to count, heard or not, in words; empty for none."""
+        """Return in words the burst with which it began, even if the burst was not heard; empty if there was none."""
         seen, expected = self.seen(evidence), self.expected(evidence)
         if not seen.counters or not expected.counters:
             return ""
@@ -218,7 +221,7 @@ class Hears:
         return burst_at_the_start(counting, unheard, reference_period(evidence.reference))
 
     def _simulated_rate(self, evidence: Evidence | None) -> Rate | None:
-        """Return the rate by the simulated clock; None if the messages do not follow that clock, or are too few."""
+        """Return the rate in simulated time; None if the messages do not follow the simulated clock, or are too few."""
         if evidence is None or not self._is_simulated(evidence):
             return None
         topic, _ = evidence.reference.only("publisher")
@@ -228,7 +231,7 @@ class Hears:
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:
-        """The common mistakes, most telling first."""
+        """The common mistakes, most specific first."""
         of = counting.Counting(self._variable)
         texts, numbers = self._text is counting.says_text, self._course is counting.counts
         early = [("field_typo", counting.field_typo)] * texts + [("counter_stuck", of.stuck)] * numbers
@@ -263,7 +266,7 @@ class Hears:
         return Mistake(key, lambda evidence: told(self.seen(evidence), self.expected(evidence)), certain)
 
     def _published_before_discovery(self, evidence: Evidence) -> Advice | None:
-        """It says that it published, but ended before the judge could receive it."""
+        """Return advice if the program says that it published, but ended before the judge could receive anything."""
         seen = self.seen(evidence)
         ended = seen.part.ending is not None and not seen.part.traceback
         if not ended or not seen.claims(self.expected(evidence)):
@@ -277,7 +280,7 @@ class Hears:
         )
 
     def _never_published(self, evidence: Evidence) -> Advice | None:
-        """The node works, or keeps talking about its texts in a loop, but publishes nothing."""
+        """Return advice if the node works, or keeps printing its texts in a loop, but publishes nothing."""
         seen = self.seen(evidence)
         part = seen.part
         if seen.topic not in part.endpoints("publisher") or seen.messages or part.ending is not None:
@@ -297,7 +300,7 @@ class Hears:
         )
 
     def _wrong_rate(self, evidence: Evidence) -> Advice | None:
-        """Each message is right, but the rate is not."""
+        """Return advice if each message is right and the rate is not."""
         finding = self.keeps_rate(evidence)
         if finding.passed or not self._holds(self._text, evidence) or "every" not in finding.seen:
             return None
@@ -312,7 +315,7 @@ class Hears:
         )
 
     def _stopped_publishing(self, evidence: Evidence) -> Advice | None:
-        """It goes on and is spun, but no longer publishes."""
+        """Return advice if the node still runs and is spun, but no longer publishes."""
         seen = self.seen(evidence)
         came, part = len(seen.messages), seen.part
         if not 0 < came < seen.enough or part.ending is not None or part.of("unanswered"):
@@ -324,7 +327,7 @@ class Hears:
 
 
 def reference_period(reference: Reference) -> float:
-    """Return the seconds between two messages of the reference solution."""
+    """Return the time between two messages of the reference solution, in seconds."""
     if not reference.parts:
         return USUAL_PERIOD
     topic, _ = reference.only("publisher")
@@ -333,9 +336,9 @@ def reference_period(reference: Reference) -> float:
 
 
 def _was_faster(messages: Sequence[Event], wanted: float) -> bool:
-    """True if simulated time passed faster than real time, so that no callback can have slept for a period.
+    """Return True if simulated time passed faster than real time: then no callback can have slept for a period.
 
-    On a busy machine the judge waits for such a callback, and sees an exact rate.
+    On a busy machine the judge waits for a callback that sleeps, and then sees an exact rate.
     """
     times = [message.t for message in messages]
     return median(after - before for before, after in pairwise(times)) < wanted
@@ -352,7 +355,7 @@ def _listen(bench: Bench, topic: str, enough: int, period: float, step: float = 
 
 
 def _lost(evidence: Evidence, topic: str) -> int:
-    """Return the number of messages that were sent before the first one that was heard."""
+    """Return the number of messages that were sent before the first one that the judge received."""
     first = evidence.main.first("message", topic)
     return int(first.data.get("number", 1)) - 1 if first is not None else 0
 

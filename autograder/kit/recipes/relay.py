@@ -1,4 +1,4 @@
-"""A node that listens on one topic and publishes on another, declared by what is due after each input."""
+"""A recipe for a node that listens on one topic and publishes on another. The author declares the right output."""
 
 from __future__ import annotations
 
@@ -18,30 +18,31 @@ if TYPE_CHECKING:
 
 NAN = float("nan")
 NUMBER, WHOLE = object(), object()
-"""Placeholders in the inputs for a number that is drawn, in quarters or whole; no number is drawn twice."""
+"""Placeholders in the inputs for random numbers: multiples of a quarter, or whole numbers. No number is drawn twice."""
 SILENCE = object()
-"""The value after an input for which nothing must be published."""
+"""The value that stands for "publish nothing after this input"."""
 PATIENCE = {Pace.FAST: 2.0, Pace.REAL_TIME: 6.0}
-"""Seconds of wall time within which the last message must have come."""
+"""Time limit in seconds of wall time for the last message to come."""
 
 Due = Callable[..., Any]
-"""Returns the value that is due after the last of all inputs so far, or :data:`SILENCE`."""
+"""A function of all inputs so far that returns the value to publish after the last one, or :data:`SILENCE`."""
 
 
 class Relay(Declared):
-    """A node that listens on one topic and publishes on a second one a value that it computes from all inputs so far.
+    """A node that listens on one topic, and publishes on another a value computed from all inputs so far.
 
     Args:
-        exercise_id: Such as ``"lab_8_1.filter"``.
-        title: The title of the card: the lab and the subject.
+        exercise_id: The lab's folder and the file's name, such as ``"lab_8_1.filter"``.
+        title: The title of the card, naming the lab and the subject.
         task: One sentence that states the task.
-        field: The path of the input and output field, such as ``"range"`` or ``"pose.position.x"``.
-        due: Returns what is due after the last of the inputs so far, or :data:`SILENCE`.
-        gives: The inputs, with :data:`NUMBER` or :data:`WHOLE` for each drawn number; or a function that draws all of
-            them, as many in each run.
+        field: The path of the field that contains the value in inputs and outputs, such as ``"range"`` or
+            ``"pose.position.x"``.
+        due: Returns the value to publish after the last of the inputs so far, or :data:`SILENCE`.
+        gives: The inputs, with :data:`NUMBER` or :data:`WHOLE` for each random number; or a function that draws all
+            of them, the same number in each run.
         copies: The path of a field that each output copies from its input, such as ``"header.stamp"``. A field not
-            named ``stamp`` is a text.
-        tolerance: The absolute or relative tolerance of a number.
+            named ``stamp`` must be a text.
+        tolerance: The absolute or relative tolerance for numbers.
     """
 
     def __init__(
@@ -62,24 +63,26 @@ class Relay(Declared):
         self._tolerance = tolerance
 
     def answers(self, name: str, points: float, title: str, words: str = "") -> None:
-        """Add a criterion: exactly what is due comes, in order; the arguments are those of :meth:`asks`."""
+        """Add a criterion: exactly the right values come, in order. For the arguments see :meth:`asks`."""
         self._compares(name, points, title, lambda seen: self._made(seen, self._due), self._outputs, words)
 
     def copies(self, name: str, points: float, title: str, words: str = "") -> None:
-        """Add a criterion: each output has the copied field of the input that it answers.
+        """Add a criterion: each output contains the copied field of the input that it answers.
 
-        Inputs and outputs are aligned at the end, so that a message too many or too few does not count twice.
+        Outputs are matched with inputs from the end, so that an additional or a missing message is not counted as
+        several errors.
         """
         self._compares(name, points, title, self._copies_due, self._copies_made, words)
 
     def wrong(self, key: str, due: Due | Mapping[str, Any], says: str, next_step: str) -> None:
-        """Add a mistake: all outputs are what a variant of ``due`` gives, as far as the subject came.
+        """Add a mistake: all outputs are those of a variant of ``due``, for as many inputs as the subject answered.
 
         Args:
-            key: A stable name.
-            due: The variant, or other values of arguments of the right function, such as ``{"window": 99}``.
-            says: What the student is told.
-            next_step: What to do about it.
+            key: A stable name for the mistake.
+            due: The variant as a function, or other values for arguments of the right function, such as ``{"window":
+                99}``.
+            says: The text that tells the student what happened.
+            next_step: The text that tells the student what to do.
         """
         wrong = variant(self._due, due)
 
@@ -91,7 +94,7 @@ class Relay(Declared):
         self._knows(key, found, says, next_step)
 
     def not_copied(self, key: str = "not_copied") -> None:
-        """Add a mistake: the field that is to be copied is empty."""
+        """Add a mistake: the field that has to be copied is empty."""
         self._knows(
             key,
             lambda seen: any(map(_is_empty, picked(seen, "message", self._copied))),
@@ -100,7 +103,7 @@ class Relay(Declared):
         )
 
     def too_early(self, key: str = "too_early") -> None:
-        """Add a mistake: the subject publishes before anything is due."""
+        """Add a mistake: the subject publishes before it has had enough inputs."""
 
         def found(seen: Part) -> bool:
             inputs = self._inputs(seen)

@@ -1,4 +1,4 @@
-"""The texts for a listener: a student cannot guess them, and some are of kinds that a careless program changes."""
+"""The texts that the judge sends to a listener. No student can guess them; careless programs change some."""
 
 from __future__ import annotations
 
@@ -8,29 +8,29 @@ if TYPE_CHECKING:
     from random import Random
 
 SINGLY = 12
-"""The number of texts that are each sent after the one before was said."""
+"""The number of texts that are sent singly, each after the subject said the one before."""
 AT_PACE = 8
-"""The number of texts that are sent one after the other at the pace, in real time."""
+"""The number of texts that are sent in real time at the given pace, without waiting for the subject."""
 TRIES = 3
-"""The number of tries: a busy machine may be slower than the pace for a moment."""
+"""The number of tries, because a busy machine may be too slow for a moment."""
 GREETING = "Hello, world!"
-"""The beginning of many talkers' messages; some of the texts contain it."""
+"""The text with which many talkers begin their messages; some of the texts contain it."""
 KINDS = 6
-"""The number of kinds of unusual texts in each row; in addition, one text comes twice."""
+"""The number of kinds of unusual texts in each of the two series. In addition, one text comes twice."""
 
 _WORDS = (
     "amber", "birch", "cedar", "delta", "ember", "fjord", "grove", "harbour", "islet", "juniper", "kelp", "lagoon",
     "meadow", "north", "orchard", "pebble", "quarry", "river", "summit", "tundra",
 )  # fmt: skip
 _ELSEWHERE = ("mgła", "łąka", "řeka", "erdő", "tűz")
-"""Words of other languages. JSON, YAML and Python write the codes of their letters in the same way."""
+"""Words of other languages with letters that JSON, YAML and Python all escape in the same way."""
 
 
 def random_texts(random: Random) -> list[str]:
-    """Return texts of words and a number; none contains another one, and in each row one comes twice in succession.
+    """Return texts of words and a number. None contains another, and in each series one comes twice in a row.
 
-    Some in each row are unusual: with the greeting of many talkers before or after, long and in capitals, with braces
-    and a percent sign, with letters beyond ASCII and two blanks, or without any blank.
+    Some texts in each series are unusual: with the greeting of many talkers before or after; long and in capitals;
+    with braces and a percent sign; with letters beyond ASCII and two spaces; or without any space.
     """
     count = 1 + TRIES * AT_PACE + SINGLY
     words = [f"{random.choice(_WORDS)} {random.choice(_WORDS)}" for _ in range(count)]

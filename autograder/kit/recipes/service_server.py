@@ -1,4 +1,4 @@
-"""A service's server: the judge calls it one by one, then several times at once, then once more."""
+"""A recipe for a service server. The judge calls it one call at a time, then several at once, then once more."""
 
 from __future__ import annotations
 
@@ -20,27 +20,30 @@ if TYPE_CHECKING:
 
 CALLS = "calls"
 AT_ONCE = 6
-"""The number of calls at once. A service's queue holds 10; with 12 even a right server loses some (measured)."""
+"""The number of simultaneous calls. A service's queue holds 10; with 12 calls, even a right server loses some
+(measured).
+"""
 SERVER_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
-"""Seconds within which a server on the graph must be matched with the judge's client."""
+"""Time limit in seconds for a server on the graph to be matched with the judge's client."""
 QUIET = {Pace.FAST: 2.0, Pace.REAL_TIME: 6.0}
-"""Seconds without any event after which an answer is no longer expected."""
+"""If no event comes for this many seconds, an answer is no longer expected."""
 SURE = 2
-"""The number of answers after which a server that ended by itself had certainly served."""
+"""The number of answers that prove, for a server that ended by itself, that it did serve."""
 
 Fields = Mapping[str, Any]
-"""The fields of a request or of a response."""
+"""The fields of a request or of a response, by name."""
 Objection = Callable[[Fields, Fields | None], str]
-"""Returns the fault of an answer to a request (None for no answer), in words; empty if it is right."""
+"""A function that returns in words what is wrong with an answer to a request (None for no answer); empty if nothing is.
+"""
 
 
 @dataclass(frozen=True)
 class Server:
-    """A server, as it was seen.
+    """A server as it behaved in its run.
 
     Attributes:
-        part: The run in which it was called.
-        calls: The number of calls if each of them is answered.
+        part: The run in which the judge called the server.
+        calls: The number of calls that the judge makes if each one is answered.
     """
 
     part: Part
@@ -48,7 +51,7 @@ class Server:
 
     @property
     def asked(self) -> list[Event]:
-        """All calls that were made, in order."""
+        """All calls that were made, in order of time."""
         return self.part.of("asked")
 
     @property
@@ -58,39 +61,39 @@ class Server:
 
     @property
     def together(self) -> list[Event]:
-        """The calls at once."""
+        """The calls that are sent at the same time."""
         return self.asked[self.calls - AT_ONCE - 1 : self.calls - 1]
 
     @property
     def last(self) -> list[Event]:
-        """The call after all others, if it was made."""
+        """The single call after all others, if it was made."""
         return self.asked[self.calls - 1 :]
 
     @cached_property
     def answers(self) -> dict[int, Fields]:
-        """The answer to each call that was answered, by the call's number."""
+        """The answers, by the number of the call."""
         return {int(event.data["call"]): event.data["fields"] for event in self.part.of("answered")}
 
     @property
     def count(self) -> int:
-        """The largest number of servers of the name that existed at the same time."""
+        """The largest number of servers with this name that existed at the same time."""
         return common.servers(self.part)
 
     def objections(self, calls: Sequence[Event], objection: Objection) -> list[str]:
-        """Return the faults of the answers to these calls, in words."""
+        """Return in words what is wrong with the answers to these calls."""
         found = (objection(e.data["fields"], self.answers.get(int(e.data["call"]))) for e in calls)
         return [words for words in found if words]
 
     def all_right(self, calls: Sequence[Event], objection: Objection, expected: str) -> Finding:
-        """Judge that these calls were made and each was answered correctly.
+        """Judge whether these calls were made and each was answered correctly.
 
         If two servers share the name, chance decides which of them answers a call. So one wrong answer counts against
-        all calls: any of them could have received it.
+        all calls, because any of them could have received it.
 
         Args:
-            calls: Some of :attr:`asked`.
-            objection: Returns the fault of one answer.
-            expected: The expectation for all of them, in words.
+            calls: Some of the calls in :attr:`asked`.
+            objection: Returns what is wrong with one answer.
+            expected: What the card says that these calls should bring.
         """
         wrong = self.objections(self.asked if self.count > 1 else calls, objection)
         many = "1 more call answered" if len(calls) == 1 else f"{len(calls)} calls answered"
@@ -99,11 +102,11 @@ class Server:
 
 
 class Asks:
-    """The recipe for a server.
+    """The recipe for a service server.
 
     Args:
-        singly: Draws the requests that are made one by one.
-        ordinary: Draws one request, for the calls at once and the last one.
+        singly: Draws the requests for the calls that are made one at a time.
+        ordinary: Draws one request, for each of the simultaneous calls and for the last one.
     """
 
     roles = ("service",)
@@ -114,7 +117,7 @@ class Asks:
         self._singly, self._ordinary = singly, ordinary
 
     def scenario(self, bench: Bench) -> None:
-        """One run: calls one by one, calls at once, one more."""
+        """Make one run: calls one at a time, several at once, and one more."""
         service, type_name = bench.reference.only("service")
         bench.part(CALLS)
         caller = bench.call(service, type_name)
@@ -127,7 +130,7 @@ class Asks:
         bench.stop()
 
     def _all_answered(self, bench: Bench, caller: Caller) -> bool:
-        """Make all calls; return False at the first unanswered one."""
+        """Make all calls. Return False at the first one that is not answered."""
         for request in self._singly(bench.random):
             caller.ask(request)
             if not caller.await_answers(QUIET[bench.pace]):
@@ -139,16 +142,16 @@ class Asks:
         return True
 
     def seen(self, evidence: Evidence) -> Server:
-        """The subject, as it was seen."""
+        """Return the view of the subject as a server."""
         return Server(evidence.main, len(evidence.reference.part(CALLS).of("asked")))
 
     def expected(self, evidence: Evidence) -> Server:
-        """The reference solution, as it was recorded."""
+        """Return the view of the recorded reference solution."""
         part = evidence.reference.part(CALLS)
         return Server(part, len(part.of("asked")))
 
     def serves(self, evidence: Evidence) -> Finding:
-        """There is one server of the right name and type, and it answers."""
+        """Decide whether there is exactly one server of the right name and type, and it answers."""
         name, type_name = evidence.reference.only("service")
         seen, expected = self.seen(evidence), f"one server of {name} ({type_name}) that answers"
         made = seen.part.endpoints("service")
@@ -158,7 +161,7 @@ class Asks:
             return Finding(False, expected, f"{name} is a {made[name]}")
         if seen.count > 1:
             return Finding(False, expected, f"{seen.count} servers of {name}")
-        # The answer of a program that exits with it may or may not arrive; one that crashes has not sent it.
+        # If a program answers and ends at once, the answer may or may not arrive; if it crashes, it has not sent one.
         enough = SURE if seen.part.traceback else max(SURE, len(seen.asked))
         if seen.part.ending is not None and len(seen.answers) < enough:
             return Finding(False, expected, "it ended by itself while it was called")
@@ -166,14 +169,14 @@ class Asks:
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:
-        """The common mistakes, most telling first."""
+        """The common mistakes, most specific first."""
         return (
             common.two_servers(
                 "service",
                 "Each call reaches both, and whichever is quicker answers.",
                 "Call create_service once, and make one node only.",
             ),
-            # Before any crash: a wrong answer may not fit into its field, and rclpy's server crashes then.
+            # This comes before any crash: a wrong answer may not fit into its field, and then rclpy's server crashes.
             OWN,
             *common.CRASHES,
             common.endpoint_name("service"),

@@ -1,4 +1,4 @@
-"""A student's package that generates a service type: its file is read, the package built, and the type compared."""
+"""A recipe for a package that defines a service type. The judge reads the file, builds the package, compares types."""
 
 from __future__ import annotations
 
@@ -19,29 +19,29 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence
 
 GROUP = "rosidl_interface_packages"
-"""The group of packages that define interfaces; with it a package.xml marks its package as one of them."""
+"""The group that marks a package, in its package.xml, as one that defines interfaces."""
 NEEDED = {
     "rosidl_default_generators": ("buildtool_depend", "building the package needs the generators"),
     "rosidl_default_runtime": ("exec_depend", "a program that uses its types needs this library"),
 }
-"""The dependencies of such a package, each with the tag from the ROS documentation ("Creating custom msg and srv
-files", section 5) and the reason. Any dependency tag is accepted.
+"""The dependencies of such a package, each with its tag in the ROS documentation ("Creating custom msg and srv files",
+section 5) and the reason for it. Any dependency tag is accepted.
 """
 SERVICE = "/interface_of_the_workspace"
-"""The service that the judge's program serves with the built interface, so that its type is on the wire."""
+"""The service that a program of the judge serves with the student's type, so that the type is visible on the wire."""
 BEGINNING = 15.0
-"""Seconds of wall time within which the packages must have been read."""
+"""Time limit in seconds of wall time for reading the packages."""
 PART = "building"
 Fields = list[tuple[str, str]]
 """The type and the name of each field, in order."""
 
 
 class ServiceType(SeenAsItIs):
-    """The recipe for a package that generates a service type. Its views are all evidence.
+    """The recipe for a package that defines a service type. Its views are the whole evidence.
 
     Args:
-        file: The file's name in the task, such as ``"AddTwoInts.srv"``.
-        package: A good name for the package; the judge accepts any name.
+        file: The name of the file in the task, such as ``"AddTwoInts.srv"``.
+        package: A good name for the package, for use in advice; the judge accepts any name.
     """
 
     roles = ("service",)
@@ -51,7 +51,7 @@ class ServiceType(SeenAsItIs):
         self.runner = ServesInterface(file, SERVICE)
 
     def scenario(self, bench: Bench) -> None:
-        """Read the file, build the package, and compare on the wire what it generated."""
+        """Read the file, build the package, and compare the generated type on the wire."""
         bench.part(PART)
         bench.start()
         bench.wait_until(lambda e: report_of(e.main, "found") is not None, BEGINNING)
@@ -67,22 +67,22 @@ class ServiceType(SeenAsItIs):
         return [(p, i) for p in packages for i in p.interfaces if i.file.rpartition("/")[2] == self._file]
 
     def _texts(self, evidence: Evidence) -> list[tuple[str, str]]:
-        """Return the path and the text of each file of that name, if the text is reported."""
+        """Return the path and the text of each file with this name, if the report contains the text."""
         return [(file.file, file.text) for _, file in self._holders(evidence) if file.text is not None]
 
     def has_the_fields(self, evidence: Evidence) -> Finding:
-        """The file has the reference's fields: names, types and order."""
+        """Decide whether the file has the reference's fields: the same names, types and order."""
         expected, texts = _expected(evidence), self._texts(evidence)
         right = any(fields(text) == expected for _, text in texts) or (bool(texts) and not expected)
         if not right and not self._is_read(evidence):
-            # The generated type shows what a file contains whose text was not reported.
+            # If the report does not contain the text, the generated type shows what the file contains.
             wire = self.is_on_the_wire(evidence)
             return Finding(wire.passed, _shown(expected), wire.seen)
         seen = _shown(fields(texts[0][1])) if texts else f"no file {self._file}"
         return Finding(right, _shown(expected), seen or "an empty file")
 
     def declares(self, evidence: Evidence) -> Finding:
-        """The package.xml names what the package needs, so that it can be built and used elsewhere, too."""
+        """Decide whether package.xml declares everything that building and using the package elsewhere needs."""
         expected = f"package.xml names {' and '.join(NEEDED)}"
         package = self._most_thorough(evidence)
         if package is None:
@@ -91,19 +91,19 @@ class ServiceType(SeenAsItIs):
         return Finding(not names, expected, f"it does not name {names}" if names else "it does")
 
     def _most_thorough(self, evidence: Evidence) -> PackageReport | None:
-        """Of the packages with such a file, return the one that declares most of what it needs."""
+        """Return, of the packages with such a file, the one that declares most of what it needs."""
         packages = (package for package, _ in self._holders(evidence))
         return min(packages, key=lambda package: len(_undeclared(package)), default=None)
 
     def _is_read(self, evidence: Evidence) -> bool:
-        """True if no file of that name, and no text of one, was left out of the report."""
+        """Return True if the report left out neither a file with this name nor its text."""
         if files := [file for _, file in self._holders(evidence)]:
             return all(file.text is not None for file in files)
         report = workspace.build_report(evidence.main)
         return report is None or report.complete
 
     def builds(self, evidence: Evidence) -> Finding:
-        """Colcon builds the package, and it generates the interface."""
+        """Decide whether colcon builds the package and it generates the interface."""
         expected = f"colcon builds a package that generates {self._file.partition('.')[0]}"
         report = report_of(evidence.main)
         if report is None:
@@ -114,14 +114,14 @@ class ServiceType(SeenAsItIs):
             return Finding(False, expected, workspace.seen_of_build(report))
         if report.missing:
             return Finding(False, expected, f"built; no {report.missing}")
-        # A file of the right name is easily made; a program can serve only what was generated.
+        # A file with the right name proves little, but a program can serve only a type that was really generated.
         served = evidence.main.first("type", SERVICE) is not None
         return Finding(
             served, expected, "built" if served else "built, but no program can use what came of it"
         )
 
     def is_on_the_wire(self, evidence: Evidence) -> Finding:
-        """A node that serves the generated type has the reference's type hashes."""
+        """Decide whether a node that serves the generated type has the reference's type hashes."""
         seen = evidence.main.first("type", SERVICE)
         expected = "a service of this type, with these fields"
         if seen is None:
@@ -130,7 +130,7 @@ class ServiceType(SeenAsItIs):
         return Finding(right, expected, str(seen.data["type"]) + ("" if right else ", with other fields"))
 
     def _three_dashes(self, evidence: Evidence) -> Advice | None:
-        """Request and response are not separated by exactly one line of dashes."""
+        """Return advice unless exactly one line of three dashes separates request and response."""
         for file, text in self._texts(evidence):
             number = len(fields(text))
             if number == 2:
@@ -150,7 +150,7 @@ class ServiceType(SeenAsItIs):
         return None
 
     def _interface_fields(self, evidence: Evidence) -> Advice | None:
-        """The fields differ from the reference's."""
+        """Return advice if the fields differ from the reference's."""
         finding = self.has_the_fields(evidence)
         texts = self._texts(evidence)
         if finding.passed or not texts or not self._is_read(evidence) or len(fields(texts[0][1])) != 2:
@@ -162,7 +162,7 @@ class ServiceType(SeenAsItIs):
         )
 
     def _interface_in_python_package(self, evidence: Evidence) -> Advice | None:
-        """The file is in an ament_python package, which does not generate interfaces."""
+        """Return advice if the file is in an ament_python package, which does not generate interfaces."""
         holders = self._holders(evidence)
         if (
             self.builds(evidence).passed
@@ -177,7 +177,7 @@ class ServiceType(SeenAsItIs):
         )
 
     def _member_of_group(self, evidence: Evidence) -> Advice | None:
-        """The line of package.xml that marks an interface package is missing, or is inside a comment."""
+        """Return advice if package.xml lacks the line that marks an interface package, or has it inside a comment."""
         holders = self._holders(evidence)
         if self.builds(evidence).passed or not holders:
             return None
@@ -199,7 +199,7 @@ class ServiceType(SeenAsItIs):
         )
 
     def _interface_not_listed(self, evidence: Evidence) -> Advice | None:
-        """The package builds, but the file is not among those that it generates."""
+        """Return advice if the package builds, but generates nothing from the file."""
         report = report_of(evidence.main)
         holders = self._holders(evidence)
         if report is None or not report.built or report.missing in ("", AMENT_PACKAGE) or not holders:
@@ -213,7 +213,7 @@ class ServiceType(SeenAsItIs):
         )
 
     def _dependency_missing(self, evidence: Evidence) -> Advice | None:
-        """Everything works here, but package.xml does not name what that needs."""
+        """Return advice if everything works here, but package.xml does not declare a dependency that this needs."""
         holder = self._most_thorough(evidence)
         undeclared = _undeclared(holder) if holder is not None else []
         if holder is None or not undeclared:
@@ -234,7 +234,7 @@ class ServiceType(SeenAsItIs):
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:
-        """The common mistakes, most telling first."""
+        """The common mistakes, most specific first."""
         return (
             OWN,
             Mistake("three_dashes", self._three_dashes, certain=True),
@@ -250,9 +250,9 @@ class ServiceType(SeenAsItIs):
 
 
 def fields(text: str) -> list[Fields]:
-    """Return the fields of each section of an interface file, without comments, constants and default values.
+    """Return the fields in each section of an interface file, without comments, constants and default values.
 
-    Only a line of exactly ``---`` begins a new section, as in ``rosidl_adapter/parser.py``.
+    Only a line that is exactly ``---`` begins a new section, as in ``rosidl_adapter/parser.py``.
     """
     sections: list[Fields] = [[]]
     for line in text.splitlines():
@@ -272,12 +272,12 @@ def _nearly_dashes(line: str) -> bool:
 
 
 def _undeclared(package: PackageReport) -> list[str]:
-    """Return what a package needs and does not declare."""
+    """Return the dependencies that a package needs and does not declare."""
     return [name for name in NEEDED if name not in package.dependencies]
 
 
 def _expected(evidence: Evidence) -> list[Fields]:
-    """Return the reference's fields; empty while they are being recorded."""
+    """Return the reference's fields; empty while the reference is being recorded."""
     if not evidence.reference.parts:
         return []
     seen = evidence.reference.part(PART).first("type")
