@@ -1,1 +1,1 @@
-"""The judge: a ROS node in a process of its own that watches a subject on the wire and gives the verdict."""
+"""The judge: a ROS node in its own process, which watches a subject on the wire and decides the verdict."""

@@ -1,6 +1,7 @@
-"""``python -m autograder.judge --socket PATH``: the judge of one notebook.
+"""``python -m autograder.judge --socket PATH``: run the judge for one notebook.
 
-With ``--attached LISTENER ORDERS`` instead, it answers the checks that its grader orders, on descriptors it inherits.
+With ``--attached LISTENER ORDERS`` instead, run a judge that a grader controls. It judges only the checks that the
+grader orders; both arguments are descriptors of inherited sockets.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from pathlib import Path
 
 
 def main() -> None:
-    """Prepare ROS, then serve until stdin or the orders end."""
+    """Prepare ROS, then serve until stdin or the grader's orders end."""
     parser = argparse.ArgumentParser(prog="python -m autograder.judge", description=__doc__)
     where = parser.add_mutually_exclusive_group(required=True)
     where.add_argument("--socket", type=Path, help="where notebooks reach the judge")

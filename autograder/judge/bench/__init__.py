@@ -1,1 +1,1 @@
-"""The bench for scenarios: the judge's node with its endpoints, its clock and its record."""
+"""The bench on which scenarios run: the judge's node, its endpoints, its clock, and its record."""

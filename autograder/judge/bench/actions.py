@@ -1,9 +1,9 @@
-"""Actions: a server that does only what the scenario tells it to, and a client that sends goals, both recorded.
+"""Actions: a server that does only what the scenario tells it to, and a client that sends goals. Both are recorded.
 
-Both are made of the three services and two topics of an action (design.ros2.org, "Actions"), not of rclpy's
-ActionServer and ActionClient. rclpy's server would not call back for a second cancel of one goal and decides by
-itself when to answer, but here each cancel request counts. The client sees each answer as it was sent, including
-refused cancel requests.
+Both are built from the three services and two topics of an action (design.ros2.org, "Actions"), not from rclpy's
+ActionServer and ActionClient. rclpy's server decides by itself when to answer, and does not report a second cancel
+request for one goal; here each request counts. The client sees each answer as it was sent, including the refusal of a
+cancel request.
 """
 
 from __future__ import annotations
@@ -39,11 +39,11 @@ STATUS = {
 
 _SERVICES = ("send_goal", "cancel_goal", "get_result")
 FEEDBACK_MATCH = 3.0
-"""Seconds within which the subscription to feedback must be discovered; without a subscription no feedback is sent."""
+"""Time limit in seconds for discovering the subscription to feedback. Feedback without a subscription would be lost."""
 
 
 class ScriptedActionServer:
-    """The server of one action; it accepts all goals as they come (or refuses all), and the newest is the current one.
+    """A server for one action. It accepts all goals (or refuses all); the newest goal is the current one.
 
     Attributes:
         services: The full names of the action's services.
@@ -94,7 +94,7 @@ class ScriptedActionServer:
                 strict=True,
             )
         ]
-        # rclpy answers a request when its callback returns; these answers are sent at their own time.
+        # rclpy answers a request when its callback returns; these answers are sent at a time of their own.
         self._late = [
             LateAnswers(goals, goal_answer_takes, sending=self._note_goal_answer),
             LateAnswers(cancels, cancel_answer_takes, sending=self._note_cancel_answer),
@@ -106,8 +106,8 @@ class ScriptedActionServer:
     def await_goal(self, within: float) -> bool:
         """Wait until a goal has arrived and been answered; False if none came in ``within`` seconds.
 
-        Feedback that is sent before the client's subscription is discovered would be lost, so this also waits for the
-        subscription.
+        Feedback that is sent before the client's subscription is discovered would be lost, so this waits for the
+        subscription, too.
         """
         if not self._await("goal", within):
             return False
@@ -136,7 +136,7 @@ class ScriptedActionServer:
         self._feedback.publish(message)
 
     def finish(self, status: str, **fields: Any) -> None:
-        """End the current goal with a status of :data:`STATUS` and this result."""
+        """End the current goal with a status from :data:`STATUS` and this result."""
         response = self._type.Impl.GetResultService.Response()
         response.status = STATUS[status]
         filled(response.result, fields)
@@ -149,7 +149,7 @@ class ScriptedActionServer:
             self._answer(response, header)
 
     def close(self) -> None:
-        """Remove the action."""
+        """Remove the action's services and topics."""
         for late in self._late:
             late.close()
         for service in self._services:
@@ -218,11 +218,11 @@ class ScriptedActionServer:
         self.say_status()
 
     def say_status(self) -> None:
-        """Publish the goal's status on its topic: when it changes, and when its client requests the result.
+        """Publish the goal's status on the status topic: when it changes, and when the client requests the result.
 
-        It is not published automatically with the answer to the goal, nor with the feedback right after that. The
-        status in a new handle is UNKNOWN, which is 0, and a client that reads it to learn whether its goal was
-        accepted must not be right by chance. A scenario publishes it after that time.
+        It is not published automatically with the answer to the goal, nor with the feedback that directly follows.
+        The status in a new goal handle is UNKNOWN, which is 0. A client that reads it to learn whether its goal was
+        accepted must not be right by chance. Later, the scenario publishes the status.
         """
         line = GoalStatus(goal_info=GoalInfo(goal_id=self._goal_id), status=self._status)
         self._statuses.publish(GoalStatusArray(status_list=[line]))
@@ -250,8 +250,8 @@ class RecordedActionClient(Client):
         super().__init__(wire, recorder, action, f"{self._parts_of}/send_goal", server_is_gone)
         self._goals: list[UUID] = []
         node, self._parts = wire.node, interface(type_name).Impl
-        # Made first: endpoints are announced in order, so a server that can answer the services also knows this one,
-        # and no first feedback is lost.
+        # The feedback subscription is made first. Endpoints are announced in order, so a server that can answer the
+        # services also knows this subscription, and no feedback is lost.
         self._feedback = node.create_subscription(
             self._parts.FeedbackMessage,
             f"{self._parts_of}/feedback",
@@ -281,7 +281,7 @@ class RecordedActionClient(Client):
         future.add_done_callback(lambda done: self._take_cancel_answer(goal, done.result()))
 
     def close(self) -> None:
-        """Remove the client."""
+        """Remove the client's endpoints."""
         for client in (self._send, self._cancel, self._result):
             self._wire.node.destroy_client(client)
         self._wire.node.destroy_subscription(self._feedback)
@@ -310,7 +310,7 @@ class RecordedActionClient(Client):
         self._note("cancel_answer", number, accepted=accepted, return_code=code)
 
     def _note(self, kind: str, goal: int, **data: Any) -> None:
-        """Record the server's answer; an event with a later time of sending was certainly sent after it."""
+        """Record the server's answer with its time of sending, so that later events can be compared with it."""
         self._recorder.record(kind, self._name, goal=goal, arrived=time.time(), **data)
 
     def _hear(self, message: Any, info: Any) -> None:

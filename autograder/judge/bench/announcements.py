@@ -1,11 +1,11 @@
-"""Detects processes that have made a node, even if a program ends before the graph shows it.
+"""Detects that a process has made a node, even if the process ends before the ROS graph shows the node.
 
-A DDS participant announces itself when it is made, and rmw_fastrtps makes it with the first node of a process. The
-graph needs several more messages in both directions, for which a program that ends at once may not live long enough.
-But the announcement has left it in any case, and waits in the sockets that are opened here.
+A DDS participant announces itself when it is made, and rmw_fastrtps makes it with a process's first node. The graph
+needs several more messages in both directions, for which a program that ends at once may not live long enough. But by
+then it has sent its announcement, which waits in the sockets that are opened here.
 
-The announcement is sent to a multicast group or, if discovery is limited to this machine, to the ports of the first
-participants on it (DDSI-RTPS 2.5, 9.6.1).
+Participants announce themselves to a multicast group or, if discovery is limited to this machine, to the ports of the
+first participants on it (DDSI-RTPS 2.5, 9.6.1).
 """
 
 from __future__ import annotations
@@ -31,26 +31,26 @@ _JOINED = (
     socket.inet_aton(_GROUP) + socket.inet_aton(_LOOPBACK),
 )
 _PLACE = 31
-"""The participant index that is used here: Fast DDS announces to indexes 0 to 31 (rmw_fastrtps, participant.cpp),
-and a new participant takes the lowest free index.
+"""The participant index whose port is listened on. Fast DDS announces to indexes 0 to 31 (rmw_fastrtps,
+participant.cpp), and a new participant takes the lowest free index.
 """
 _RTPS = b"RTPS"
 _PREFIX = slice(8, 16)
-"""The part of a message's header that identifies the sending process (DDSI-RTPS 2.5, 8.3.3.1; the rest of the
-identifier counts the participants of a process).
+"""The bytes of a message's header that identify the sending process (DDSI-RTPS 2.5, 8.3.3.1). The rest of the
+identifier counts the participants of a process.
 """
 _LARGEST = 65_536
 MOST = 1_000
-"""The most processes that are remembered, and messages that are read at once: a flood must neither fill the memory
+"""The maximum number of processes to remember, and of messages to read at once: a flood must neither fill the memory
 nor keep the judge from other work.
 """
 
 
 class Announcements:
-    """Listens on a domain until it is closed. If a socket cannot be opened, nothing is heard on it.
+    """Listens for announcements on a domain until it is closed. A socket that cannot be opened is left out.
 
     Args:
-        domain_id: The domain.
+        domain_id: The ROS domain.
     """
 
     def __init__(self, domain_id: int) -> None:
@@ -68,7 +68,7 @@ class Announcements:
         self._thread.start()
 
     def heard(self) -> frozenset[bytes]:
-        """The processes that have announced a participant so far."""
+        """The ids of the processes that have announced a participant so far."""
         with self._lock:
             self._take()
             return frozenset(self._heard)
@@ -82,7 +82,7 @@ class Announcements:
             opened.close()
 
     def _listen(self) -> None:
-        """Read messages before the sockets are full, even if the result is never used."""
+        """Read messages continuously, so that the sockets do not fill up."""
         while not any(key.fileobj is self._ended for key, _ in self._selector.select()):
             with self._lock:
                 self._take()
@@ -95,7 +95,7 @@ class Announcements:
 
 
 def process_of(node: Node) -> bytes:
-    """Return the process of a node as in :class:`Announcements`; empty if it does not subscribe to ``/rosout``."""
+    """Return the process that made a node, as in :class:`Announcements`; empty if the node has no ``/rosout``."""
     infos = node.get_subscriptions_info_by_topic("/rosout")
     own = (bytes(info.endpoint_gid) for info in infos if info.node_name == node.get_name())
     return next((identifier[: _PREFIX.stop - _PREFIX.start] for identifier in own), b"")
@@ -108,7 +108,7 @@ def _waiting(listening: socket.socket) -> Iterator[bytes]:
 
 
 def _listening(address: str, udp_port: int, *options: tuple[int, int, int | bytes]) -> socket.socket | None:
-    """Return a socket that listens there; None if it cannot be opened."""
+    """Return a socket that listens on this address and port; None if it cannot be opened."""
     listening = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         for option in options:

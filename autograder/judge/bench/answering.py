@@ -1,4 +1,4 @@
-"""Makes answers arrive, and at the right time: a service of the judge waits until its client can receive."""
+"""Sends answers of the judge's services at the right time, and only once the client can receive them."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ if TYPE_CHECKING:
     from rclpy.service import Service
 
     Take = Callable[[Any, Any], Any]
-    """A service's callback: it takes a request and an empty response."""
+    """A service callback: it takes a request and an empty response, and returns the response or None."""
 
 ATTEMPTS = 30
-"""The number of times that an answer is tried; the middleware waits about 0.1 s each time for the client's reader."""
+"""The number of attempts to send an answer; in each the middleware waits about 0.1 s for the client's reader."""
 
 
 def patiently(service: Service, wanted: Callable[[], bool] = lambda: True) -> Callable[[Any, Any], None]:
-    """Return a function that sends answers of this service; the service uses it as long as answers are wanted.
+    """Return a function with which the service sends its answers; it keeps trying as long as answers are wanted.
 
-    A client that sends its request at once may not be able to receive yet. The middleware waits 0.1 s for it, drops
-    the answer and warns ("client will not receive response", rmw_fastrtps_shared_cpp/rmw_response.cpp): on a busy
-    machine a right client would then wait for ever.
+    A client that sends its request at once may not be able to receive yet. The middleware waits 0.1 s for it, then
+    drops the answer and warns ("client will not receive response", rmw_fastrtps_shared_cpp/rmw_response.cpp). On a
+    busy machine a right client would then wait forever.
     """
     usual = service.send_response
 
@@ -31,7 +31,8 @@ def patiently(service: Service, wanted: Callable[[], bool] = lambda: True) -> Ca
         for _ in range(ATTEMPTS):
             if not wanted():
                 return
-            # The warning is recorded, not made an error: compiled code would turn it into a different error.
+            # The warning is recorded and not turned into an error: compiled code would replace that by a different
+            # error.
             with _warnings_belong_to_all_threads, warnings.catch_warnings(record=True) as complaints:
                 warnings.simplefilter("always", RuntimeWarning)
                 usual(response, header)
@@ -46,10 +47,10 @@ _warnings_belong_to_all_threads = threading.Lock()
 
 
 def once_it_is_set(made: threading.Event, take: Take) -> Take:
-    """Return a callback for a service that takes no request before the event is set.
+    """Return a callback that waits for the event before it takes its first request.
 
-    A service works from the moment of its creation. A client that waits for it may send a request before the service
-    knows how to send answers, and the answer would bypass the judge.
+    A service works from the moment it is created. A client that waits for it may send a request before ``patiently``
+    has replaced the function that sends answers; that answer would be sent without waiting for the client.
     """
 
     def wait_and_take(request: Any, response: Any) -> Any:
@@ -60,11 +61,11 @@ def once_it_is_set(made: threading.Event, take: Take) -> Take:
 
 
 class LateAnswers:
-    """Sends the answers of a service some time after their requests; other requests are served meanwhile.
+    """Sends the answers of a service some time after their requests, and serves other requests meanwhile.
 
     Args:
         service: The service.
-        seconds: Wall time from a request to its answer.
+        seconds: Wall time in seconds from a request to its answer.
         sending: Called with each answer just before it is sent.
     """
 
@@ -83,9 +84,9 @@ class LateAnswers:
         service.send_response = self._send  # type: ignore[method-assign]
 
     def close(self) -> None:
-        """Send nothing more. Call it before the service is destroyed."""
+        """Stop sending answers. Call this before the service is destroyed."""
         self._closed = True
-        with self._delivering:  # an answer being sent now needs the service
+        with self._delivering:  # an answer that is being sent right now still needs the service
             pass
 
     def _send(self, response: Any, header: Any) -> None:

@@ -1,4 +1,4 @@
-"""The bench: what the methods of a scenario do. One bench serves one look at one subject."""
+"""The bench: implements the methods that a scenario calls. One bench serves one look at one subject."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ if TYPE_CHECKING:
     from autograder.judge.subjects.subject import Subject
 
 SETTLED = {Pace.FAST: 1.0, Pace.REAL_TIME: 3.0}
-"""Seconds without a change of the graph after which a command counts as having made everything."""
+"""Once the graph has not changed for this many seconds, a command is assumed to have made all its endpoints."""
 GRAPH_LOOK = 0.02
-"""Seconds between two queries of the graph that are recorded."""
+"""Seconds between two queries of the graph whose results are recorded."""
 T = TypeVar("T")
 
 
 def _of_a_part(made: T | None) -> T:
-    """Return something that every part has, once a part has begun.
+    """Return something that exists once a part has begun.
 
     Raises:
-        RuntimeError: No part has begun.
+        RuntimeError: No part has begun yet.
     """
     if made is None:
         raise RuntimeError("a scenario begins with bench.part(...)")
@@ -50,9 +50,10 @@ class TestBench:
 
     Attributes:
         in_a_cell: True if the subject runs in a notebook's kernel.
-        parts: The finished parts.
-        doubtful: True if something in a fast look must be confirmed in real time.
-        unmet: True if a run began although its participant had not reported that it discovered the judge's endpoints.
+        parts: The finished parts, in order.
+        doubtful: True if an observation in a fast look must be confirmed in real time.
+        unmet: True if a run began although the subject's participant had not reported that it discovered the judge's
+            endpoints.
     """
 
     __test__ = False  # not a pytest class
@@ -69,7 +70,7 @@ class TestBench:
         misnamed: Mapping[str, Mapping[str, str]] | None = None,
     ) -> None:
         self._misnamed = misnamed or {}
-        """Data about endpoints by their names in the task: the judge uses the subject's name for each, ``real``."""
+        """Misnamed endpoints by their names in the task. The judge uses each under the subject's name, ``real``."""
         self.pace = pace
         self.random = random
         self.reference = reference
@@ -83,7 +84,7 @@ class TestBench:
         self._recorder = Recorder(hurry)
         self._wire: Wire | None = None
         self._decoys: DecoyNodes | None = None
-        # If all runs are in the notebook's process, the process does not tell one run from the next.
+        # If all runs are in the notebook's process, announcements cannot tell one run from the next.
         self._announcements = None if subject.shares_participant else Announcements(domain_id)
         self._older_processes: set[bytes] = set()
         self._open = contextlib.ExitStack()
@@ -97,7 +98,7 @@ class TestBench:
     # --- parts ---------------------------------------------------------------------------------------------
 
     def part(self, name: str, **inputs: Any) -> None:
-        """Begin a part: a fresh run of the subject."""
+        """Begin a part, that is, a new run of the subject."""
         self.stop()
         self._recorder.begin(name, inputs)
         for asked, facts in self._misnamed.items():
@@ -106,7 +107,8 @@ class TestBench:
         if self._wire is None or not (self._subject.shares_participant and self._clean):
             self._close_wire()
             self._wire, self._decoys = Wire(self._domain_id), DecoyNodes(self._domain_id)
-            # One reader for all parts of a participant: a new one would receive the log of earlier parts.
+            # One log reader for all parts of a participant, because a new one would receive the log of earlier parts
+            # again.
             self._log = LogReader(self._wire, self._recorder)
             self._subject.renew()
             self._recorder.take_in = partial(self._wire.take_in, lambda: self._recorder.count)
@@ -118,13 +120,13 @@ class TestBench:
         )
 
     def again(self) -> None:
-        """Begin the last part again: its record so far does not count."""
+        """Begin the last part again, and discard its record so far."""
         self.stop()
         dropped = self.parts.pop()
         self.part(dropped.name, **dropped.inputs)
 
     def keep(self, name: str) -> bool:
-        """In a second look, reuse the first look's record of a part, if the subject ended by itself there."""
+        """In the second look, reuse the first look's record of a part in which the subject ended by itself."""
         known = self.before.part(name) if self.before else Part(name)
         if known.ending is None or patience(known) is not None:
             return False
@@ -133,7 +135,7 @@ class TestBench:
         return True
 
     def stop(self) -> None:
-        """End the subject, keep the record, and remove what the judge made for this part."""
+        """End the subject, keep the record of the part, and remove what the judge made for the part."""
         if not self._in_part:
             return
         self._in_part = False
@@ -141,7 +143,7 @@ class TestBench:
         self._presence.note_how_it_leaves()
         self._presence.note_whom_it_met()
         self._presence.note_short_life()
-        # What Ctrl-C has ended may stay on the graph for a while; a new participant never sees it.
+        # A subject ended by Ctrl-C may stay on the graph for a while; a new participant of the judge's never sees it.
         self._clean = self._subject.ended and not self._recorder.part().of("subject", INTERRUPTED)
         self.parts.append(self._recorder.part())
         self._subject.stop()
@@ -153,7 +155,7 @@ class TestBench:
             raise JudgeFailed(f"the judge's own node failed: {self.wire.failure!r}")
 
     def close(self) -> None:
-        """End everything. Safe to call at any time."""
+        """End everything. This may be called at any time."""
         try:
             self.stop()
         finally:
@@ -166,7 +168,8 @@ class TestBench:
             self._decoys.close()
             self._wire.close()
             self._wire = self._decoys = None
-            self._gone = set()  # removed with its participant; no later subject discovers it
+            # The judge's endpoints disappear together with its participant; no later subject discovers them.
+            self._gone = set()
 
     @property
     def wire(self) -> Wire:
@@ -175,18 +178,18 @@ class TestBench:
 
     @property
     def _presence(self) -> Presence:
-        """The subject's presence on the graph in this part."""
+        """The subject's nodes and endpoints on the graph in this part."""
         return _of_a_part(self._on_graph)
 
     @property
     def _time(self) -> SubjectTime:
-        """The time of the subject in this part."""
+        """The subject's time (simulated or real) in this part."""
         return _of_a_part(self._time_of_part)
 
     # --- the subject ---------------------------------------------------------------------------------------
 
     def start(self, *arguments: Any, **options: Any) -> None:
-        """Start the subject, once it knows which endpoints the judge has added to the graph and removed from it."""
+        """Start the subject, once its participant knows which of the judge's endpoints are new and which are gone."""
         if (self._there or self._gone) and not self._subject.knows(there=self._there, gone=self._gone):
             self.unmet = True
         if self._announcements is not None:
@@ -194,7 +197,7 @@ class TestBench:
         self._subject.start(self._recorder, arguments, options)
 
     def _has_announced_itself(self) -> bool:
-        """True if a process that did not exist before the subject's start has made a node."""
+        """Return True if a process that did not exist before the subject's start has made a node."""
         return self._announcements is not None and bool(self._announcements.heard() - self._older_processes)
 
     def release(self) -> None:
@@ -202,7 +205,7 @@ class TestBench:
         self._subject.release()
 
     def press_ctrl_c(self, within: float) -> bool:
-        """Interrupt the subject and wait until it has ended; the state of the graph is recorded before."""
+        """Interrupt the subject and wait until it has ended. The state of the graph is recorded first."""
         if self._subject.ended:
             return False
         self._presence.note_interface()
@@ -219,7 +222,7 @@ class TestBench:
         return self._recorder.wait(lambda: self._subject.ended, within)
 
     def await_endpoint(self, role: str, name: str) -> bool:
-        """Wait until the subject's endpoint exists and is matched; release the subject if it makes it once spun."""
+        """Wait until the subject's endpoint exists and is matched; release a subject that makes it only when spun."""
         at = self._real(name)
         there = self._presence.await_endpoint(role, at)
         if there or not self._subject.may_make_more:
@@ -228,15 +231,15 @@ class TestBench:
         return self._presence.await_endpoint(role, at)
 
     def _real(self, name: str) -> str:
-        """Return the subject's name for the endpoint that the task calls ``name``."""
+        """Return the name that the subject uses for the endpoint that the task calls ``name``."""
         return self._misnamed[name]["real"] if name in self._misnamed else name
 
     def await_node(self) -> bool:
-        """Wait for a node of the subject on the graph; a subject that ends may have had one before."""
+        """Wait for a node of the subject on the graph. It counts if a subject that ended had one."""
         return self._presence.await_node()
 
     def await_sign_of_life(self, within: float) -> bool:
-        """Wait until the subject has said something or has a node on the graph; gives up when the subject has ended."""
+        """Wait until the subject has printed something or has a node on the graph; give up if the subject has ended."""
         return self._presence.await_sign_of_life(within)
 
     def await_any_endpoint(self, roles: tuple[str, ...]) -> graph.Interface:
@@ -244,7 +247,7 @@ class TestBench:
         return self._presence.await_interface(lambda interface: any(interface[role] for role in roles))
 
     def watch_graph(self, condition: Callable[[Evidence], bool], within: float) -> bool:
-        """Wait likewise for something on the graph; each change of the graph is recorded."""
+        """Wait until a condition on the graph holds. Each change of the graph is recorded."""
 
         def look() -> Evidence:
             self._presence.note_interface()
@@ -258,7 +261,7 @@ class TestBench:
     # --- counterparts --------------------------------------------------------------------------------------
 
     def listen(self, topic: str, type_name: str, *, latched: bool = False) -> None:
-        """Subscribe as the course's listener does, or as a late listener that requests earlier messages."""
+        """Subscribe as the course's listener does or, if ``latched``, as a late listener that wants old messages."""
         at = self._real(topic)
         subscription = RecordedSubscription(
             self.wire, self._recorder, topic, type_name, at=at, latched=latched
@@ -267,7 +270,7 @@ class TestBench:
         self._open.callback(self.wire.node.destroy_subscription, subscription.subscription)
 
     def seen(self) -> Part:
-        """Return the events of this part so far."""
+        """Return the events of this part that were recorded so far."""
         return self._recorder.part()
 
     def heard(self, topic: str) -> int:
@@ -283,12 +286,12 @@ class TestBench:
         return publisher
 
     def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> None:
-        """Put a node on the graph, until the next part plants others; a run begins once the subject knows the node."""
+        """Put a node on the graph until the next part plants others. A run begins once the subject knows it."""
         assert self._decoys is not None
         self._there |= self._decoys.plant(name, publishes=publishes, subscribes=subscribes)
 
     def serve(self, service: str, type_name: str, answer: Answer, *, hold: int = 0) -> RecordedServer:
-        """Serve until the part ends; the answer to request number ``hold`` waits for its release."""
+        """Serve until the part ends. The answer to request number ``hold`` waits until it is released."""
         self._get_ready_to_serve(service)
         at = self._real(service)
         server = RecordedServer(self.wire, self._recorder, service, type_name, answer, at=at, hold=hold)
@@ -323,7 +326,7 @@ class TestBench:
         return caller
 
     def serve_action(self, action: str, type_name: str, **how: Any) -> ScriptedActionServer:
-        """Serve an action whose every step the scenario decides, until the part ends."""
+        """Serve an action until the part ends. The scenario decides each step of its server."""
         self._get_ready_to_serve(action)
         server = ScriptedActionServer(
             self.wire,
@@ -344,7 +347,7 @@ class TestBench:
         self._recorder.record("serving", name)
 
     def _announce(self, services: Iterable[str]) -> None:
-        # The judge's own participant may also still see removed endpoints.
+        # The judge's own participant may still see removed endpoints, so those are subtracted.
         self._there |= graph.server_endpoints(self.wire.node, services) - self._gone
 
     # --- time ----------------------------------------------------------------------------------------------
@@ -357,11 +360,11 @@ class TestBench:
         quiet: float | None = None,
         step: float = STEP,
     ) -> bool:
-        """Let ``seconds`` of the subject's time pass, or fewer if ``until`` holds or nothing happens."""
+        """Let ``seconds`` of the subject's time pass; stop earlier if ``until`` holds or nothing happens."""
         return self._time.run(seconds, until=until, quiet=quiet, step=step)
 
     def pass_time(self, seconds: float, role: str, name: str) -> None:
-        """Let simulated seconds pass for a subject in real time; real ones if it does not follow."""
+        """Let simulated seconds pass for a subject in real time; if it does not follow, let real seconds pass."""
         self._time.lend(seconds, role, self._real(name))
 
     def let_wait(self, seconds: float) -> None:
@@ -373,18 +376,19 @@ class TestBench:
         self._time.settle()
 
     def await_attention(self) -> None:
-        """Query each node that the judge is matched with, by a client announced after the judge's publishers."""
+        """Query each node that the judge is matched with, from a client announced after the judge's publishers."""
         self._time.await_attention()
 
     def doubt(self) -> None:
-        """Require that this look is confirmed in real time."""
+        """Require that this look is confirmed by a second one in real time."""
         self.doubtful = True
 
     def note_whether_it_spins(self) -> None:
-        """Request a parameter from each node of the subject; record which node does not answer."""
+        """Request a parameter from each node of the subject, and record which node does not answer."""
         nodes = self._presence.counterparts()
         if not nodes:
-            # A program that has destroyed its nodes is ending: its end tells more than their silence.
+            # A program that has destroyed its nodes is ending: how it ends says more than that its nodes do not
+            # answer.
             self.await_end(MATCH)
         for node in nodes:
             if not self._subject.ended and not answers(self.wire, self._recorder, node):
@@ -392,7 +396,7 @@ class TestBench:
                 self.note_where_it_hangs()
 
     def note_where_it_hangs(self) -> None:
-        """Record the subject's stacks, which ends a command; do it last in a part."""
+        """Record the stacks of the subject's threads. This ends a command, so do it last in a part."""
         if not self._subject.ended:
             self._presence.note_interface()
             self._recorder.record("stack", "subject", text=self._subject.stack())
@@ -400,20 +404,18 @@ class TestBench:
     def wait_until(
         self, condition: Callable[[Evidence], bool], within: float, *, quiet: float | None = None
     ) -> bool:
-        """Wait for something in the evidence of this part; gives up when the subject has ended."""
+        """Wait until a condition on the evidence of this part holds; give up if the subject has ended."""
         return self._wait_for(condition, self._evidence, within, quiet=quiet)
 
     def _wait_for(
         self, condition: Callable[[Evidence], bool], look: Callable[[], Evidence], within: float, **how: Any
     ) -> bool:
-        """True if a condition held at its last check; it is not checked again, because it need not hold for ever."""
+        """Return True if the condition held when last checked; it is not checked again, as it may have changed."""
         held = False
 
         def over() -> bool:
             nonlocal held
-            ended = (
-                self._subject.ended
-            )  # before the evidence, so that the evidence has everything before the end
+            ended = self._subject.ended  # This is read before the evidence, so that the evidence has everything that came before the end.
             held = condition(look())
             return held or ended
 
@@ -435,6 +437,6 @@ class TestBench:
         self._recorder.record("type", service, type=made, same=seen == expected, fields=service_fields(like))
 
     def note_its_log(self) -> None:
-        """Record each different text of its log once, for the reference output."""
+        """Record each different text that the subject logs once, for the reference output."""
         for text in dict.fromkeys(event.data["text"] for event in self._recorder.part().of("log")):
             self._recorder.record("said", "log", text=text)

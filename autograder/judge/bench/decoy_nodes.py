@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 
 class DecoyNodes:
-    """Participants for planted nodes, one for each node that exists at the same time.
+    """The judge's planted nodes, each with a participant of its own.
 
-    Each node needs its own participant, because in one participant Fast DDS accepts only one type for a topic. The
-    participants stay from part to part, because a persistent subject needs a fifth of a second or more to discover a
-    new one. A participant lives as long as it has a node (rmw_fastrtps), so a node is removed only when the next one
-    exists.
+    Each node needs its own participant, because Fast DDS accepts only one type for a topic in one participant.
+    Participants are kept from part to part, because a subject that keeps running needs a fifth of a second or more to
+    discover a new one. A participant exists only as long as it has a node (rmw_fastrtps), so an old node is removed
+    only when the next one exists.
     """
 
     def __init__(self, domain_id: int) -> None:
@@ -36,10 +36,10 @@ class DecoyNodes:
     def plant(
         self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]
     ) -> set[Endpoint]:
-        """Put a node with these topics on the graph, with the usual QoS; nothing spins it.
+        """Put a node with these topics on the graph, with the usual QoS. Nothing spins the node.
 
         Returns:
-            The node's endpoints on these topics.
+            The identifiers of the node's endpoints on these topics.
         """
         if self._planted == len(self._decoys):
             self._decoys.append(_Decoy(self._domain_id))
@@ -48,7 +48,7 @@ class DecoyNodes:
         return decoy.plant(name, publishes, subscribes)
 
     def clear(self) -> None:
-        """Remove the endpoints from the graph; the nodes are replaced by the next planted ones."""
+        """Remove the endpoints from the graph. The nodes stay until the next planted ones replace them."""
         for decoy in self._decoys[: self._planted]:
             decoy.clear()
         self._planted = 0
@@ -60,7 +60,7 @@ class DecoyNodes:
 
 
 class _Decoy:
-    """A participant and its present node."""
+    """A participant of the judge with its current planted node."""
 
     def __init__(self, domain_id: int) -> None:
         self._context = Context()

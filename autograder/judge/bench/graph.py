@@ -1,6 +1,6 @@
-"""Nodes and endpoints on the graph other than the judge's: the public face of a subject.
+"""Nodes and endpoints on the ROS graph other than the judge's, that is, those of the subject.
 
-rclpy has no event for changes of the graph, so these queries are polled; a query takes well under a millisecond.
+rclpy has no event for changes of the graph, so these queries are polled. A query takes well under a millisecond.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ RCLError = rclpy_implementation.RCLError
 ROLES = ("publisher", "subscription", "service", "client", "action_server", "action_client")
 
 _FAST_DDS = b"\x01\x0f"
-"""The first bytes of Fast DDS identifiers (DDSI-RTPS, vendor ids)."""
+"""The vendor id with which identifiers of Fast DDS begin (DDSI-RTPS, vendor ids)."""
 _EVERY_NODE_HAS = frozenset({"/rosout", "/parameter_events", "/clock"})
 _EVERY_NODE_SERVES = (
     "/describe_parameters",
@@ -37,7 +37,7 @@ _EVERY_NODE_SERVES = (
 
 @dataclass(frozen=True)
 class NodeName:
-    """A node of the subject."""
+    """The name and namespace of a node of the subject."""
 
     name: str
     namespace: str
@@ -49,16 +49,16 @@ class NodeName:
 
 
 Interface = dict[str, dict[str, str]]
-"""Role -> {name: type}; if a name has several types they are joined with a comma."""
+"""Endpoints as role -> {name: type}. If a name has several types, they are joined with a comma."""
 
 
 def subject_nodes(judge: Node, keeper: str) -> list[NodeName]:
-    """Return every node on the domain except the judge's and one keeper, each name once.
+    """Return every node on the domain, each name once, except the judge's and one keeper.
 
     Args:
         judge: The judge's node.
-        keeper: The name of the node that a notebook's check makes; empty if it makes none. One node of that name is
-            ignored; a second one belongs to the subject, however it learned the name.
+        keeper: The name of the node with which a notebook's check keeps its participant alive; empty if it has none.
+            One node with that name is ignored. A second one belongs to the subject, however it learned the name.
     """
     own = judge.get_name()
     seen = judge.get_node_names_and_namespaces()
@@ -71,7 +71,7 @@ def subject_nodes(judge: Node, keeper: str) -> list[NodeName]:
 def survey(judge: Node) -> Interface:
     """Return the endpoints of all of the subject's nodes, without those that every node has.
 
-    A keeper has no other endpoints, so a node with its name hides none.
+    Keepers need no exception here: they have only endpoints that every node has.
     """
     found: Interface = {role: {} for role in ROLES}
     for end in topic_ends(judge):
@@ -90,9 +90,9 @@ class TopicEnd:
 
     Attributes:
         role: ``"publisher"`` or ``"subscription"``.
-        topic: The topic's full name.
-        type_name: Such as ``"std_msgs/msg/String"``.
-        process: The lower 16 bits of the id of its process; 0 if unknown.
+        topic: The full name of the topic.
+        type_name: The message type, such as ``"std_msgs/msg/String"``.
+        process: The lower 16 bits of the process id; 0 if unknown.
     """
 
     role: str
@@ -104,8 +104,8 @@ class TopicEnd:
 def topic_ends(judge: Node) -> list[TopicEnd]:
     """Return the subject's publishers and subscriptions.
 
-    The query is by topic: if two nodes have the same name, a query by node is answered for only one of them. An
-    endpoint may also be known before its node, because the two are announced separately.
+    The query is by topic, because if two nodes have the same name, a query by node returns only one of them. Besides,
+    an endpoint may be known before its node, because the two are announced separately.
     """
     own = judge.get_name()
     return [
@@ -122,17 +122,17 @@ def topic_ends(judge: Node) -> list[TopicEnd]:
 
 
 def _process(gid: bytes) -> int:
-    """Return the process in an endpoint's identifier: Fast DDS writes it into the fifth and sixth byte."""
+    """Return the process id in an endpoint's identifier. Fast DDS writes it into the fifth and sixth byte."""
     return int.from_bytes(gid[4:6], "little") if gid[:2] == _FAST_DDS else 0
 
 
 def counterparts(judge: Node, heard: list[str], spoken: list[str]) -> list[NodeName]:
-    """Return the subject's nodes at the other end of topics, once their real names are known.
+    """Return the subject's nodes that use these topics, as soon as their names are known.
 
     Args:
         judge: The judge's node.
-        heard: The topics that the judge subscribes to.
-        spoken: The topics that the judge publishes on.
+        heard: The topics to which the judge subscribes.
+        spoken: The topics on which the judge publishes.
     """
     infos = [info for topic in heard for info in judge.get_publishers_info_by_topic(topic)]
     infos += [info for topic in spoken for info in judge.get_subscriptions_info_by_topic(topic)]
@@ -148,9 +148,10 @@ def owners(judge: Node, role: str, name: str) -> list[NodeName]:
 
 
 def shows(judge: Node, marker: str) -> bool:
-    """True if a node is known to have both a publisher and a subscription of this name.
+    """Return True if a node is known to have both a publisher and a subscription with this name, the marker's.
 
-    They are made last, so they are discovered last: endpoints of a kind are announced in order (DDSI-RTPS, 8.5.4).
+    A marker is made after everything else, so it is discovered last: endpoints of one kind are announced in order
+    (DDSI-RTPS, 8.5.4).
     """
     return any(
         marker in dict(_ask(Node.get_publisher_names_and_types_by_node, judge, node))
@@ -188,14 +189,16 @@ def _add(found: dict[str, str], name: str, types: list[str]) -> None:
 
 
 Endpoint = tuple[str, str]
-"""A topic of the middleware, and the identifier (DDSI-RTPS, 8.2.4.1) of a reader or writer on it, as hexadecimal."""
+"""An endpoint: its topic in the middleware, and the identifier (DDSI-RTPS, 8.2.4.1) of the reader or writer, in
+hexadecimal.
+"""
 
 
 def server_endpoints(node: Node, services: Iterable[str]) -> set[Endpoint]:
-    """Return the endpoints of a node's servers.
+    """Return the endpoints of these services on a node that serves them.
 
-    A service is a reader of requests and a writer of replies (rmw_fastrtps_shared_cpp, namespace_prefix.cpp), and a
-    client considers it ready when it knows both.
+    A service consists of a reader of requests and a writer of replies (rmw_fastrtps_shared_cpp,
+    namespace_prefix.cpp). A client considers the service ready when it knows both.
 
     Args:
         node: The node.
@@ -205,18 +208,18 @@ def server_endpoints(node: Node, services: Iterable[str]) -> set[Endpoint]:
 
 
 def topic_endpoints(node: Node, topics: Iterable[str]) -> set[Endpoint]:
-    """Return the endpoints of a node's publishers and subscriptions on topics, given by their full names."""
+    """Return the endpoints of a node's publishers and subscriptions on these topics, given by full names."""
     return _endpoints(node, [f"rt{name}" for name in topics])
 
 
 def _endpoints(node: Node, topics: Iterable[str]) -> set[Endpoint]:
-    """Return a node's endpoints, as the identifiers that every participant of the domain knows.
+    """Return a node's endpoints, with identifiers that are the same for every participant of the domain.
 
-    Names are not enough: an endpoint of an earlier run is removed, and its name is used again.
+    Names are not enough, because an endpoint of an earlier run may be removed and its name used again.
 
     Args:
         node: The node.
-        topics: The middleware's names of topics.
+        topics: The names of the topics in the middleware.
     """
     return {
         (topic, bytes(info.endpoint_gid).hex())

@@ -1,6 +1,7 @@
-"""ROS interfaces by name, messages as plain data, and type hashes.
+"""ROS interfaces found by name, messages as plain data, and type hashes.
 
-A type hash is DDS discovery's description of the fields of an interface, whatever its package's name (REP-2016).
+A type hash is how DDS discovery describes the fields of an interface. It does not depend on the package's name alone
+(REP-2016).
 """
 
 from __future__ import annotations
@@ -20,11 +21,11 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 _SIDES = {"request": "rq{service}Request", "response": "rr{service}Reply"}
-"""The DDS topics of a service (rmw_fastrtps), each with the hash of one side."""
+"""The DDS topics of a service in rmw_fastrtps. Each announces the type hash of one side."""
 
 
 class UnknownInterface(LookupError):
-    """The interface is not installed for this Python."""
+    """The interface is not installed in this Python environment."""
 
 
 def interface(type_name: str) -> Any:
@@ -43,14 +44,14 @@ def interface(type_name: str) -> Any:
 
 
 def service_fields(type_name: str) -> dict[str, dict[str, str]]:
-    """Return the fields of a service type in order: ``{"request": {name: type}, "response": {name: type}}``."""
+    """Return the fields of a service type, in order: ``{"request": {name: type}, "response": {name: type}}``."""
     service = interface(type_name)
     sides = {"request": service.Request, "response": service.Response}
     return {side: dict(message.get_fields_and_field_types()) for side, message in sides.items()}
 
 
 def to_data(message: Any) -> Any:
-    """Return a message as JSON-able data: nested dicts, lists, numbers, text; bytes as a list of numbers."""
+    """Return a message as data that JSON can contain: nested dicts, lists, numbers, text; bytes become lists."""
     if hasattr(message, "get_fields_and_field_types"):
         return {field: to_data(getattr(message, field)) for field in message.get_fields_and_field_types()}
     if isinstance(message, (bytes, bytearray)):
@@ -61,10 +62,10 @@ def to_data(message: Any) -> Any:
 
 
 def filled(message: Any, fields: Mapping[str, Any]) -> Any:
-    """Return the message with these fields set; a mapping stands for a message, even inside a list.
+    """Set fields of a message and return the message. A mapping stands for a message, even inside a list.
 
     Raises:
-        AttributeError: The message has no field of that name.
+        AttributeError: The message has no field with that name.
     """
     for name, value in fields.items():
         present = getattr(message, name)
@@ -79,7 +80,7 @@ def filled(message: Any, fields: Mapping[str, Any]) -> Any:
 
 
 def _element_type(message: Any, field: str) -> Any:
-    """Return the class of the messages in a field such as ``sequence<rcl_interfaces/Parameter>``."""
+    """Return the class of the elements of a field such as ``sequence<rcl_interfaces/Parameter>``."""
     package, name = re2.findall(r"(\w+)/(\w+)", message.get_fields_and_field_types()[field])[0]
     return interface(f"{package}/msg/{name}")
 
@@ -88,7 +89,7 @@ def _element_type(message: Any, field: str) -> Any:
 
 
 def served_hashes(judge: Node, service: str) -> dict[str, str]:
-    """Return the type hashes of a service's request and response, as its server announces them."""
+    """Return the type hashes of a service's request and response, as the server announces them."""
     readers = judge.get_subscriptions_info_by_topic(_SIDES["request"].format(service=service), no_mangle=True)
     writers = judge.get_publishers_info_by_topic(_SIDES["response"].format(service=service), no_mangle=True)
     found = {"request": readers, "response": writers}
@@ -101,11 +102,11 @@ def served_hashes(judge: Node, service: str) -> dict[str, str]:
 
 
 def expected_hashes(type_name: str, package: str) -> dict[str, str]:
-    """Return the hashes that a service type would have in another package.
+    """Return the type hashes that a service type would have if another package defined it.
 
     Args:
         type_name: An installed service type, such as ``"my_robot_interfaces/srv/AddTwoInts"``.
-        package: The other package.
+        package: The name of the other package.
 
     Raises:
         LookupError: The type is not installed.
@@ -125,7 +126,7 @@ def expected_hashes(type_name: str, package: str) -> dict[str, str]:
 
 
 def type_hash(description: dict[str, Any]) -> str:
-    """Return the RIHS01 hash of a type description: its JSON without default values, digested with SHA-256."""
+    """Return the RIHS01 hash of a type description: the SHA-256 of its JSON without default values."""
     described = description["type_description"]
     fields = [{key: value for key, value in f.items() if key != "default_value"} for f in described["fields"]]
     bare = {**description, "type_description": {**described, "fields": fields}}

@@ -1,8 +1,7 @@
-"""Time limits for a student's program that stretch while the machine is busy.
+"""Time limits for a student's program that get longer while the machine is busy.
 
-A limit that is generous on a quiet machine is too short if thirty processes wait for a processor: then a right
-program is late. So a second counts less while the machine is busy. It is still a limit: a wait lasts at most
-``SLOWEST`` times as long.
+A limit that is generous on an idle machine is too short if thirty processes wait for a processor: a right program
+would be late. So a second of the limit lasts longer while the machine is busy, up to ``SLOWEST`` seconds.
 """
 
 from __future__ import annotations
@@ -16,19 +15,19 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 CROWDED = 4.0
-"""The number of runnable threads for each processor that needs no longer limits."""
+"""The number of runnable threads per processor up to which limits need not be longer."""
 SLOWEST = 3.0
-"""The most seconds that a second of patience lasts."""
+"""The maximum length of a second of patience, in seconds."""
 _LOOK_EVERY = 0.1
 _LOAD = Path("/proc/loadavg")
 
 
 class Patience:
-    """A number of seconds that is used up more slowly while the machine is busy.
+    """A time limit that runs more slowly while the machine is busy.
 
     Args:
-        seconds: The time limit on an idle machine.
-        slowness: Returns how long a second of patience lasts now, in seconds.
+        seconds: The time limit in seconds, on an idle machine.
+        slowness: Returns how many seconds a second of patience lasts at the moment.
         now: A monotonic clock, in seconds.
     """
 
@@ -44,14 +43,14 @@ class Patience:
         self.restart()
 
     def restart(self) -> None:
-        """Begin again."""
+        """Start the time limit again."""
         self._used = 0.0
         self._at = self._looked = self._now()
         self._factor = 1.0
 
     @property
     def left(self) -> float:
-        """The remaining seconds of patience; zero or less at the end."""
+        """The remaining seconds of patience; zero or negative if the limit is reached."""
         now = self._now()
         if now - self._looked >= _LOOK_EVERY:
             self._factor = self.slowness()
@@ -62,7 +61,7 @@ class Patience:
 
 
 def machine_slowness() -> float:
-    """Return how long a second of patience lasts now, in seconds."""
+    """Return how many seconds a second of patience lasts at the moment on this machine."""
     return slowness(runnable_threads(), os.cpu_count() or 1)
 
 
@@ -75,10 +74,10 @@ def runnable_threads() -> int:
 
 
 def slowness(runnable: float, processors: int) -> float:
-    """Return how long a second of patience lasts, in seconds.
+    """Return how many seconds a second of patience lasts with this load.
 
     Args:
-        runnable: Threads that run or could run if a processor were free.
+        runnable: The number of threads that run or wait for a processor.
         processors: The number of processors.
     """
     return min(SLOWEST, max(1.0, runnable / (CROWDED * processors)))

@@ -1,6 +1,7 @@
-"""The subject on the graph in one part: its endpoints and nodes, as they come and go.
+"""The subject's endpoints and nodes on the ROS graph in one part, recorded as they come and go.
 
-A program that ends takes its endpoints along, so every observation is recorded at once and never repeated.
+The endpoints of a program disappear when it ends. So everything that is seen is recorded at once, and never queried
+again.
 """
 
 from __future__ import annotations
@@ -23,11 +24,11 @@ if TYPE_CHECKING:
 
 
 class Settling:
-    """Tells when a command's graph has not changed for a while, once it has anything on it.
+    """Tells when a command has something on the graph, and this has not changed for a while.
 
     Args:
-        seconds: Seconds of patience (:mod:`autograder.judge.bench.patience`): on a busy machine a program may have
-            made its node, and wait for a processor before it makes the endpoints.
+        seconds: The length of that while, in seconds of patience (:mod:`autograder.judge.bench.patience`). On a busy
+            machine a program may have made its node, and still wait for a processor before it makes the endpoints.
     """
 
     def __init__(self, seconds: float) -> None:
@@ -35,7 +36,7 @@ class Settling:
         self._patience = Patience(seconds)
 
     def unchanged(self, interface: graph.Interface, nodes: int) -> bool:
-        """True if the graph is the same as ``seconds`` ago, and has any nodes."""
+        """Return True if the graph has nodes and is the same as ``seconds`` ago."""
         state = (nodes, interface)
         if state != self._last:
             self._last = state
@@ -44,24 +45,24 @@ class Settling:
 
 
 APPEAR = 12.0
-"""Seconds of patience within which a running subject must appear on the graph.
+"""Time limit, in seconds of patience, for a running subject to appear on the graph.
 
-Generous: a slow start is not wrong, and a program needs a quarter of a second.
+It is generous, because a slow start is not a mistake; a program usually needs a quarter of a second.
 """
 AT_WORK = 2
-"""How often in a run the waiting time is renewed because the subject has started more processes: a command
-may build its package before it runs the program. Limited, because a program may fork without end.
+"""The number of times in a run that this limit starts again because the subject started more processes: a command may
+build its package before it runs the program. The number is limited because a program may fork without end.
 """
 MATCH = 5.0
-"""Seconds within which two compatible endpoints must be matched."""
+"""Time limit in seconds for two compatible endpoints to be matched."""
 GRAPH_POLL = 0.004
-"""Seconds between two queries of the graph, which has no event to wait for."""
+"""Seconds between two queries of the graph; the graph has no event to wait for."""
 START_POLL = 0.02
-"""The same while a process starts, or a build runs, and no node has been announced yet."""
+"""Seconds between two queries while a process starts or a build runs, as long as no node was announced."""
 
 
 class Presence:
-    """The subject's presence on the graph, as the judge's node sees it.
+    """The subject's nodes and endpoints on the graph, as the judge's node sees them.
 
     Attributes:
         subscriptions: The judge's subscriptions by the real names of their topics.
@@ -69,10 +70,10 @@ class Presence:
 
     Args:
         node: The judge's node.
-        recorder: The recorder of observations.
+        recorder: Records what is seen.
         subject: The subject.
-        settled: Seconds without a change of the graph after which a command counts as having made everything.
-        announced: Returns True if a process of the subject has made a node, as far as that can be heard.
+        settled: If the graph has not changed for this many seconds, a command is assumed to have made everything.
+        announced: Returns True if a process of the subject is known to have made a node.
     """
 
     def __init__(
@@ -93,11 +94,11 @@ class Presence:
         self._again = AT_WORK
 
     def nodes(self) -> list[graph.NodeName]:
-        """The subject's present nodes."""
+        """The subject's current nodes."""
         return graph.subject_nodes(self._node, self._subject.keeper)
 
     def counterparts(self) -> list[graph.NodeName]:
-        """Return the subject's nodes, first those that the judge is matched with, once their names are known."""
+        """Return the subject's nodes once their names are known, those matched with the judge's endpoints first."""
         found: list[graph.NodeName] = []
 
         def named() -> bool:
@@ -112,7 +113,7 @@ class Presence:
     # --- waiting -------------------------------------------------------------------------------------------
 
     def await_endpoint(self, role: str, name: str) -> bool:
-        """Wait until the subject's endpoint is on the graph, and matched with the judge's endpoint, if there is one."""
+        """Wait until the subject's endpoint is on the graph and matched with the judge's endpoint, if there is one."""
         self.await_interface(
             lambda interface: name in interface.get(role, {}) or name in self._met().get(role, {})
         )
@@ -125,14 +126,14 @@ class Presence:
         }
         counterpart = counterparts.get(role, {}).get(name)
         if counterpart is None or counterpart.type_name != self._recorder.part().endpoints(role)[name]:
-            return True  # the judge has no endpoint to match with
+            return True  # The judge has no endpoint that could match.
         return self._recorder.wait(
             lambda: counterpart.matched > 0 or self._subject.ended or self._mismatched(counterpart.topic),
             MATCH,
         )
 
     def await_node(self) -> bool:
-        """Wait for a node of the subject on the graph; a subject that ends may have had one before."""
+        """Wait for a node of the subject on the graph. It counts if a subject that ended had one."""
         nodes: list[graph.NodeName] = []
 
         def there() -> bool:
@@ -144,7 +145,7 @@ class Presence:
         return bool(nodes) or self.note_short_life()
 
     def await_sign_of_life(self, within: float) -> bool:
-        """Wait until the subject has said something or has a node on the graph; gives up when the subject has ended."""
+        """Wait until the subject has printed something or has a node on the graph; give up if the subject has ended."""
         alive = False
 
         def there() -> bool:
@@ -157,11 +158,11 @@ class Presence:
         return alive
 
     def await_interface(self, there: Callable[[graph.Interface], bool]) -> graph.Interface:
-        """Wait for something on the graph, until the subject has ended or has certainly made everything.
+        """Wait until a condition on the graph holds, the subject has ended, or it has certainly made everything.
 
         Returns:
-            The interface at the last query. It is recorded as it was seen and not queried again: a subject that ends
-                takes its endpoints along.
+            The endpoints at the last query. They are recorded as they were seen and not queried again, because the
+            endpoints of a program disappear when it ends.
         """
         settled = Settling(self._settled)
         interface: graph.Interface = {}
@@ -169,7 +170,7 @@ class Presence:
         def over() -> bool:
             nonlocal interface
             marker = self._subject.marker
-            # Checked before the endpoints: everything made before the marker is announced before it.
+            # The marker is checked before the endpoints, because everything made before it is announced before it.
             all_made = marker is not None and graph.shows(self._node, marker)
             interface = graph.survey(self._node)
             if there(interface) or self._subject.ended or all_made:
@@ -181,9 +182,10 @@ class Presence:
         return interface
 
     def _await_appearance(self, condition: Callable[[], bool]) -> None:
-        """Wait for the first sign of a started subject; the time begins again while it keeps starting processes."""
+        """Wait for the first sign of a started subject; the time limit restarts while it keeps starting processes."""
         patience = Patience(APPEAR)
-        # A command's runner starts the command at once, so a process that begins in the second half shows work.
+        # A command's runner starts the command at once. So a process that begins in the second half of the time shows
+        # that work goes on.
         earlier: frozenset[int] | None = None
 
         def overdue() -> bool:
@@ -203,7 +205,7 @@ class Presence:
         self._wait_on_graph(lambda: condition() or overdue(), (AT_WORK + 2) * APPEAR)
 
     def _wait_on_graph(self, condition: Callable[[], bool], within: float) -> None:
-        """Poll the graph, and frequently only once a process of the subject has made a node, if that can be heard."""
+        """Poll the graph: often once a process of the subject is known to have made a node, and rarely before that."""
         patience = Patience(within)
         held = False
 
@@ -221,10 +223,10 @@ class Presence:
     # --- writing down --------------------------------------------------------------------------------------
 
     def note_interface(self, interface: graph.Interface | None = None) -> None:
-        """Record the subject's endpoints, if they have changed.
+        """Record the subject's endpoints if they have changed.
 
         Args:
-            interface: The endpoints as seen a moment ago; without it, as they are now.
+            interface: The endpoints as seen a moment ago. If not given, they are queried now.
         """
         nodes = [node.full for node in self.nodes()]
         ends = [[e.role, e.topic, e.process] for e in graph.topic_ends(self._node)]
@@ -234,9 +236,9 @@ class Presence:
             self._recorder.record("interface", "graph", **seen)
 
     def note_how_it_leaves(self) -> None:
-        """Wait for the end of a program whose endpoints disappeared from the graph, because it is ending.
+        """If a program's endpoints have disappeared from the graph because it is ending, wait for its end.
 
-        The exit code and last words must not depend on the moment of the query.
+        Otherwise the recorded exit code and last lines would depend on the moment of the query.
         """
         surveys = self._recorder.part().of("interface", "graph")
         had_endpoints = [any(survey.data[role] for role in graph.ROLES) for survey in surveys]
@@ -244,10 +246,10 @@ class Presence:
             self._recorder.wait(lambda: self._subject.ended, MATCH)
 
     def note_short_life(self) -> bool:
-        """Record that a subject that has ended had made a node, if the graph never showed it.
+        """If a subject has ended and the graph never showed its node, record that it had made one.
 
         Returns:
-            True if it had made one. The speed of the graph must not decide that.
+            True if the subject had made a node. Whether it is found must not depend on the speed of discovery.
         """
         if not self._subject.ended or not self._announced():
             return False

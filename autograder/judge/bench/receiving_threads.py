@@ -1,8 +1,9 @@
 """Waits until the middleware's threads have passed on everything that had arrived.
 
-A program's end is known through a pipe and its messages through the middleware, so the end may be known first, while
-the thread that received a message still waits for a processor. A message wakes its receiver at once (futex(7),
-udp(7)): a thread that sleeps has nothing left to do, and one that has slept since has done it.
+The judge learns of a program's end through a pipe, and of its messages through the middleware. So it may learn of the
+end first, while the thread that received a message still waits for a processor. A message wakes its receiver at once
+(futex(7), udp(7)). So a thread that sleeps has nothing left to do, and a thread that has slept since the end has done
+it.
 """
 
 from __future__ import annotations
@@ -20,16 +21,16 @@ if TYPE_CHECKING:
 PAUSE = 0.001
 """Seconds between two checks of a thread."""
 TURNS = 2
-"""The number of rounds: a sleeping thread may wait for another one, which finishes after its own round."""
+"""The number of rounds to wait. A sleeping thread may depend on another thread, which finishes after its own round."""
 
 
 @dataclass(frozen=True)
 class _Thread:
-    """A thread, as the kernel describes it (proc_pid_status(5)).
+    """The state of a thread, as the kernel reports it (proc_pid_status(5)).
 
     Attributes:
-        awake: True if it runs, or waits for a processor.
-        slept: How often it has gone to sleep.
+        awake: True if the thread runs, or waits for a processor.
+        slept: The number of times that the thread has gone to sleep.
     """
 
     awake: bool
@@ -58,12 +59,12 @@ def _await_turn(patience: Patience) -> bool:
 
 
 def _look(tasks: Iterable[int]) -> dict[int, _Thread]:
-    """Return the threads that still exist."""
+    """Return the state of each thread that still exists."""
     found: dict[int, _Thread] = {}
     for task in tasks:
         try:
             lines = Path(f"/proc/self/task/{task}/status").read_text().splitlines()
-        except OSError:  # it has ended meanwhile
+        except OSError:  # the thread has ended meanwhile
             continue
         told = dict(line.split(":", 1) for line in lines)
         found[task] = _Thread(told["State"].split()[0] in "RD", int(told.get("voluntary_ctxt_switches", 0)))

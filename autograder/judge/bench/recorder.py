@@ -1,4 +1,4 @@
-"""The record of everything that the judge sees, in order, from any thread."""
+"""The record of everything that the judge sees, in order of time. Any thread may write to it."""
 
 from __future__ import annotations
 
@@ -13,38 +13,39 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 MAX_EVENTS = 20_000
-"""The most events of one part, so that a flood does not fill the memory."""
+"""The maximum number of events in one part, so that a flood does not fill the memory."""
 MAX_SAID = 1_000_000
-"""The most characters of output and log of one part. If a subject says more, the last part is kept."""
+"""The maximum number of characters of output and log in one part. If a subject says more, the newest are kept."""
 MAX_TEXT = 50_000
-"""The most characters of a text, and items of a list: far more than any message of the course, and just enough for a
-stack.
+"""The maximum number of characters in a text, and of items in a list: far more than in any message of the course, and
+just enough for a stack.
 """
 MAX_TEXTS = 20_000_000
-"""The most characters of all texts of a part; of later texts only the beginning is kept."""
+"""The maximum number of characters in all texts of a part. Of later texts only the beginning is kept."""
 BEGINNING = 100
 ITEM = 32
-"""Characters that each item of a list counts: its entry and a number take as much memory."""
+"""The number of characters that each item of a list counts as, because the item and its number take that much memory.
+"""
 MAX_NAME = 300
-"""The most characters of a name; DDS allows 255."""
+"""The maximum number of characters in a name; DDS allows 255."""
 _SPEECH = ("output", "log")
 
 
 class Recorder:
-    """An append-only list of events with a condition to wait on.
+    """A growing list of events, with a condition variable to wait on.
 
-    Times are seconds since :meth:`begin`; ``began_at`` is that moment in seconds of Unix time. ``simulated_now`` is
-    called at each event, so that a message has the simulated time at which it arrived.
+    Times are in seconds since :meth:`begin`; ``began_at`` is the Unix time of that moment. ``simulated_now`` is
+    called at each event, so that a message is stored with the simulated time of its arrival.
 
     Attributes:
         take_in: Waits until everything that was sent to the judge so far is recorded.
     """
 
     def __init__(self, hurry: Callable[[], None] = lambda: None) -> None:
-        """Prepare.
+        """Create an empty record.
 
         Args:
-            hurry: Called repeatedly during each wait; it may end the wait by raising an exception.
+            hurry: Called repeatedly during each wait. It may end the wait by raising an exception.
         """
         self._hurry = hurry
         self._changed = threading.Condition()
@@ -61,7 +62,7 @@ class Recorder:
         self.began_at = time.time()
 
     def begin(self, name: str, inputs: Mapping[str, Any]) -> None:
-        """Start a new part; forget the events of the one before."""
+        """Begin a new part, and forget the events of the part before."""
         with self._changed:
             self._events = []
             self._said = self._size = 0
@@ -73,9 +74,9 @@ class Recorder:
             self.began_at = time.time()
 
     def in_this_part(self) -> Callable[..., None]:
-        """Return :meth:`record` for the present part only: later events are dropped.
+        """Return a :meth:`record` for the current part only; events that come later are dropped.
 
-        For threads that may still be reading a run's output when the next run begins.
+        This is for threads that may still read a run's output when the next run begins.
         """
         number = self._number
 
@@ -85,10 +86,10 @@ class Recorder:
         return record
 
     def end_of_this_part(self) -> Callable[..., None]:
-        """Return a function that records the subject's end in the present part, after everything that it sent before.
+        """Return a function that records the subject's end in the current part, after everything that it sent before.
 
-        The arguments are the kind of end, such as ``"exited"``; a function that is called when that is recorded,
-        before any waiting thread can see it; and data about the end.
+        The function's arguments are: the kind of end, such as ``"exited"``; a function to call when the end is
+        recorded, before any waiting thread can see it; and data about the end.
         """
         number = self._number
 
@@ -102,7 +103,7 @@ class Recorder:
         return end
 
     def record(self, kind: str, name: str, **data: Any) -> None:
-        """Record one event and wake every thread that waits for it."""
+        """Record an event, and wake every thread that waits for one."""
         self._record(kind, name, data, None)
 
     def _record(
@@ -124,7 +125,7 @@ class Recorder:
             self._changed.notify_all()
 
     def _forget_old_words(self) -> None:
-        """Drop the older half of the words, so that a talkative subject does not displace other events."""
+        """Drop the older half of the subject's output, so that much output does not displace other events."""
         words = [event for event in self._events if _is_speech(event)]
         old = {id(event) for event in words[: len(words) // 2 + 1]}
         self._events = [event for event in self._events if id(event) not in old]
@@ -132,11 +133,11 @@ class Recorder:
 
     @property
     def count(self) -> int:
-        """Return the number of events so far, in all parts."""
+        """Return the number of events so far, of all parts."""
         return self._count
 
     def part(self) -> Part:
-        """Return the events of this part so far."""
+        """Return the part with its events so far."""
         with self._changed:
             return Part(self._name, self._inputs, tuple(self._events))
 
@@ -149,15 +150,15 @@ class Recorder:
         quiet: float | None = None,
         wall: bool = False,
     ) -> bool:
-        """Wait until ``condition`` holds; it is checked again at every event.
+        """Wait until ``condition`` holds. It is checked again after every event.
 
         Args:
-            condition: Called in the waiting thread without the recorder's lock.
+            condition: Called in the waiting thread, without holding the recorder's lock.
             within: The limit in seconds of patience (:mod:`autograder.judge.bench.patience`).
-            poll: Seconds after which it is checked again without an event. Queries of the graph have no event to wait
-                for, so their callers give a few milliseconds.
-            quiet: Give up earlier if nothing happened for this many seconds of patience.
-            wall: True to count wall time instead: the wait sets the judge's own pace and is not a limit for the
+            poll: Seconds until the condition is checked again without an event. Callers that query the graph, which
+                has no events, use a few milliseconds.
+            quiet: Give up earlier if nothing was recorded for this many seconds of patience.
+            wall: True to count wall time: for a wait that sets the judge's own pace and is not a limit for the
                 subject.
 
         Returns:
@@ -184,17 +185,18 @@ class Recorder:
 
 
 def _is_speech(event: Event) -> bool:
-    """True for the subject's own words; not for a runner's report about a build or a launch."""
+    """Return True if an event contains the subject's own words, not a runner's report about a build or a launch."""
     return event.kind in _SPEECH and not str(event.data.get("text", "")).startswith(REPORTS)
 
 
 def _kept(data: Any, limit: int) -> tuple[Any, int]:
-    """Return a copy of an observation, and the characters that it counts.
+    """Return a copy of the data of an event, and the number of characters that it counts as.
 
-    It is cut to the size that a verdict can use, because a subject may send gigabytes.
+    The copy is cut to the size that a verdict can use, because a subject may send gigabytes.
     """
     if isinstance(data, str):
-        # A lone surrogate, which JSON may contain, cannot be encoded: a verdict that quotes it could not be written.
+        # JSON may contain a lone surrogate, which cannot be encoded. It is replaced, or a verdict that quotes it
+        # could not be written.
         text = data if data.isascii() else data[:limit].encode("utf-8", "replace").decode() + data[limit:]
         return (text if len(text) <= limit else f"{text[:limit]}…"), min(len(text), limit)
     if isinstance(data, dict):

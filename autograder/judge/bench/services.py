@@ -1,4 +1,4 @@
-"""Services: the judge serves as the scenario says, and calls the subject's services; both sides are recorded."""
+"""Services: the judge serves as the scenario says, and calls the subject's services. Both sides are recorded."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from autograder.judge.bench.wire import Wire
 
 Answer = Callable[[Mapping[str, Any]], Mapping[str, Any]]
-"""Returns the response's fields for the request's fields."""
+"""A function of the request's fields that returns the response's fields."""
 
 
 class RecordedServer:
-    """Serves until it is closed; one of its answers may be held back until it is released.
+    """A service of the judge, until it is closed. One of its answers may be held back until it is released.
 
     Attributes:
         services: The full names of the services.
@@ -39,16 +39,16 @@ class RecordedServer:
         at: str = "",
         hold: int = 0,
     ) -> None:
-        """Serve.
+        """Create the service.
 
         Args:
             wire: The judge's participant.
             recorder: Records requests and responses.
-            service: The full name in the evidence.
-            type_name: Such as ``"std_srvs/srv/Empty"``.
+            service: The full name of the service as the evidence shows it.
+            type_name: The service type, such as ``"std_srvs/srv/Empty"``.
             answer: Returns the response to a request.
-            at: The real full name, if the subject's client has another one.
-            hold: The number of the request whose answer is held back, from 1 on; 0 for none.
+            at: The full name that the subject's client really uses, if that differs.
+            hold: Which request, counted from 1, is answered only after :meth:`release`; 0 for none.
         """
         self._wire = wire
         self._recorder = recorder
@@ -84,7 +84,7 @@ class RecordedServer:
         self._send(response, header)
 
     def release(self) -> None:
-        """Send the answer that was held back; no later one is held back."""
+        """Send the answer that was held back. No later answer is held back."""
         with self._holding:
             self._hold = 0
             held, self._held = self._held, []
@@ -97,21 +97,22 @@ class RecordedServer:
 
 
 ROOM_FOR_ALL = qos_profile_parameters
-"""The profile of services with a queue of 1,000 (rclpy, ``qos.py``) instead of 10.
+"""A QoS profile for services with a queue of 1,000 (rclpy, ``qos.py``) instead of 10.
 
-If two servers share a name, more than ten answers come at once, and those that do not fit would be lost by chance.
+If two servers share a name, more than ten answers may come at once. In a shorter queue, chance would decide which are
+lost.
 """
 
 
 class Client(ABC):
-    """The common part of clients of services and actions: they wait for a server, and count servers.
+    """The common part of the judge's clients of services and actions: they wait for a server and count servers.
 
     Args:
         wire: The judge's participant.
         recorder: Records requests and answers.
-        name: The full name of the service or action in the evidence.
+        name: The full name of the service or action as the evidence shows it.
         service: The real name of the service whose servers are counted.
-        server_is_gone: Returns True if the server need not be waited for any more.
+        server_is_gone: Returns True if waiting for a server has become useless, because the subject has ended.
     """
 
     def __init__(
@@ -124,14 +125,14 @@ class Client(ABC):
         self._server_is_gone = server_is_gone
 
     def await_server(self, within: float) -> bool:
-        """Wait until a server is matched, and write down how many there are."""
+        """Wait until a server is matched, and record the number of servers."""
         self._recorder.wait(lambda: self._ready() or self._server_is_gone(), within, poll=GRAPH_POLL)
         self._note_servers()
         return self._ready()
 
     @abstractmethod
     def _ready(self) -> bool:
-        """True if a server is matched."""
+        """True if a server is matched with the client."""
 
     def _note_servers(self) -> None:
         count = self._wire.node.count_services(self._service)
@@ -160,10 +161,10 @@ class RecordedCaller(Client):
         return bool(self._client.service_is_ready())
 
     def ask(self, *requests: Mapping[str, Any]) -> None:
-        """Send requests, one right after the other."""
+        """Send requests, one directly after the other."""
         numbered = list(enumerate(requests, self._calls))
         self._calls += len(numbered)
-        # All are written down before the first is sent, so that a recording does not depend on who is faster.
+        # All calls are recorded before the first is sent, so that the record does not depend on who is faster.
         for number, fields in numbered:
             self._recorder.record("asked", self._name, call=number, fields=dict(fields))
         for number, fields in numbered:
@@ -171,7 +172,7 @@ class RecordedCaller(Client):
             future.add_done_callback(lambda done, number=number: self._take(number, done.result()))
 
     def await_answers(self, quiet: float) -> bool:
-        """Wait until every call is answered, as long as anything happens."""
+        """Wait until every call is answered; give up when nothing was recorded for ``quiet`` seconds."""
         self._recorder.wait(
             lambda: self._all_answered() or self._server_is_gone(), self._calls * quiet, quiet=quiet
         )

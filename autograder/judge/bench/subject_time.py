@@ -1,10 +1,10 @@
-"""The time of the subject in one part: stepped if it follows the judge's clock, otherwise wall time.
+"""The time of the subject in one part: stepped if the subject follows the judge's clock, otherwise wall time.
 
 In simulated time the judge publishes ``/clock`` and steps it, so that seconds take milliseconds. After each step it
-sends requests to the subject's parameter service. The answers prove that its executor has called the timers of the
-step, so the result does not depend on how busy the machine is. A subject that does not follow the clock
-(``time.sleep``, a loop that spins only sometimes) reveals itself: it publishes while the clock stands still, or its
-executor answers slowly; the caller then looks again in real time.
+sends requests to the subject's parameter service. The answers prove that the subject's executor has called the timers
+of this step, so the result does not depend on how busy the machine is. A subject that does not follow the clock
+(``time.sleep``, or a loop that spins only sometimes) reveals itself: it publishes while the clock stands still, or
+its executor answers slowly. The judge then looks again in real time.
 """
 
 from __future__ import annotations
@@ -33,23 +33,28 @@ if TYPE_CHECKING:
     from autograder.judge.subjects.subject import Subject
 
 ANSWER_LIMIT = 0.5
-"""Seconds of wall time within which a spinning node answers; a node that does not is not stepped."""
+"""Time limit in seconds of wall time for a spinning node to answer. A node that does not answer is not stepped."""
 PATIENT_ANSWER = 1.5
-"""Seconds of wall time without an answer after which a node counts as not spun."""
+"""A node that has not answered for this many seconds of wall time counts as not spun."""
 TURNS = 3
-"""Turns of an executor after which it has called the timers that are due at a new time.
+"""The number of rounds of an executor after which it has called the timers that are due at a new time.
 
-It takes the time in one turn and calls the timers in the next. If it checks its subscriptions just before the time
-arrives, and its services just after the request has arrived, the first turn handles only the request.
+An executor receives the time in one round and calls the timers in the next. One more is needed if it checks its
+subscriptions just before the time arrives, and its services just after the request has arrived: then the first round
+handles only the request.
 """
 FIRST = 100.0
-"""Simulated seconds at the start. The jump to it distorts the first interval, which is not counted."""
+"""The simulated time at the start, in seconds. The jump to it distorts the first interval, which is not counted."""
 SLOW_STEP = 0.25
-"""Seconds of wall time after which a step is suspicious: the subject sleeps, or the machine is overloaded."""
+"""A step that takes longer than this many seconds of wall time is suspicious: the subject sleeps, or the machine is
+overloaded.
+"""
 STANDSTILL = 0.06
-"""Seconds of wall time for which the clock stands still before it is stepped."""
+"""Seconds of wall time for which the clock stands still before the first step."""
 LENT_STEP = 0.1
-"""Simulated seconds in a step of lent time. A timer with a shorter period fires more often in real time."""
+"""The length of a step in :meth:`NodeClock.lend`, in simulated seconds. A timer with a shorter period fires once a
+step, less often than in real time.
+"""
 _SIM_TIME = "use_sim_time"
 _QUESTION = GetParameters.Request(names=[_SIM_TIME])
 
@@ -57,9 +62,9 @@ _QUESTION = GetParameters.Request(names=[_SIM_TIME])
 class NodeClock:
     """Publishes ``/clock`` for one node of the subject, and checks whether the node keeps up.
 
-    An answer of its parameter service proves that its executor has turned since the request. An executor takes one
-    request of a service in each turn (rclpy/executors.py, ``_take_service``), so requests that are sent together are
-    answered in as many turns, for the price of one round trip.
+    An answer from the node's parameter service proves that its executor has made a round since the request. An
+    executor takes one request of a service in each round (rclpy/executors.py, ``_take_service``). So several requests
+    that are sent together prove as many rounds, in the time of one exchange of messages.
     """
 
     def __init__(self, wire: Wire, recorder: Recorder, node: NodeName) -> None:
@@ -70,20 +75,20 @@ class NodeClock:
         self._get = wire.node.create_client(GetParameters, f"{node.full}/get_parameters")
 
     def follow(self, simulated: bool) -> bool:
-        """Tell the node to follow simulated time, or its own again. Return True if it accepted."""
+        """Tell the node to follow simulated time, or real time again. Return True if it accepted."""
         value = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=simulated)
         request = SetParameters.Request(parameters=[Parameter(name=_SIM_TIME, value=value)])
         answer = ask(self._recorder, self._set, request, ANSWER_LIMIT)
         return answer is not None and bool(answer.results) and bool(answer.results[0].successful)
 
     def is_heard(self) -> bool:
-        """Wait until the clock has a subscriber."""
+        """Wait until the clock has a subscriber. Return True if it has one."""
         return self._recorder.wait(
             lambda: self._publisher.get_subscription_count() > 0, ANSWER_LIMIT, poll=0.002
         )
 
     def is_rivalled(self) -> bool:
-        """True if another node publishes on /clock, too."""
+        """Return True if another node publishes on /clock, too."""
         return self._wire.node.count_publishers("/clock") > 1
 
     def show(self, now: float) -> bool:
@@ -95,18 +100,18 @@ class NodeClock:
         return ask(self._recorder, self._get, _QUESTION, ANSWER_LIMIT, turns=TURNS) is not None
 
     def lend(self, seconds: float, until: Callable[[], bool]) -> bool:
-        """Let seconds pass for a node in real time: its timers fire as they would later.
+        """Let seconds pass for a node in real time, so that its timers fire now as they would later.
 
-        This shows in milliseconds what a program's timers would do in the next seconds. Its clock continues from its
-        present time, and is given back afterwards, so nothing that it has begun is lost. Code that does not follow a
-        clock (a thread that sleeps) is not shown.
+        This shows within milliseconds what a program's timers would do in the next seconds. The node's clock
+        continues from its current time, and real time is restored afterwards, so nothing that the node has begun is
+        lost. Code that does not follow a clock, such as a thread that sleeps, is not shown.
 
         Args:
-            seconds: The most seconds to pass.
-            until: Stop when this returns True.
+            seconds: The maximum number of seconds to pass.
+            until: Time stops passing when this function returns True.
 
         Returns:
-            True if the node took part: it accepted the clock, and answered after each step.
+            True if the node accepted the clock and answered after each step.
         """
         began = time.time()
         try:
@@ -125,14 +130,15 @@ class NodeClock:
 
 
 def ask(recorder: Recorder, client: Any, request: Any, limit: float, *, turns: int = 1) -> Any:
-    """Return the answer of a service of the subject, or None if its executor does not turn in time.
+    """Return the answer of a service of the subject; None if the subject's executor does not answer in time.
 
     Args:
-        recorder: The recorder whose events end a wait.
+        recorder: Its events end a wait.
         client: The client of the service.
         request: The request.
-        limit: Seconds of wall time for each turn.
-        turns: The number of turns: the request is sent this often at once, and the last answer counts.
+        limit: Time limit for each round, in seconds of wall time.
+        turns: The number of executor rounds to wait for: the request is sent this many times at once, and the last
+            answer counts.
     """
     if not recorder.wait(client.service_is_ready, limit, poll=0.005):
         return None
@@ -152,7 +158,7 @@ def _is_there(future: Any, limit: float) -> bool:
 
 
 def answers(wire: Wire, recorder: Recorder, node: NodeName, limit: float = PATIENT_ANSWER) -> bool:
-    """True if a node answers, within ``limit`` seconds, a request that every spun node answers."""
+    """Return True if a node answers, within ``limit`` seconds, a request that every spun node answers."""
     client = wire.node.create_client(GetParameters, f"{node.full}/get_parameters")
     try:
         return ask(recorder, client, _QUESTION, limit) is not None
@@ -161,11 +167,11 @@ def answers(wire: Wire, recorder: Recorder, node: NodeName, limit: float = PATIE
 
 
 class SimulatedClock(NodeClock):
-    """Steps the clock of one node.
+    """Steps the clock of one node of the subject.
 
     Attributes:
-        doubtful: True if the result must be confirmed in real time, because a step took too long, or another node
-            also moved the clock.
+        doubtful: True if the result must be confirmed in real time, because a step took too long or another node
+            moved the clock.
     """
 
     def __init__(self, wire: Wire, recorder: Recorder, node: NodeName) -> None:
@@ -177,8 +183,8 @@ class SimulatedClock(NodeClock):
         """Make the node follow simulated time.
 
         Returns:
-            True if it accepted, receives the clock and its executor answers. This does not yet prove that its timers
-            follow: :meth:`stands_still` does.
+            True if the node accepted, receives the clock, and answers. This does not yet prove that its timers
+            follow; :meth:`stands_still` does.
         """
         if not (self.follow(True) and self.is_heard()):
             return False
@@ -186,21 +192,21 @@ class SimulatedClock(NodeClock):
         return self.show(self._now)
 
     def stands_still(self, silent: Callable[[], bool]) -> bool:
-        """Hold the clock for a moment. Return True if the subject stays silent.
+        """Keep the clock still for a moment. Return True if the subject stays silent meanwhile.
 
         Args:
-            silent: Returns True while nothing was heard since its creation.
+            silent: Returns True as long as no message has come since it was created.
         """
         self._recorder.wait(lambda: not silent(), STANDSTILL)
         return silent()
 
     def run(self, seconds: float, until: Callable[[], bool], step: float = STEP) -> bool:
-        """Go through ``seconds`` of simulated time in steps of ``step`` seconds, or until something holds.
+        """Let ``seconds`` of simulated time pass in steps of ``step`` seconds, or less if ``until`` holds earlier.
 
         Returns:
             True if the subject's executor answered after each step.
         """
-        # Rounded like each step: a sum of floats may be slightly above the last one.
+        # Rounded like each step, because a sum of floats may be slightly greater than the last step.
         end = round(self._now + seconds, 6)
         while self._now < end and not until():
             began = time.monotonic()
@@ -209,7 +215,7 @@ class SimulatedClock(NodeClock):
             if not self.show(self._now):
                 self.doubtful = True
                 return False
-            # If another node moves the clock, simulated time tells nothing about the subject's rate.
+            # If another node moves the clock as well, simulated time proves nothing about the subject's rate.
             slow = time.monotonic() - began > SLOW_STEP
             self.doubtful = self.doubtful or slow or self.is_rivalled()
         return True
@@ -221,14 +227,14 @@ class SimulatedClock(NodeClock):
 
 
 class SubjectTime:
-    """Lets time pass for the subject, and checks that its nodes keep up.
+    """Lets time pass for the subject, and checks whether its nodes keep up.
 
     Args:
         wire: The judge's participant.
-        recorder: The record, whose events end a wait.
+        recorder: The record; its events end a wait.
         subject: The subject.
-        presence: The subject's nodes, and the judge's endpoints that they are matched with.
-        opened: Closes everything made here at the end of the part.
+        presence: The subject's nodes, and which of the judge's endpoints they are matched with.
+        opened: Everything that is made here and has to be closed at the end of the part.
         pace: Decides whether simulated time is tried at all.
         doubt: Called if an observation must be confirmed in real time.
     """
@@ -262,10 +268,10 @@ class SubjectTime:
         quiet: float | None = None,
         step: float = STEP,
     ) -> bool:
-        """Let ``seconds`` of the subject's time pass, or fewer if ``until`` holds or nothing happens.
+        """Let ``seconds`` of the subject's time pass; stop earlier if ``until`` holds or nothing happens.
 
         Returns:
-            False if simulated time could not go on, because the subject's executor no longer turns.
+            False if simulated time could not go on because the subject's executor no longer answers.
         """
         over = until or (lambda: False)
         if self._pace is Pace.FAST and self._follow_clock():
@@ -278,7 +284,7 @@ class SubjectTime:
         return True
 
     def lend(self, seconds: float, role: str, name: str) -> None:
-        """Let simulated seconds pass for the node of an endpoint, and give its own time back; else real seconds."""
+        """Let simulated seconds pass for the node with this endpoint, then restore real time; or real seconds."""
         for node in graph.owners(self._wire.node, role, name):
             if node.full not in self._deaf:
                 with contextlib.closing(NodeClock(self._wire, self._recorder, node)) as clock:
@@ -296,17 +302,17 @@ class SubjectTime:
                 self._deaf.add(node.full)
 
     def await_attention(self) -> None:
-        """Query each node that the judge is matched with, by a client that is announced after the judge's publishers.
+        """Query each node that the judge is matched with, from a client that is announced after the judge's publishers.
 
-        The announcements of one participant arrive in order (DDSI-RTPS, 8.5.4), so a node that answers the client
-        also knows the publishers.
+        A participant's announcements arrive in order (DDSI-RTPS, 8.5.4), so a node that answers this client also
+        knows the publishers.
         """
         for node in self._presence.counterparts():
             if not self._subject.ended:
                 answers(self._wire, self._recorder, node, MATCH)
 
     def _follow_clock(self) -> bool:
-        """True if the subject follows the judge's clock; tried once, as soon as the judge has an endpoint."""
+        """Return True if the subject follows the judge's clock; tried once, when the judge has its first endpoint."""
         tried = self._clock is not None or self._clock_refused
         if not tried and (self._presence.subscriptions or self._presence.publishers):
             self._clock_refused = True
@@ -314,9 +320,9 @@ class SubjectTime:
         return self._clock is not None
 
     def _clock_taken_over(self) -> SimulatedClock | None:
-        """Return a clock that the subject follows; None if there is no node to step, or it keeps its own time."""
+        """Return a clock that the subject follows; None if there is no node to step, or it stays in its own time."""
         if any(self._wire.node.count_publishers(topic) > 1 for topic in self._presence.subscriptions):
-            # Two nodes of one name share their parameter services: one of them would stay in real time.
+            # Two nodes with the same name share their parameter services, so one of them would stay in real time.
             self._doubt()
             return None
         node = next(iter(self._presence.counterparts()), None)
@@ -326,19 +332,19 @@ class SubjectTime:
         self._open.callback(stepped.close)
         if stepped.take_over() and stepped.stands_still(self._silence()):
             return stepped
-        # It may still obey later and then stop: only a new run in real time can tell.
+        # The subject may obey later and then stop, so only a new run in real time can decide.
         self._recorder.simulated_now = None
         if self._presence.subscriptions:
             self._doubt()
         return None
 
     def _silence(self) -> Callable[[], bool]:
-        """Return a function that returns True as long as nothing more is heard."""
+        """Return a function that returns True as long as no further message is heard."""
 
         def heard() -> int:
             seen = self._recorder.part()
             return sum(len(seen.of("message", topic)) for topic in self._presence.subscriptions)
 
         before = heard()
-        # One message may still have been on its way when the clock stopped.
+        # One message may still have been on its way when the clock stopped, so one is allowed.
         return lambda: heard() <= before + 1

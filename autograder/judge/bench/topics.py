@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from autograder.judge.bench.recorder import Recorder
     from autograder.judge.bench.wire import Wire
 
-# Reliable like the course's own listener, so that a message that cannot reach a listener does not reach this one;
-# with a large queue, so that a slow moment of the judge loses nothing.
+# Reliable like the course's own listener, so that a message which cannot reach that listener does not reach this one
+# either; with a large queue, so that nothing is lost while the judge is slow.
 _AS_THE_LISTENER = QoSProfile(depth=1000)
 _AS_A_LATE_LISTENER = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _LOG_HISTORY = QoSProfile(
@@ -31,11 +31,11 @@ _LOG_HISTORY = QoSProfile(
 
 
 class RecordedEndpoint:
-    """A publisher or subscription of the judge: it records the endpoints with which it matches, and mismatches.
+    """A publisher or subscription of the judge. It records which endpoints match it and which do not (QoS).
 
     Attributes:
-        matched: The number of the subject's endpoints with which it is matched now.
-        topic: The topic's name in the evidence.
+        matched: The number of the subject's endpoints that match it now.
+        topic: The topic's name as the evidence shows it.
         type_name: The type of its messages.
     """
 
@@ -47,7 +47,8 @@ class RecordedEndpoint:
 
     def _match(self, info: Any) -> None:
         self.matched = info.current_count
-        # The total count: an endpoint that comes and goes at once is reported once, when no endpoint is there any more.
+        # The total count is used because an endpoint that exists only for a moment is reported once, when it is
+        # already gone.
         self._recorder.record("matched", self.topic, count=info.total_count, now=info.current_count)
 
     def _mismatch(self, info: Any) -> None:
@@ -56,7 +57,7 @@ class RecordedEndpoint:
 
 
 class RecordedSubscription(RecordedEndpoint):
-    """A subscription that records every message."""
+    """A subscription of the judge that records every message."""
 
     def __init__(
         self,
@@ -68,15 +69,15 @@ class RecordedSubscription(RecordedEndpoint):
         at: str = "",
         latched: bool = False,
     ) -> None:
-        """Subscribe.
+        """Create the subscription.
 
         Args:
             wire: The judge's participant.
             recorder: Records messages and matches.
-            topic: The topic's name in the evidence.
-            type_name: Such as ``"std_msgs/msg/String"``.
-            at: The topic's real name, if the subject's has another name.
-            latched: True to receive messages from before the subscription.
+            topic: The topic's name as the evidence shows it.
+            type_name: The message type, such as ``"std_msgs/msg/String"``.
+            at: The name that the subject really uses for the topic, if that differs.
+            latched: True to receive messages that were sent before the subscription existed.
         """
         super().__init__(recorder, topic, type_name)
         self.subscription = wire.node.create_subscription(
@@ -90,8 +91,8 @@ class RecordedSubscription(RecordedEndpoint):
         )
 
     def _hear(self, message: Any, info: Any) -> None:
-        # The publisher's own count of its messages tells how many were sent before this one could be received, and its
-        # time of sending does not depend on the transport (rmw_message_info_t; provided by rmw_fastrtps).
+        # The publisher's own count of its messages tells how many it sent before this subscription could receive any.
+        # Its time of sending does not depend on the transport (rmw_message_info_t; provided by rmw_fastrtps).
         self._recorder.record(
             "message",
             self.topic,
@@ -103,10 +104,10 @@ class RecordedSubscription(RecordedEndpoint):
 
 
 class RecordedPublisher(RecordedEndpoint):
-    """A publisher with the course's settings (reliable, depth 10) that records what it sends."""
+    """A publisher with the course's QoS (reliable, depth 10) that records what it sends."""
 
     def __init__(self, wire: Wire, recorder: Recorder, topic: str, type_name: str, *, at: str = "") -> None:
-        """Create the publisher; the arguments are those of :class:`RecordedSubscription`."""
+        """Create the publisher. For the arguments see :class:`RecordedSubscription`."""
         super().__init__(recorder, topic, type_name)
         self._type = interface(type_name)
         self.publisher = wire.node.create_publisher(
@@ -125,7 +126,7 @@ class RecordedPublisher(RecordedEndpoint):
 
 
 class LogReader:
-    """Reads ``/rosout``, including lines from before the judge came (it is transient local, REP-2000's rcl)."""
+    """Reads ``/rosout``, including lines from before the judge subscribed, because the topic is transient local."""
 
     def __init__(self, wire: Wire, recorder: Recorder) -> None:
         self._recorder = recorder
@@ -136,6 +137,6 @@ class LogReader:
     def _hear(self, line: Any) -> None:
         sent = line.stamp.sec + line.stamp.nanosec / 1e9
         if sent < self._recorder.began_at:
-            return  # from an earlier part, by a node of the same participant, and late to arrive
+            return  # This line is from an earlier part, logged by a node of the same participant, and arrived late.
         text, level = line.msg, int(line.level)
         self._recorder.record("log", line.name, text=text, level=level, sent=sent, arrived=time.time())

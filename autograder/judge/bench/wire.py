@@ -1,4 +1,4 @@
-"""The judge's own node, in its own ROS context, spun by its own thread."""
+"""The judge's own node, in a ROS context of its own, spun by a thread of its own."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ InvalidHandle = rclpy_implementation.InvalidHandle
 
 
 TAKEN_IN = 5.0
-"""Seconds within which the judge must have taken in what was sent to it."""
+"""Time limit in seconds for the judge to process what was sent to it."""
 TURN = 0.05
-"""Seconds between two checks whether its thread still runs."""
+"""Seconds between two checks whether the spinning thread still runs."""
 
 
 class JudgeFailed(RuntimeError):
-    """A callback of the judge raised an exception: the subject could not be checked."""
+    """A callback of the judge itself raised an exception, so the subject could not be checked."""
 
 
 class _QuietNode(Node):
     """A node whose endpoints have only the events that were requested.
 
     rclpy gives each endpoint two events that only log a warning. The executor checks all events of its node in each
-    of its turns, and a check in simulated time has some hundred turns.
+    round, and a check in simulated time has some hundred rounds.
     """
 
     def create_publisher(self, *arguments: Any, **options: Any) -> Any:
@@ -50,13 +50,13 @@ class _QuietNode(Node):
 
 
 class Wire:
-    """One participant on one domain. Each part gets a new one, because a new participant is discovered at once.
+    """A participant of the judge on one domain. Each part gets a new one, which subjects discover at once.
 
     Attributes:
-        node: The judge's node; it has no parameter services and no log topic, so that it adds almost nothing to the
+        node: The judge's node. It has no parameter services and no log topic, so that it adds almost nothing to the
             graph.
         executor: Spins the node in a thread of its own.
-        failure: The error of the judge itself that ended that thread; None if there is none.
+        failure: The exception of the judge's own code that ended that thread; None if there is none.
     """
 
     def __init__(self, domain_id: int) -> None:
@@ -82,20 +82,22 @@ class Wire:
             try:
                 self.executor.spin()
             except InvalidHandle:
-                continue  # a part has ended and destroyed something that was in use
+                continue  # a part has ended and destroyed an entity that was in use
             except ExternalShutdownException:
                 return
-            except BaseException as error:  # from the judge's own callback: nothing after it can be trusted
+            except (
+                BaseException
+            ) as error:  # raised by the judge's own callback: no later result can be trusted
                 self.failure = error
             return
 
     def take_in(self, written_down: Callable[[], int]) -> bool:
-        """Wait until everything that had been sent to the judge is recorded. Return True if it is, in time.
+        """Wait until everything that had been sent to the judge is recorded. Return True if this succeeds in time.
 
-        Must not be called from a callback of the judge.
+        This must not be called from a callback of the judge.
 
         Args:
-            written_down: Returns how much is recorded so far.
+            written_down: Returns the number of events recorded so far.
         """
         patience = Patience(TAKEN_IN)
         if not await_turns(patience):
@@ -103,16 +105,16 @@ class Wire:
         before = -1
         while before != written_down():
             before = written_down()
-            # A process that a subject left behind may go on sending for ever.
+            # A process that a subject left behind may go on sending forever.
             if patience.left <= 0 or not self._take_one_of_each(patience):
                 return False
         return True
 
     def _take_one_of_each(self, patience: Patience) -> bool:
-        """Let the executor take one message or call of each endpoint that has any. Return False if there was no time.
+        """Let the executor take at most one message or call from each endpoint. Return False if there was no time.
 
-        An executor begins each of its rounds with its tasks and then takes what has arrived (rclpy/executors.py,
-        _wait_for_ready_callbacks), so one whole round lies between two tasks.
+        An executor begins each round with its tasks and then takes what has arrived (rclpy/executors.py,
+        _wait_for_ready_callbacks). So two tasks, one after the other, enclose one whole round.
         """
         for _ in range(2):
             done = threading.Event()
@@ -126,8 +128,8 @@ class Wire:
         return True
 
     def close(self) -> None:
-        """Stop spinning, join the thread and leave the domain. An unjoined thread aborts the interpreter."""
-        with self._closing:  # a subject's last messages may be taken in right now
+        """Stop spinning, join the thread and leave the domain. An unjoined thread would abort the interpreter."""
+        with self._closing:  # Another thread may be processing a subject's last messages right now.
             self._closed = True
         self.executor.shutdown(timeout_sec=1.0)
         self._thread.join(timeout=2.0)

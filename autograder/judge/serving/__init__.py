@@ -1,1 +1,1 @@
-"""A judge as a process: it listens, forks a child for each check, and leads the conversation of that check."""
+"""A judge as a process: it listens, forks a child for each check, and exchanges that check's messages."""

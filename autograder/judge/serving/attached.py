@@ -1,4 +1,4 @@
-"""Run a judge on inherited file descriptors: the entry point of a fork in the judge's sandbox."""
+"""Run a judge on inherited file descriptors. A fork server in the judge's sandbox starts it here."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ def prepare() -> None:
 
 
 def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
-    """Serve one notebook until the grader hangs up.
+    """Serve one notebook until the grader disconnects.
 
     Args:
-        call: Empty; the fork server passes it to every service.
+        call: Empty; the fork server passes this argument to every service.
         descriptors: The listening socket for the notebook, and the socket for the grader's orders.
     """
     from autograder.judge.serving.server import JudgeServer
@@ -68,7 +68,7 @@ _INTERFACES = (
     "rosgraph_msgs.msg",
     "action_msgs.msg",
     "action_msgs.srv",
-    # Every node offers a service of this type; loading it costs 5 ms of processor time.
+    # Every node offers a service of this type, and loading the type costs 5 ms of processor time.
     "type_description_interfaces.msg",
     "type_description_interfaces.srv",
 )
@@ -82,7 +82,7 @@ def imports() -> None:
     for name in ("subjects.command_subject", "subjects.remote_subject", "verdicts.trial"):
         importlib.import_module(f"autograder.judge.{name}")
 
-    # An exercise that its author is still writing may be broken. The others must work all the same.
+    # An exercise that its author is still writing may be broken. The others must work nevertheless.
     exercises.unbroken()
     for name in (*_INTERFACES, *course.interface_modules()):
         with contextlib.suppress(ImportError):

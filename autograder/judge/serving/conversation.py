@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from autograder.messages.lines import Message
 
 FIRST_WORD = 5.0
-"""Seconds within which a notebook must send its first message."""
+"""Time limit in seconds for a notebook's first message."""
 MAX_NAME = 100
-"""Longest exercise name that is read, in characters."""
+"""The maximum number of characters that are read of an exercise's name."""
 
 
 def converse(connection: socket.socket, order: Open | None) -> Report:
@@ -39,10 +39,10 @@ def converse(connection: socket.socket, order: Open | None) -> Report:
 
     Args:
         connection: The socket to the notebook.
-        order: The only check that is allowed; None if the notebook may ask for any check.
+        order: The only check that is allowed; None if the notebook may request any check.
 
     Returns:
-        The report with the verdict; an empty report if no allowed check was asked for.
+        The report with the verdict; an empty report if no allowed check was requested.
     """
     wanted = order or Open("", secrets.token_hex(8))
     lines = Lines(connection)
@@ -69,22 +69,22 @@ def converse(connection: socket.socket, order: Open | None) -> Report:
         return Report()
     subject: RemoteSubject | PathSubject
     if wanted.workspaces and exercise.runner:
-        # The notebook's own description of its subject is ignored: the grader judges the sources.
+        # The notebook's own description of its subject is ignored, because the grader judges the sources.
         subject = PathSubject(lines, exercise.id, wanted.workspaces)
     elif exercise.runner and first.kind == "path":
         subject = RemotePath(lines)
     else:
         subject = RemoteSubject(lines, is_class=first.kind == "class")
-    # With an order, the grader repeats a check alone if an overloaded machine may have spoiled it.
+    # If a grader ordered the check, it repeats the check alone in case an overloaded machine spoiled it.
     seed = own_seed(wanted.seed, exercise.id)
     report, checked = _report(exercise, subject, seed, wanted, marks_crowded=order is not None)
     _tell(lines, Judged(None if wanted.boxed else _shown(exercise, report)))
-    # The notebook already continues, so packing the evidence delays no student.
+    # The notebook already continues, so packing the evidence makes no student wait.
     return replace(report, evidence=keeping.packed(checked)) if wanted.evidence and checked else report
 
 
 def own_seed(seed: str, exercise_id: str) -> str:
-    """Derive the seed of one check. Students see it on the card, and cannot compute another check's seed from it."""
+    """Derive the seed of one check. Students see it on the card, but cannot compute another check's seed from it."""
     return hashlib.sha256(f"{len(seed)}:{seed}{exercise_id}".encode()).hexdigest()[:16]
 
 
@@ -117,7 +117,7 @@ def _report(
     except (domain.NoFreeDomainError, reference.NoReference, record.NotRecordable, JudgeFailed) as error:
         return Report(trouble=str(error)), None
     except Hangup:
-        return Report(), None  # the notebook went away before it had sent its sources
+        return Report(), None  # the notebook disconnected before it had sent its sources
 
 
 def _shown(exercise: Exercise, report: Report) -> Verdict:

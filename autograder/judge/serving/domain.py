@@ -1,9 +1,9 @@
 """Lease a separate ROS domain for each check, so that other programs on this machine do not disturb it.
 
-Before that, remove the shared memory that killed programs of earlier checks have left behind.
-If discovery is limited to this machine, rmw_fastrtps creates half a megabyte of shared memory for each participant,
-whichever transports are configured (participant.cpp). A program that is killed does not remove it,
-and the memory stays in use until ``fastdds shm clean`` runs. One day of killed programs left 12 GB.
+First, remove the shared memory that killed programs of earlier checks have left behind. If discovery is limited to
+this machine, rmw_fastrtps creates half a megabyte of shared memory for each participant, whichever transports are
+configured (participant.cpp). A program that is killed does not remove it, and the memory stays in use until ``fastdds
+shm clean`` runs. One day of killed programs left 12 GB.
 """
 
 from __future__ import annotations
@@ -26,15 +26,16 @@ __all__ = ["NoFreeDomainError", "lease", "remove_abandoned", "remove_if_abandone
 FOLDER = Path("/dev/shm")
 _SUFFIX = "_el"
 _LOCKS = f"fastrtps_{'[0-9a-f]' * 16}{_SUFFIX}"
-"""Lock files that Fast DDS holds for as long as the owner of a segment lives (RobustExclusiveLock.hpp). Files of ports
-have different names: several programs share them, so they stay."""
+"""The names of lock files that Fast DDS locks for as long as the owner of a segment lives (RobustExclusiveLock.hpp).
+The files of ports have other names; several programs share them, so they stay.
+"""
 AGE = 60.0
-"""Age in seconds from which an unlocked lock file is abandoned. A younger one may be just being created."""
+"""Age in seconds from which an unlocked lock file counts as abandoned. A younger one may just be being created."""
 
 
 @contextlib.contextmanager
 def lease(*, alone: bool = False) -> Iterator[int]:
-    """Hold a free domain id while the block runs. The claim ends with the process, however the process ends.
+    """Reserve a free domain id while the block runs. The reservation ends with the process, however it ends.
 
     Shared memory that killed programs of earlier checks left behind is removed first.
 
@@ -64,7 +65,7 @@ def remove_abandoned(folder: Path = FOLDER, age: float = AGE) -> None:
 
     Args:
         folder: The folder of the segments.
-        age: Seconds. Younger segments stay.
+        age: Age in seconds. Younger segments stay.
     """
     with contextlib.suppress(OSError):
         for lock in folder.glob(_LOCKS):
@@ -80,7 +81,7 @@ def remove_if_abandoned(lock: Path, made_before: float) -> None:
         made_before: Unix time in seconds. Younger segments stay.
 
     Raises:
-        OSError: The owner still runs (BlockingIOError), or the segment is already gone.
+        OSError: The owner still runs (BlockingIOError), or the segment no longer exists.
     """
     found = lock.lstat()
     if found.st_uid != os.getuid() or found.st_mtime > made_before:

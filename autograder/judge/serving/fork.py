@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _ENDINGS = (signal.SIGINT, signal.SIGTERM)
 LAST_WORDS = 2.0
-"""Seconds of wall time in which a judge must decide once its time is over."""
+"""Seconds of wall time in which a judge must decide once the time limit of its check is reached."""
 
 
 @dataclass(frozen=True)
@@ -30,9 +30,9 @@ class ChildResult:
 
     Attributes:
         data: The bytes that the child returned; None if it returned nothing.
-        trouble: Why there is no data, for people; otherwise empty.
+        trouble: Why there is no data, as a text for people; empty if there is data.
         hurried: True if the child was killed before its own time limit.
-        unfinished: True if the child was killed at its own time limit or at a shorter one.
+        unfinished: True if the child was killed at a time limit, its own or a shorter one.
     """
 
     data: bytes | None
@@ -42,7 +42,7 @@ class ChildResult:
 
 
 class Child:
-    """A forked child process that computes some bytes. The parent must have no other threads."""
+    """A forked child process that computes some bytes. Fork it only while the parent has no other threads."""
 
     def __init__(self, work: Callable[[], bytes], limit: float, *, close: Sequence[int] = ()) -> None:
         """Fork and start the child.
@@ -58,8 +58,8 @@ class Child:
         self._received = bytearray()
         self.reading, writing = os.pipe()
         parent = os.getpid()
-        # An exception from a signal handler inside Python's fork hooks is lost, and a Ctrl-C with it.
-        # A signal that arrives before the child has set its handlers would end the child.
+        # Python loses an exception, and with it a Ctrl-C, that a signal handler raises inside a fork hook. And a
+        # signal that arrives before the child has set its handlers would end the child.
         mask = signal.pthread_sigmask(signal.SIG_BLOCK, {*_ENDINGS, SIGNAL})
         self.pid = os.fork()
         if self.pid == 0:
@@ -75,10 +75,10 @@ class Child:
         os.close(writing)
 
     def result(self, *, within: float | None = None) -> ChildResult:
-        """Wait for the child's result, at most until its time limit.
+        """Wait for the child's result, at most until the child's time limit.
 
-        At the limit, a judge that is deciding is told to stop, and reports that what the subject said
-        keeps it from deciding. A judge that is still observing is killed.
+        At the limit, a judge that is deciding is told to stop; it then reports that the subject's output keeps it
+        from deciding. A judge that is still watching the subject is killed.
 
         Args:
             within: A shorter limit, in seconds from now.
@@ -132,13 +132,13 @@ class Child:
 
 
 def _leave(*_: object) -> NoReturn:
-    """Exit at once and end everything that the subject has started: the verdict is no longer needed."""
+    """Exit at once and end everything that the subject has started, because the verdict is no longer needed."""
     end_descendants(LEFTOVERS)
     os._exit(1)
 
 
 def _run(work: Callable[[], bytes], writing: int) -> None:
-    """Do the child's work, then call os._exit: ROS threads make a normal exit of the interpreter unsafe."""
+    """Do the child's work, then call os._exit: with ROS threads, a normal exit of the interpreter is unsafe."""
     code = 1
     try:
         data = work()

@@ -26,11 +26,11 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 START_LIMIT = 60.0
-"""Seconds of wall time in which a judge must start; it takes well under one second on an idle machine."""
+"""Time limit in seconds of wall time for starting a judge; on an idle machine it takes well under one second."""
 ANSWER_LIMIT = 30.0
-"""Seconds of wall time in which a judge must answer an order."""
+"""Time limit in seconds of wall time for a judge's answer to an order."""
 _REPORT_BYTES = 64_000_000
-"""Limit of a report in bytes; longer than any reference output and any verdict with its evidence."""
+"""The maximum size of a report in bytes; larger than any reference output and any verdict with its evidence."""
 
 
 class JudgeDied(RuntimeError):
@@ -41,24 +41,25 @@ class StartedJudge(Protocol):
     """A judge process, inside or outside a sandbox."""
 
     def end(self) -> None:
-        """End the process and everything that it has forked; may be called twice."""
+        """End the process and everything that it has forked. This may be called twice."""
         ...
 
 
 Start = Callable[[int, int], StartedJudge]
-"""Starts a judge with a listening socket and a connected socket for orders; the caller still owns both."""
+"""A function that starts a judge with a listening socket and a connected socket for orders. The caller still owns both.
+"""
 
 
 class JudgeProcess:
-    """A judge that the grader controls. Only what :meth:`close` returns is a grade."""
+    """A judge that the grader controls. Only a verdict returned by :meth:`close` is a grade."""
 
     def __init__(self, socket_path: Path, *, seed: str, start: Start | None = None) -> None:
-        """Name the socket at which the student's kernel reaches the judge.
+        """Set the path of the socket at which the student's kernel reaches the judge.
 
         Args:
-            socket_path: Unix socket; at most 107 bytes long (unix(7)).
-            seed: The seed of all random inputs; each exercise derives its own from it.
-            start: Starts the process; the default is a plain child process.
+            socket_path: The path of a Unix socket, at most 107 bytes long (unix(7)).
+            seed: The seed of all random inputs. Each exercise derives its own seed from it.
+            start: Starts the judge; by default as a plain child process.
         """
         self.socket_path = socket_path
         self._seed = seed
@@ -67,7 +68,7 @@ class JudgeProcess:
         self.keeps_evidence = False
         """True if reports carry the evidence of their verdicts."""
         self.is_boxed = False
-        """True if the judge runs in a sandbox next to the submission's."""
+        """True if the judge runs in a sandbox next to the sandbox of the submission."""
         self._start = start or _Child
         self._process: StartedJudge | None = None
         self._orders: Lines | None = None
@@ -99,24 +100,24 @@ class JudgeProcess:
         """Allow one check of this exercise.
 
         Raises:
-            JudgeDied: The judge is gone.
+            JudgeDied: The judge does not run any more.
         """
         seed = f"{self._seed}:{exercise_id}"
         self._order(Open(exercise_id, seed, record, self.workspaces, self.keeps_evidence, self.is_boxed))
 
     def close(self) -> Verdict | None:
-        """Close the opened check and return its verdict; None if the notebook did not ask for it or got none.
+        """Close the opened check and return its verdict; None if the notebook did not request it or got no verdict.
 
         Raises:
-            JudgeDied: The judge is gone.
+            JudgeDied: The judge does not run any more.
         """
         return self.close_report().verdict
 
     def close_report(self) -> Report:
-        """Close the opened check and return the whole report, with the recording and the reason for no verdict.
+        """Close the opened check and return the whole report, including a recording and a reason for a missing verdict.
 
         Raises:
-            JudgeDied: The judge is gone, or its answer is not a report.
+            JudgeDied: The judge does not run any more, or its answer is not a report.
         """
         try:
             return msgspec.json.decode(self._order(Close()), type=Report)
@@ -166,11 +167,11 @@ class _Child:
 
     @property
     def pid(self) -> int:
-        """The process id of the judge."""
+        """The judge's process id."""
         return self._process.pid
 
     def end(self) -> None:
-        """Wait a moment for the judge, which exits when its orders end, then kill it."""
+        """Wait a moment for the judge, which exits when its orders end. If it does not, kill it."""
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(timeout=2.0)
         signal_group(self._process.pid, signal.SIGKILL)

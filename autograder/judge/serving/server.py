@@ -1,6 +1,6 @@
-"""Serve checks: a judge process, ready with all imports, forks a child for each check asked for on its socket.
+"""Serve checks: a judge process, ready with all imports, forks a child for each requested check.
 
-The parent has imported ROS but created no node and no thread. So a fork is safe, and each check begins with a new
+The parent has imported ROS but created no node and no thread. So forking is safe, and each check begins with a new
 participant, which discovers its subject at once.
 """
 
@@ -29,11 +29,11 @@ if TYPE_CHECKING:
 REFUSE_LIMIT = 0.5
 """Seconds to wait for the request of a notebook that will be refused."""
 CLOSE_LIMIT = 10.0
-"""Seconds that a check may still take after its cell has ended: the kernel has ended by then, or will soon."""
+"""Seconds that a check may still take after its cell has ended. By then the kernel has usually ended, or soon will."""
 
 
 class JudgeServer:
-    """A judge on a Unix socket. If the grader controls it, it answers only the check that was opened, once."""
+    """A judge on a Unix socket. If a grader controls it, it answers only the check that was opened, and only once."""
 
     def __init__(self, listener: socket.socket, *, controlled: bool) -> None:
         """Take over a listening Unix socket."""
@@ -80,7 +80,7 @@ class JudgeServer:
                 self._children[child.pid] = child
 
     def _obey(self, control: BinaryIO, answers: BinaryIO) -> bool:
-        """Obey one order. Return False at the end of orders."""
+        """Read and carry out one order. Return False if there are no more orders."""
         line = control.readline()
         if not line:
             return False
@@ -95,13 +95,13 @@ class JudgeServer:
         return True
 
     def _close(self) -> bytes:
-        """End the opened check and return its :class:`Report` as JSON; only the grader decodes it."""
+        """End the opened check and return its :class:`Report` as JSON, which only the grader decodes."""
         child, self._child, self._order = self._child, None, None
         if child is None:
             return msgspec.json.encode(Report())
         outcome = child.result(within=CLOSE_LIMIT)
         if outcome.hurried:
-            # The cell ended before its check did: the notebook gave up, the judge did not fail.
+            # The cell ended before its check did. So the notebook gave up; the judge did not fail.
             return msgspec.json.encode(Report())
         if outcome.data is None or b"\n" in outcome.data:
             trouble = outcome.trouble or "the judge sent more than one report"
@@ -109,14 +109,14 @@ class JudgeServer:
         return outcome.data
 
     def _reap(self) -> None:
-        """Free children whose notebooks already have their verdicts (judges without a controller)."""
+        """Wait for children whose notebooks already have their verdicts (if no grader controls this judge)."""
         for pid, child in list(self._children.items()):
             if child.done():
                 del self._children[pid]
 
 
 def _refuse(connection: socket.socket, why: str) -> None:
-    """Refuse. Read the request first: closing a socket with unread data would lose the answer (unix(7), ECONNRESET)."""
+    """Read a request, then refuse it: closing a socket with unread data would lose the answer (unix(7), ECONNRESET)."""
     with contextlib.suppress(OSError):
         connection.settimeout(REFUSE_LIMIT)
         connection.recv(65536)
@@ -124,7 +124,7 @@ def _refuse(connection: socket.socket, why: str) -> None:
 
 
 def run(path: Path) -> None:
-    """Serve every notebook that connects, until stdin ends. All printed output goes to stderr."""
+    """Serve every notebook that connects, until stdin ends. Everything printed goes to stderr."""
     answers = private_stdout()
     sys.stdout = sys.stderr
     try:

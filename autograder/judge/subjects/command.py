@@ -34,11 +34,12 @@ class CommandNotFound(LookupError):
 LAUNCH_FILES = (".py", ".xml", ".yaml", ".yml")
 """File name extensions of launch files."""
 FOR_BUILDS = 150.0
-"""Seconds that are added to an exercise's time limit because a command may build its package first. A failed
-command is judged twice. In the first part of each, the judge waits for the program twice as long as usual, and up to
-three times as long on an overloaded machine (`autograder/judge/bench/presence.py`)."""
+"""Seconds that are added to an exercise's time limit because a command may build its package first. A failed command is
+judged twice. In the first part of each look, the judge waits for the program up to twice as long as usual, and up to
+three times that on an overloaded machine (`autograder/judge/bench/presence.py`).
+"""
 SPARE = 10.0
-"""Seconds after an exercise's own time limit at which its judge counts as dead."""
+"""Seconds after an exercise's time limit at which its judge is assumed to have died."""
 
 
 def check_and_keep(
@@ -52,8 +53,8 @@ def check_and_keep(
     """Run a command as the subject of an exercise.
 
     Args:
-        exercise_id: Such as ``"lab_1_2.talker"``.
-        command: The program and its arguments; an exercise with inputs appends them.
+        exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
+        command: The program and its arguments. An exercise with inputs appends them.
         seed: The seed of the random inputs; the default is a new one.
         cwd: The folder in which to run the command.
         box: The sandbox to run it in; None to run it with all rights of the user.
@@ -77,7 +78,7 @@ def check_and_keep(
         verdict, checked = checked_here(exercise, command, chosen, cwd, box)
         return msgspec.json.encode(Report(verdict, evidence=_packed(checked)))
 
-    settings.provide_log_folder()  # here, because the child exits without cleaning up
+    settings.provide_log_folder()  # created here and not in the child, which exits without cleaning up
     outcome = Child(report, exercise.limit + FOR_BUILDS + SPARE).result()
     if outcome.data is None:
         advice = f"Run `{COMMAND} doctor`."
@@ -88,7 +89,7 @@ def check_and_keep(
 
 
 def as_run(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> Sequence[str]:
-    """Return the command to run. If a path is given instead of a command, a runner builds, runs or launches it."""
+    """Return the command to run. For a path that is given instead of a command, this is a runner with that path."""
     runner = python_child("-m", "autograder.workspaces", exercise.id).command
     if is_path(exercise, command, cwd):
         return [*runner, command[0]]
@@ -104,7 +105,8 @@ def is_path(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> boo
 
 
 def _search_path(cwd: Path | None) -> str | None:
-    # A name with a slash is relative to the folder in which the command will run.
+    # A name without a slash may also be in the folder in which the command will run; a name with a slash is relative
+    # to it.
     return os.environ.get("PATH") if cwd is None else f"{os.environ.get('PATH', '')}:{cwd}"
 
 
@@ -117,7 +119,7 @@ def _packed(checked: Checked | None) -> bytes:
 def checked_here(
     exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None, box: Box | None = None
 ) -> tuple[Verdict, Checked | None]:
-    """Judge a command in this process, a fork made for it. The evidence is None if the judge itself failed."""
+    """Judge a command in this process, which was forked for that. The evidence is None if the judge itself failed."""
     settings.prepare_judge(boxed=box is not None)
     if box is not None:
         box.enter()

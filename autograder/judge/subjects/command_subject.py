@@ -30,38 +30,38 @@ if TYPE_CHECKING:
     Record = Callable[..., None]
 
 MAX_LINE = 4_000
-"""Limit of one line of output, in characters."""
+"""The maximum length of a line of output, in characters."""
 MAX_OUTPUT = 2_000_000
-"""Limit of the output of one run, in bytes."""
+"""The maximum size of the output of one run, in bytes."""
 READ_LIMIT = 2.0
-"""Seconds in which the rest of the output must be read after a command has exited."""
+"""Time limit in seconds for reading the rest of the output after a command has exited."""
 POLITE = 1.0
-"""Seconds between SIGINT and SIGKILL."""
+"""Seconds to wait between SIGINT and SIGKILL."""
 
 
 LEFTOVERS = 1.0
-"""Seconds in which processes that a command left behind must end."""
+"""Time limit in seconds for processes that a command left behind to end."""
 
 
 class Box(Protocol):
-    """A sandbox that keeps commands from the user's files and network; this process is on the sandbox's network."""
+    """A sandbox that keeps commands from the user's files and network. The judge's process joins its network."""
 
     def enter(self) -> None:
-        """Enter the sandbox's network; called once, before ROS is imported.
+        """Join the sandbox's network. Called once, before ROS is imported.
 
         Raises:
             OSError: This machine does not allow it.
         """
 
     def start_of(self, command: Sequence[str], environment: Mapping[str, str]) -> tuple[list[str], list[int]]:
-        """Return the command that runs another one in the sandbox, and descriptors to pass on and then close."""
+        """Return the command line that runs a command in the sandbox, and descriptors to pass on and then close."""
 
     def limit(self) -> None:
         """Apply the limits of the sandbox; called in the child process."""
 
 
 class CommandSubject(InOwnProcesses):
-    """A command in a session of its own; all its output is read, and it ends with everything that it started."""
+    """A command in a session of its own. All its output is read; at the end, everything that it started is ended."""
 
     def __init__(self, command: Sequence[str], cwd: Path | None = None, box: Box | None = None) -> None:
         self._command = list(command)
@@ -72,11 +72,11 @@ class CommandSubject(InOwnProcesses):
         self._done = threading.Event()
         self._dying = threading.Event()
         self._last_words: list[str] = []
-        # Processes that a subject leaves behind become children of this process, so it can find and kill them.
+        # Processes that a subject leaves behind become children of this process, so that it can find and kill them.
         adopt_orphans()
 
     def begin(self, domain_id: int) -> None:
-        """Remember the ROS domain for the command's environment."""
+        """Remember the ROS domain for the environment of the command."""
         self._domain_id = domain_id
 
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
@@ -120,7 +120,7 @@ class CommandSubject(InOwnProcesses):
     def _in_the_child(self) -> None:
         if self._box is not None:
             self._box.limit()
-        # A judge that runs in the background of a shell ignores Ctrl-C; its subjects must not.
+        # A judge that was started in the background of a shell ignores Ctrl-C, but its subjects must not.
         signal.signal(signal.SIGINT, signal.SIG_DFL)
         die_with_parent()
 
@@ -144,8 +144,8 @@ class CommandSubject(InOwnProcesses):
     def stack(self) -> str:
         """Abort the command, and return the stacks that Python's faulthandler prints.
 
-        A child of the command may be what hangs: ``ros2 run`` starts the student's program and waits for it. Children
-        are aborted first, one at a time, so that their lines do not mix.
+        The process that hangs may be a child of the command: ``ros2 run`` starts the student's program and waits for
+        it. So children are aborted first, one at a time, so that their lines do not mix.
         """
         process = self._process
         if process is None or self.ended:
@@ -156,7 +156,7 @@ class CommandSubject(InOwnProcesses):
         return "\n".join(self._last_words)
 
     def stop(self) -> None:
-        """Send SIGINT to the command's process group, then SIGKILL to what is left of it."""
+        """Send SIGINT to the command's process group, then SIGKILL to the processes that are left."""
         if self._process is None:
             return
         self._dying.set()
@@ -180,11 +180,11 @@ class CommandSubject(InOwnProcesses):
             reader.start()
         code = process.wait()
         for reader in readers:
-            # All output must be read before the end is recorded, but a grandchild may hold the pipe
-            # open.
+            # All output must be read before the end is recorded. But a grandchild may hold the pipe open, so the wait
+            # has a limit.
             reader.join(timeout=READ_LIMIT)
         if self._dying.is_set():
-            record("subject", "aborted", code=code)  # the judge ended the command
+            record("subject", "aborted", code=code)  # not an end of its own: the judge aborted the command
             done.set()
         else:
             end("exited", done.set, code=code)

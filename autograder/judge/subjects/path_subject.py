@@ -1,4 +1,4 @@
-"""Check a workspace or launch file of a notebook: the grader builds and runs it, and reports.
+"""A subject in a notebook that is a workspace or launch file: the grader builds and runs it, and reports.
 
 The notebook sends only the sources. The workspace service of the grader (:mod:`autograder.workspaces.service`) writes
 them to files, builds and runs them, and sends the reports and the output of the programs.
@@ -25,12 +25,13 @@ if TYPE_CHECKING:
     from autograder.judge.bench.recorder import Recorder
 
 STOP_LIMIT = 15.0
-"""Seconds of wall time in which the workspace service must end a run."""
+"""Time limit in seconds of wall time for the workspace service to end a run."""
 PATIENCE = 60.0
-"""Seconds of wall time. A scenario that stops before a build has ended, after this time or later, has waited for the
-build in vain. A scenario that stops earlier has seen enough."""
+"""Seconds of wall time. A scenario that stops during a build after at least this time has waited for the build in vain.
+A scenario that stops earlier has seen enough.
+"""
 MAX_TEXT = 4_000
-"""Limit of one line, in characters."""
+"""The maximum length of a line, in characters."""
 
 
 class PathSubject(InOwnProcesses):
@@ -41,7 +42,7 @@ class PathSubject(InOwnProcesses):
     """
 
     def __init__(self, notebook: Lines, exercise: str, socket_path: str) -> None:
-        """Take over a conversation.
+        """Prepare to judge a path on a connection that is already open.
 
         Args:
             notebook: The connection to the notebook.
@@ -85,7 +86,7 @@ class PathSubject(InOwnProcesses):
         self._check()
 
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
-        """Have the workspace built, unless it is already, and run.
+        """Have the workspace service build the workspace, unless it is built already, and run it.
 
         Raises:
             JudgeFailed: The workspace service has ended.
@@ -104,7 +105,7 @@ class PathSubject(InOwnProcesses):
         """Do nothing: a program runs from its start."""
 
     def interrupt(self) -> None:
-        """Have the workspace service send Ctrl-C."""
+        """Have the workspace service send Ctrl-C to the program."""
         self._say(workspaces.Interrupt(self._run))
 
     @property
@@ -117,7 +118,7 @@ class PathSubject(InOwnProcesses):
         return ""
 
     def stop(self) -> None:
-        """Have the run ended.
+        """Have the workspace service end the run.
 
         Raises:
             JudgeFailed: The workspace service failed, so the evidence proves nothing.
@@ -146,7 +147,7 @@ class PathSubject(InOwnProcesses):
             raise JudgeFailed(self.trouble or f"the grader's side of workspaces is gone: {error}") from error
 
     def _collected(self) -> tuple[list[Source], str]:
-        """Return the sources that the notebook sends, and the reason why they cannot be used."""
+        """Return the sources that the notebook sends, or the reason why they cannot be used."""
         self._notebook.say(Collect())
         sources: list[Source] = []
         room = MAX_HELD
@@ -179,7 +180,7 @@ class PathSubject(InOwnProcesses):
             case workspaces.Ready():
                 self._ready.set()
             case _ if message.run != self._run:
-                pass  # from an earlier run
+                pass  # a message about an earlier run
             case workspaces.Stopped():
                 self._stopped.set()
             case workspaces.BuildEnded():
@@ -205,5 +206,5 @@ class PathSubject(InOwnProcesses):
 
 
 def as_words(text: str) -> str:
-    """Return a program's line so that it cannot be taken for a report of the runner, whatever it begins with."""
+    """Return a line of a program's output, changed if it could be taken for a report of the runner."""
     return f" {text[:MAX_TEXT]}" if text.startswith(REPORTS) else text[:MAX_TEXT]

@@ -1,4 +1,4 @@
-"""Check a subject in a notebook: the kernel runs it when the judge says so.
+"""A subject in a notebook: the kernel runs it when the judge says so.
 
 A Node class or a function runs inside the kernel, in one participant for all of its runs. For a workspace or a launch
 file, the kernel starts a new process for each run.
@@ -26,18 +26,19 @@ if TYPE_CHECKING:
     from autograder.judge.bench.recorder import Recorder
 
 MAX_TEXT = 4_000
-"""Limit of one text from the notebook, in characters."""
+"""The maximum length of a text from the notebook, in characters."""
 MAX_MARKER = 200
-"""Limit of the name of a marker, in characters."""
+"""The maximum length of a marker's name, in characters."""
 MAX_STACK = 50_000
-"""Limit of the stacks of a hung subject, in characters."""
+"""The maximum length of the stacks of a hung subject, in characters."""
 CONSTRUCT_LIMIT = 10.0
 """Seconds of wall time that a node's constructor may take before the judge stops waiting for it."""
 NEWS_LIMIT = 20.0
-"""Seconds that a notebook's participant may take, over all runs of a check, to discover the judge's endpoints. It takes
-milliseconds."""
+"""Time limit in seconds, for all runs of a check together, for a notebook's participant to discover the judge's
+endpoints. It usually takes milliseconds.
+"""
 STOP_LIMIT = 3.0
-"""Seconds of wall time in which the notebook must stop a run."""
+"""Time limit in seconds of wall time for the notebook to stop a run."""
 
 
 class RemoteSubject:
@@ -48,13 +49,13 @@ class RemoteSubject:
     is_building = False
 
     def __init__(self, lines: Lines, *, is_class: bool = False) -> None:
-        """Take over a conversation.
+        """Prepare to judge a notebook's subject on a connection that is already open.
 
         Args:
             lines: The connection to the notebook.
             is_class: True if the subject is a class. Its constructor must return before the run goes on.
         """
-        # Random for each check, so that no student's code can contain the name.
+        # The name is random in each check, so that no student's code can contain it.
         self.keeper = f"_check_keeper_{secrets.token_hex(8)}"
         self._lines = lines
         self._is_class = is_class
@@ -82,7 +83,7 @@ class RemoteSubject:
         self._ready.wait(STOP_LIMIT)
 
     def tell_so_far(self, words: str) -> None:
-        """Have the notebook's card show this while the check goes on."""
+        """Have the notebook's card show these words while the check goes on."""
         self._tell(checks.SoFar(words))
 
     def renew(self) -> None:
@@ -102,7 +103,7 @@ class RemoteSubject:
         return self._seen_as_told or self._gone.is_set()
 
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
-        """Have the notebook create the node (a class) or call the function."""
+        """Have the notebook make the node (if the subject is a class) or call the function."""
         self._run += 1
         self._recorder = recorder
         self._end = recorder.end_of_this_part()
@@ -113,15 +114,18 @@ class RemoteSubject:
         if self._is_class and not recorder.wait(
             lambda: self._marker is not None or self.ended, CONSTRUCT_LIMIT
         ):
-            # The subject is judged like a program: a constructor may do all of the work.
+            # From here on the subject is judged like a program, because the constructor may do all of the work.
             recorder.record("subject", "never_constructed")
 
     def interrupt(self) -> None:
-        """Have the notebook send Ctrl-C to a program. A class or function in the kernel goes on."""
+        """Have the notebook send Ctrl-C to a program. A class or function in the kernel is not interrupted."""
         self._tell(checks.Interrupt(self._run))
 
     def release(self) -> None:
-        """Have the node spin. If it may create more endpoints then, the marker no longer shows when all are there."""
+        """Have the notebook spin the node.
+
+        If the node may now make more endpoints, the marker no longer shows that it has made all of them.
+        """
         if self._may_make_more:
             self._marker, self._may_make_more = None, False
         self._tell(checks.Release(self._run))
@@ -132,17 +136,17 @@ class RemoteSubject:
         return self._ended or self._gone.is_set()
 
     def processes(self) -> frozenset[int]:
-        """Return none: the subject runs in the notebook's kernel, next to other processes that the kernel started."""
+        """Return an empty set: the subject runs in the notebook's kernel, next to other processes of the kernel."""
         return frozenset()
 
     @property
     def marker(self) -> str | None:
-        """The topic that the notebook created after the subject's constructor had returned."""
+        """The topic that the notebook makes once the subject's constructor has returned; None if unknown."""
         return self._marker or None
 
     @property
     def may_make_more(self) -> bool:
-        """True until a node that has a timer or a thread of its own is released."""
+        """True for a node that has a timer or a thread of its own, until it is released."""
         return self._may_make_more
 
     def stack(self) -> str:
@@ -185,7 +189,7 @@ class RemoteSubject:
                 self._seen_as_told = seen
                 self._answered.set()
             case checks.Check() | Source() | checks.Sources():
-                pass  # these belong to the beginning of a conversation
+                pass  # these messages are sent only at the beginning of a conversation
             case _ if message.run == self._run and self._recorder is not None:
                 self._take_of_run(message, self._recorder)
 
@@ -229,7 +233,7 @@ class RemotePath(InOwnProcesses, RemoteSubject):
     is_building = True
 
     def __init__(self, lines: Lines) -> None:
-        """Take over a conversation."""
+        """Prepare to judge a path on a connection that is already open."""
         super().__init__(lines)
         self.keeper = InOwnProcesses.keeper
 

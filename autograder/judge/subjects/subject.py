@@ -1,4 +1,4 @@
-"""Define what a judge expects of a subject: it starts, communicates over ROS, and may end."""
+"""The interface of a subject for the judge: it starts, communicates over ROS, and may end."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 class Subject(Protocol):
-    """A node class or a function in a notebook, or a command.
+    """A subject: a node class or a function in a notebook, or a command.
 
     Implementations write into the recorder: an ``output`` event for each line of output, and ``subject`` events named
     ``constructed``, ``returned``, ``raised`` or ``exited``.
@@ -21,7 +21,7 @@ class Subject(Protocol):
     in_a_notebook: bool
     """True if a check cell, and perhaps a student, waits for the verdict."""
     keeper: str
-    """The name of the node that keeps the participant alive and has no endpoints; empty if there is none."""
+    """The name of the node that keeps the participant alive and has no endpoints of its own; empty if there is none."""
 
     def begin(self, domain_id: int) -> None:
         """Prepare for the first run, on the ROS domain of this check; called once."""
@@ -34,16 +34,17 @@ class Subject(Protocol):
         """True until the packages of a workspace are built for the first time; False if nothing has to be built."""
 
     def renew(self) -> None:
-        """Begin the next run with a new participant: an old one would discover the judge's new one only slowly."""
+        """Use a new participant for the next run, because an old one would discover the judge's new one only slowly."""
 
     def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
         """Wait until the participant of the next run sees the judge's new endpoints and no longer the removed ones.
 
-        Each participant discovers endpoints by itself. Otherwise a subject could still see a service of an
+        Each participant discovers endpoints by itself. Without this wait, a subject could still see a service of an
         earlier run and call it.
 
         Returns:
-            False if the participant did not see that within a generous time limit, or the notebook does not answer.
+            False if the participant did not see this within a generous time limit, or if the notebook does not
+            answer.
         """
 
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
@@ -53,7 +54,7 @@ class Subject(Protocol):
         """Let a held run spin its node."""
 
     def interrupt(self) -> None:
-        """Send Ctrl-C, as a terminal does. A run that then ends counts as ended by itself."""
+        """Send Ctrl-C, as a terminal does. A run that ends after that counts as ended by itself."""
 
     @property
     def ended(self) -> bool:
@@ -65,7 +66,7 @@ class Subject(Protocol):
 
     @property
     def may_make_more(self) -> bool:
-        """True if the run is held and has a timer or a thread, which may create more endpoints once it is released."""
+        """True if a run is held whose timer or thread may make more endpoints once it is released."""
 
     def processes(self) -> frozenset[int]:
         """Return the ids of the running processes that the subject has started; none if they are not known."""
@@ -73,11 +74,11 @@ class Subject(Protocol):
     def stack(self) -> str:
         """Return the stack of each thread, innermost call first, as faulthandler prints it; empty if unknown.
 
-        This may end the run, which does not count as ending by itself.
+        This may end the run, which then does not count as ended by itself.
         """
 
     def stop(self) -> None:
-        """End the run by all means. Afterwards no process, thread or node of it is left."""
+        """End the run by any means. Afterwards none of its processes, threads and nodes is left."""
 
 
 class InOwnProcesses:
@@ -91,14 +92,14 @@ class InOwnProcesses:
     may_make_more = False
 
     def processes(self) -> frozenset[int]:
-        """Return none: the processes are not children of this one."""
+        """Return an empty set: the subject's processes are not children of this process."""
         return frozenset()
 
     def tell_so_far(self, words: str) -> None:
         """Do nothing: a command has no card."""
 
     def renew(self) -> None:
-        """Do nothing: each run has its own participant."""
+        """Do nothing: each run is a new process, which has a new participant anyway."""
 
     def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
         """Return True: a new participant has discovered nothing yet, so it cannot see removed endpoints."""

@@ -1,7 +1,7 @@
-"""Measure how overloaded the machine was during a look in real time, so that its load fails no answer.
+"""Measures how overloaded the machine was during a look in real time, so that the load fails no right answer.
 
 The load average (getloadavg(3)) would be the wrong measure: it still counts programs that ended before the look, and
-hardly those that started with it.
+hardly counts those that started with it.
 """
 
 from __future__ import annotations
@@ -23,27 +23,27 @@ TOO_BUSY = (
     "or wrong. Close some, or wait a little, and check again."
 )
 SEEN_SO_FAR = "So far the judge saw this, and it may be due to the busy machine: “{}”"
-"""Quotes the diagnosis of a look that may be wrong."""
+"""A sentence that quotes the diagnosis of a look that may be wrong."""
 ANSWER_WITHIN = 30.0
-"""Wall time in seconds after which a check in a notebook ends without a verdict if the machine is crowded."""
+"""On a crowded machine, a check in a notebook ends without a verdict after this many seconds of wall time."""
 _EVERY = 0.1
-"""Seconds between two counts."""
+"""Seconds between two counts of the threads."""
 
 
 class TooBusy(JudgeFailed):
-    """The subject did not pass, and that may be because the machine was crowded."""
+    """The subject did not pass, perhaps because the machine was crowded."""
 
 
 class OutOfTime(BaseException):
-    """A check on an overloaded machine has used up its time. No ``except Exception`` may catch this."""
+    """A check on an overloaded machine has used up its time. Must not be caught by ``except Exception``."""
 
 
 class Crowding:
-    """Counts the threads that want a processor, from ``__enter__`` to ``__exit__``.
+    """Counts the threads that run or wait for a processor, from ``__enter__`` to ``__exit__``.
 
     Args:
-        runnable: Returns how many there are now.
-        processors: How many processors they share.
+        runnable: Returns the current number of such threads.
+        processors: The number of processors that they share.
     """
 
     def __init__(
@@ -76,15 +76,15 @@ class Crowding:
 
 
 class Hurry:
-    """Ends a check after :data:`ANSWER_WITHIN` seconds if the machine is so busy that it stretches the judge's limits.
+    """Ends a check after :data:`ANSWER_WITHIN` seconds if the machine is so busy that the judge's limits get longer.
 
     On any other machine a check takes as long as its exercise needs.
 
     Args:
-        runnable: Returns how many threads want a processor now.
-        processors: How many processors they share.
+        runnable: Returns the number of threads that run or wait for a processor now.
+        processors: The number of processors that they share.
         now: A monotonic clock, in seconds.
-        is_building: Returns True while a workspace is built: that has its own limit, so this time does not count.
+        is_building: Returns True while a workspace is built. A build has its own limit, so its time does not count.
     """
 
     def __init__(
@@ -101,10 +101,10 @@ class Hurry:
         self._sum = self._counts = 0
 
     def __call__(self) -> None:
-        """Count, and end the check if its time is over; call it repeatedly while the judge waits.
+        """Count threads, and end the check if its time is over. Call this repeatedly while the judge waits.
 
         Raises:
-            OutOfTime: At most once, because cleaning up after it waits, too.
+            OutOfTime: The time is over. Raised at most once, because cleaning up afterwards waits, too.
         """
         now = self._now()
         if self._is_building():

@@ -1,7 +1,7 @@
-"""Limit the time that the judge takes to decide about a subject's output and messages.
+"""Limits the time that the judge takes to decide about a subject's output and messages.
 
-A student wrote that output, so it may keep a criterion busy forever. Deciding needs nothing but a processor, so a
-limit on processor time has the same effect on a busy machine and on an idle one.
+A student's program wrote that output, so it may keep a criterion busy forever. Deciding needs only a processor, so a
+limit on processor time has the same effect on a busy machine as on an idle one.
 """
 
 from __future__ import annotations
@@ -22,20 +22,22 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 LIMIT = 10.0
-"""Seconds of processor time for one decision; it usually takes a hundredth of a second."""
+"""The limit in seconds of processor time for one decision; it usually takes a hundredth of a second."""
 AGAIN = 0.05
 """Seconds of processor time after which the signal is sent again if the decision has not ended.
 
-Python prints and drops an exception that is raised in a destructor or in a callback of the garbage collector.
+This is needed because Python prints and drops an exception that is raised in a destructor or in a callback of the
+garbage collector.
 """
 SURE = 1.0
-"""Seconds of processor time from which the subject's output, not the machine, is what delays the decision."""
+"""A decision that has taken this many seconds of processor time is delayed by the subject's output, not by the machine.
+"""
 SIGNAL = signal.SIGVTALRM
-"""Ends a decision; a judge that is not deciding ignores it."""
+"""The signal that ends a decision. A judge that is not deciding ignores it."""
 
 
 class Undecided(BaseException):
-    """The judge did not reach a decision. No ``except Exception`` may catch this."""
+    """The judge did not reach a decision. Must not be caught by ``except Exception``."""
 
 
 @contextlib.contextmanager
@@ -47,10 +49,11 @@ def limited(seconds: float = LIMIT) -> Iterator[None]:
 
     Raises:
         Undecided: The time is over, or the parent process has sent ``SIGNAL``. A decision that has only just begun
-            ignores the signal: it was late for another reason, and no verdict is better than a wrong one.
+            ignores the signal, because then the check is late for another reason, and no verdict is better than a
+            wrong one.
     """
     if threading.current_thread() is not threading.main_thread():
-        yield  # only the main thread receives signals; judges decide in it
+        yield  # only the main thread receives signals, so judges decide in it
         return
 
     began = time.process_time()
@@ -79,7 +82,7 @@ def _no_longer(before: signal.Handlers | Callable[..., object] | int | None) -> 
 
 
 def undecidable(exercise: Exercise, seed: str) -> Verdict:
-    """Return a verdict of zero points: the subject's output is too long to decide about, in this check and the next."""
+    """Return a verdict of zero points: the subject's output is too long to decide about, now and in any later check."""
     diagnosis = Diagnosis(
         "undecidable",
         "Your program said and sent far too much: the judge could not finish reading it.",

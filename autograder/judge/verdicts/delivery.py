@@ -1,4 +1,4 @@
-"""Test whether this machine still delivers messages, so that a machine that loses them fails no answer.
+"""Tests whether this machine still delivers messages, so that a machine that loses messages fails no right answer.
 
 The kernel limits the memory of all sockets of a machine, and the number of epoll watches of each user, sandboxes
 included. If either is used up, a node starts without an error and receives little or nothing (udp(7), epoll(7)).
@@ -16,9 +16,9 @@ NOT_DELIVERED = (
     "judge cannot tell whether your node sent any. Close some, or wait a little, and check again."
 )
 _DATAGRAMS, _BYTES = 16, 4096
-"""More than a socket can hold if this memory is used up, and less than half of what it can hold otherwise."""
+"""Together more than a socket can hold if this memory is used up, and less than half of what it can hold otherwise."""
 _ARRIVES_WITHIN = 10.0
-"""Seconds of wall time; inside one machine a datagram waits only for a processor."""
+"""Time limit in seconds of wall time. Inside one machine, a datagram waits only for a processor."""
 
 
 class NotDelivered(JudgeFailed):

@@ -1,4 +1,4 @@
-"""Exceptions of an exercise's own code: its author has to correct them, and another run of the check does not help."""
+"""Exceptions in an exercise's own code: its author has to correct them, and repeating the check does not help."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 WHAT_TO_DO = "Show this card to your instructor: the exercise has to be corrected first."
 KIT = Path(kit.__file__).parent
 MAX_WORDS = 300
-"""Limit of the quoted error, in characters; it may contain what the subject said."""
+"""The maximum length of the quoted error, in characters. The error may contain output of the subject."""
 
 
 class ExerciseFailed(JudgeFailed):
@@ -27,7 +27,7 @@ class ExerciseFailed(JudgeFailed):
 
 @contextlib.contextmanager
 def of_exercise(exercise: Exercise) -> Iterator[None]:
-    """Turn an exception of an exercise's scenario, criteria or mistakes into one that says what to do about it.
+    """Turn an exception in an exercise's scenario, criteria or mistakes into one that says what to do about it.
 
     Raises:
         ExerciseFailed: The code in the block raised an exception, and code of the exercise or of the kit called it.
@@ -45,7 +45,7 @@ def of_exercise(exercise: Exercise) -> Iterator[None]:
 
 
 def _where(error: Exception, exercise: Exercise) -> str:
-    """Return the file and line of the exercise, or else of the kit, that the exception came through; or nothing."""
+    """Return the file and line of the exercise (else of the kit) through which the exception came; empty if none."""
     frames = traceback.extract_tb(error.__traceback__)
     for folder in (exercises.path(exercise.id).parent, KIT):
         for frame in reversed(frames):

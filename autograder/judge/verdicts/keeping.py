@@ -1,7 +1,7 @@
 """Pack the evidence of a check into bytes of limited size, and unpack it unchanged.
 
-The format is JSON under gzip, one line for each event. Evidence that is too long is cut, and marked as cut: no verdict
-may be drawn from part of the evidence.
+The format is JSON under gzip, with one line for each event. Evidence that is too long is cut, and marked as cut,
+because no verdict may be drawn from part of the evidence.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Reference
 
 MAX_BYTES = 400_000
-"""Limit of the evidence of one check, in compressed bytes."""
+"""The maximum size of the evidence of one check, in compressed bytes."""
 MAX_RAW_BYTES = 8_000_000
-"""Limit in bytes before compression; it also cuts endless repetition, which compresses well."""
+"""The maximum size in bytes before compression. It also cuts endless repetition, which compresses well."""
 _GZIP = 31
-"""zlib's ``wbits`` for a gzip header with the largest window."""
+"""The value of zlib's ``wbits`` for a gzip header with the largest window."""
 _FLOAT = "$float"
-"""Key for a number that JSON cannot express, such as infinity; no field of a message can have this name."""
+"""The key that marks a number that JSON cannot express, such as infinity. No message field can have this name."""
 
 
 class NoEvidence(ValueError):
@@ -49,13 +49,13 @@ class KeptLook(msgspec.Struct, frozen=True):
 
 
 class Kept(msgspec.Struct, frozen=True):
-    """A verdict with everything that it follows from.
+    """A verdict with everything that it is derived from.
 
     Attributes:
         at: Unix time of the verdict, in seconds.
         reference: The SHA-256 of the reference output's file.
-        verdict: The verdict without its timeline, which follows from the events.
-        looks: The quick look, and the look in real time if there was one.
+        verdict: The verdict without its timeline, which is derived from the events.
+        looks: The fast look, and the look in real time if there was one.
         cut: What is missing, and why; empty if the evidence is whole.
     """
 
@@ -67,7 +67,7 @@ class Kept(msgspec.Struct, frozen=True):
 
 
 def packed(checked: Checked) -> bytes:
-    """Pack the evidence of a check. Return no bytes if that fails: a student must not lose a verdict by it."""
+    """Pack the evidence of a check. Return no bytes if that fails, because no student must lose a verdict by it."""
     try:
         digest = reference.digest(checked.verdict.exercise)
         return pack(checked.verdict, checked.evidence, digest, at=time.time())
@@ -77,7 +77,7 @@ def packed(checked: Checked) -> bytes:
 
 
 def pack(verdict: Verdict, evidence: Evidence, digest: str, *, at: float) -> bytes:
-    """Pack a check into bytes; :func:`unpack` reads them.
+    """Pack a check into bytes that :func:`unpack` can read.
 
     Args:
         verdict: The verdict.
@@ -105,7 +105,7 @@ def pack(verdict: Verdict, evidence: Evidence, digest: str, *, at: float) -> byt
 
 
 class _Sheet:
-    """Lines of JSON under gzip, up to the limit of bytes."""
+    """Collects lines of JSON, compressed with gzip, up to the size limits."""
 
     def __init__(self) -> None:
         self._zip = zlib.compressobj(1, zlib.DEFLATED, _GZIP)
@@ -120,11 +120,11 @@ class _Sheet:
             self.left_out += 1
 
     def end(self, row: Any) -> bytes:
-        """Return all bytes, with a last line that is added in any case."""
+        """Add a last line, whatever the limits, and return all bytes."""
         return bytes(self._written) + self._zip.compress(_line(row)) + self._zip.flush()
 
     def _add(self, line: bytes) -> bool:
-        # Lines that the compressor still holds count uncompressed, until a flush shows their compressed size.
+        # Lines that the compressor still holds count uncompressed until a flush shows their compressed size.
         if len(self._written) + self._pending + len(line) > MAX_BYTES:
             self._written += self._zip.flush(zlib.Z_SYNC_FLUSH)
             self._pending = 0
@@ -175,7 +175,7 @@ def evidence_of(kept: Kept, expected: Reference) -> Evidence:
         expected: The reference output.
 
     Raises:
-        NoEvidence: It contains no look.
+        NoEvidence: The kept evidence contains no look.
     """
     evidence: Evidence | None = None
     for look in kept.looks:
@@ -194,7 +194,7 @@ def _line(row: Any) -> bytes:
 
 
 def plain(value: Any) -> Any:
-    """Return a value that JSON can express: numbers such as infinity become a dictionary with a word."""
+    """Return a value as JSON can express it: infinity and the like become a dictionary with a word."""
     if isinstance(value, float) and not math.isfinite(value):
         return {_FLOAT: str(value)}
     if isinstance(value, Mapping):

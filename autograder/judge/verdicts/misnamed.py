@@ -1,4 +1,4 @@
-"""Find the endpoints that a subject has under a wrong name, so that a wrong name costs one criterion and no other."""
+"""Finds the endpoints to which a subject gave a wrong name, so that a wrong name costs one criterion and no other."""
 
 from __future__ import annotations
 
@@ -10,18 +10,19 @@ if TYPE_CHECKING:
 
 
 def misnamed(evidence: Evidence, verdict: Verdict) -> dict[str, dict[str, str]]:
-    """Return the wrongly named endpoints by the names in the task.
+    """Return the endpoints with wrong names, by their names in the task.
 
-    A name counts as wrong if the subject has no endpoint of this name, role and type in any run, but exactly one other
-    endpoint of this role and type. Of two candidates none is chosen: either could be the one that was meant.
+    A name counts as wrong if the subject has, in all runs, no endpoint of this name, role and type, but exactly one
+    other endpoint of this role and type. If there are two, neither is chosen, because it is unclear which one was
+    meant.
 
     Args:
         evidence: A look in which the judge used the names in the task.
-        verdict: The verdict from it, which is not a pass.
+        verdict: The verdict on that look, which is not a pass.
 
     Returns:
-        For each name ``real``, the subject's name, and ``costs``, the criterion that the wrong name costs: the first
-        that failed.
+        For each name: ``real``, the name that the subject uses, and ``costs``, the criterion that the wrong name
+        fails first.
     """
     costs = next(criterion.name for criterion in verdict.criteria if not criterion.passed)
     found: dict[str, dict[str, str]] = {}

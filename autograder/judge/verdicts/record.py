@@ -1,4 +1,4 @@
-"""Record a reference output: run the reference solution through the same look as a student's answer."""
+"""Records a reference output: runs the reference solution through the same look as a student's answer."""
 
 from __future__ import annotations
 
@@ -20,8 +20,9 @@ if TYPE_CHECKING:
 SEED = "reference"
 """The fixed seed of a recording, so that its inputs are the same each time."""
 LOOKS = 10
-"""How often recording looks again at a subject whose evidence is doubtful on a busy machine. With three looks, 1 of 36
-recordings failed while eighteen ran at once on two processors."""
+"""The maximum number of looks for recording a subject whose evidence is doubtful on a busy machine. With three looks, 1
+of 36 recordings failed when eighteen ran at once on two processors.
+"""
 
 
 class NotRecordable(RuntimeError):
@@ -31,15 +32,15 @@ class NotRecordable(RuntimeError):
 def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference:
     """Record the reference solution's endpoints, then run the scenario on it.
 
-    As with any subject, a fast look that fails proves nothing unless the mistake is certain: on a busy machine, a goal
-    may end before it is canceled, or the first message may be lost. So recording looks again, but not after it
-    has taken as long as a check may take.
+    As with any subject, a fast look that fails proves nothing unless the mistake is certain: on a busy machine, a
+    goal may end before it is canceled, or the first message may be lost. So recording looks again, until the looks
+    together have taken as long as a check may take.
 
     Returns:
-        The recording of the first look in which the solution was right; if there is none, that of the last look.
+        The recording of the first look in which the solution was right; if there is none, of the last look.
 
     Raises:
-        NotRecordable: The solution had no endpoint of the exercise's roles, or each look was doubtful.
+        NotRecordable: The solution had no endpoint of the exercise's roles, or every look was doubtful.
     """
     deadline = time.monotonic() + exercise.limit
     subject.begin(domain_id)
@@ -70,7 +71,7 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
 
 
 def as_evidence(recorded: Reference) -> Evidence:
-    """Return the recording as the evidence of a subject that is its own reference."""
+    """Return the recording as evidence: the subject and the reference are the same."""
     return Evidence(recorded.parts, recorded)
 
 
@@ -82,22 +83,23 @@ def _interface(exercise: Exercise, subject: Subject, domain_id: int) -> dict[str
             bench.part("interface")
             bench.start(*program, *exercise.sample_arguments)
             if exercise.runner:
-                # A workspace is built first; its endpoints appear only then.
+                # A workspace is built first, and its endpoints appear only after that.
                 bench.wait_until(_is_at_work, exercise.limit)
             shown = bench.await_any_endpoint(exercise.roles)
             found |= {role: shown[role] for role in shown if shown[role] or role not in found}
             if not exercise.runner and bench.seen().ending is None:
-                # The solution may create more endpoints than the first one seen: wait until it has created all.
+                # The solution may make more endpoints than the first one seen, so wait until it has made all.
                 shown = bench.await_any_endpoint(())
                 found |= {role: found.get(role, {}) | shown[role] for role in shown}
-        # Several programs do not run at once: only the endpoints of the roles are the same in each recording.
+        # If several programs run one after the other, only the endpoints of the exercise's roles are the same in each
+        # recording.
         return {role: found[role] for role in exercise.roles} if exercise.runner else found
     finally:
         bench.close()
 
 
 def _programs(exercise: Exercise) -> list[tuple[str, ...]]:
-    """Return the arguments that choose each program of the exercise; one empty tuple if there is only one subject."""
+    """Return the arguments that choose each program of the exercise; one empty tuple if it has only one subject."""
     runner = exercise.runner
     return [(name,) for name in runner.programs] if isinstance(runner, RunsPrograms) else [()]
 

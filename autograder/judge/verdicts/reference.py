@@ -1,4 +1,4 @@
-"""Read and write reference outputs: what the reference solutions do on the wire, as JSON for people to review.
+"""Reads and writes reference outputs: what the reference solutions do on the wire, as JSON that people can review.
 
 A recording keeps what the task decides (messages, requests, answers) and drops what the machine decides (wall times,
 random node names, the order of log lines between two channels).
@@ -26,7 +26,7 @@ _KEPT = (
 
 _ON_THE_WAY = ("feedback_heard", "result_heard")
 _MACHINE = ("number", "sent", "arrived")
-"""Data of an event that differs from run to run."""
+"""Fields of an event that differ from run to run."""
 
 
 class NoReference(LookupError):
@@ -80,7 +80,7 @@ def parse(data: Mapping[str, Any]) -> Reference:
 
 
 def dump(reference: Reference, kinds: Sequence[str] | None = None) -> str:
-    """Return the JSON form, one line for each event. Recordings of the same behavior have the same form.
+    """Return the JSON form with one line for each event. Recordings of the same behavior have the same form.
 
     Args:
         reference: The recording.
@@ -111,11 +111,11 @@ def _sorted(interface: Mapping[str, Mapping[str, str]]) -> dict[str, dict[str, s
 
 def _events(part: Part) -> list[dict[str, Any]]:
     kept = [event for event in part.events if event.kind in _KEPT]
-    # How far a goal gets before it is canceled depends on the machine, too.
+    # How far a goal gets before it is canceled depends on the machine, so that feedback is left out.
     canceled = {event.data["goal"] for event in kept if event.kind == "cancel_sent"}
     kept = [e for e in kept if not (e.kind in _ON_THE_WAY and e.data["goal"] in canceled)]
-    # Goals that run at once share one part. Which goal is ahead, and whether the first feedback arrives before
-    # the answer to its goal, depends on the machine.
+    # Goals that run at the same time share one part. Sort them, because it depends on the machine which goal is ahead
+    # and whether the first feedback arrives before the answer to its goal.
     kept.sort(key=lambda event: (event.data.get("goal", 0), event.kind not in ("goal_sent", "goal_answer")))
     start = next((event.sim for event in kept if event.sim is not None), None)
     return [_event(event, start) for event in kept]

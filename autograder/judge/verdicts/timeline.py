@@ -1,4 +1,4 @@
-"""Choose the events that a card's timeline shows as dots."""
+"""Chooses the events that a card's timeline shows as dots."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part, Reference
 
 MAX_MOMENTS = 80
-"""Number of moments in a verdict: all important ones, and the first of the others."""
+"""The number of moments in a verdict: all important ones, and the first of the others."""
 MOST_MOMENTS = 120
-"""Limit of moments if more than that are important, as for a program that sends goals forever."""
+"""The maximum number of moments if more than that are important, as for a program that sends goals forever."""
 
 MAX_LABEL = 200
-"""Limit of one moment's label, in characters."""
+"""The maximum length of a moment's label, in characters."""
 
 EXPECTED = 5
-"""Number of missing messages that a failed card shows for each topic, from the first one on."""
+"""The maximum number of missing messages that a failed card shows for each topic, beginning with the first."""
 
 _ENDS = {
     "publisher": "your publisher is here",
@@ -45,12 +45,12 @@ _QUOTED = re2.compile(r"“([^”…]*\w[^”…]*)")
 
 
 def moments(evidence: Evidence, words: str = "", *, missed: bool = False) -> tuple[Moment, ...]:
-    """Return the traffic on the wire in order. If there are too many events, keep the first and all important ones.
+    """Return the traffic on the wire, in order. If there are too many events, keep the first and all important ones.
 
     Args:
         evidence: The evidence of the check.
-        words: The text of the card. Each logged or printed line that it quotes is in the timeline.
-        missed: True to add the messages of the reference solution that did not come, each at its time.
+        words: The text of the card. The timeline contains each logged or printed line that this text quotes.
+        missed: True to add the reference solution's messages that the subject did not send, each at its time.
     """
     several = len(evidence.parts) > 1
     quoted = tuple(dict.fromkeys(_QUOTED.findall(words)))
@@ -69,7 +69,7 @@ def moments(evidence: Evidence, words: str = "", *, missed: bool = False) -> tup
 
 
 def _since_the_build(part: Part) -> Part:
-    """Return the part with times from the end of its build, if it has one: the program started only then."""
+    """Return the part with times counted from the end of its build, because the program started only then."""
     built = build_ended(part)
     if not built:
         return part
@@ -77,7 +77,7 @@ def _since_the_build(part: Part) -> Part:
 
 
 def _first_said(part: Part, quoted: Sequence[str]) -> dict[int, Event]:
-    """Return, for each quoted text, the first event with it: a log line if there is one, else printed output."""
+    """Return, for each quoted text, the first event that contains it: a log line if possible, else printed output."""
     found: dict[str, Event] = {}
     for event in sorted(part.events if quoted else (), key=lambda event: event.kind == "output"):
         said = spoken_by(event) if event.kind in ("log", "output") else None
@@ -102,7 +102,7 @@ def _of_part(
     unlike = _first_unlike(shown, part, reference)
     found = [
         (
-            # Events at the same simulated time are in the order in which they were sent.
+            # Events at the same simulated time are sorted by the time at which they were sent.
             (_time(event, start), _said_at(event)),
             Moment(
                 t=_time(event, start),
@@ -126,7 +126,7 @@ def _of_part(
 
 
 def _said_at(event: Event) -> float:
-    """Return when the event was sent, if known, or else arrived, in seconds of wall time since the part began."""
+    """Return when the event was sent or, if unknown, when it arrived, in seconds of wall time since the part began."""
     sent, arrived = event.data.get("sent"), event.data.get("arrived")
     if not isinstance(sent, float) or not isinstance(arrived, float):
         return event.t
@@ -134,7 +134,7 @@ def _said_at(event: Event) -> float:
 
 
 def _time(event: Event, start: float | None) -> float:
-    """Return the event's seconds on the time axis: simulated time since ``start`` if the clock was stepped."""
+    """Return the event's position on the time axis in seconds: simulated time since ``start`` if it was stepped."""
     if start is None:
         return round(_said_at(event), 3)
     return 0.0 if event.sim is None else round(event.sim - start, 3)
@@ -146,7 +146,7 @@ def _began(event: Event) -> bool:
 
 
 def _without_echoes(events: Iterable[Event]) -> Iterator[Event]:
-    """Yield all events except the judge's own messages that it received on a topic to which it also subscribes."""
+    """Yield all events except messages of the judge's own that it received because it also subscribes to the topic."""
     on_their_way: Counter[str] = Counter()
     for event in events:
         if event.kind in ("sent", "message"):
@@ -160,14 +160,14 @@ def _without_echoes(events: Iterable[Event]) -> Iterator[Event]:
 
 
 def _under_real_names(part: Part) -> Iterator[Event]:
-    """Yield the events without echoes, under the names that the subject gave to topics, services and actions."""
+    """Yield the events, without such echoes, under the names that the subject gave to topics, services and actions."""
     real = {event.name: event.data["real"] for event in part.of("misnamed")}
     for event in _without_echoes(part.events):
         yield replace(event, name=real[event.name]) if event.name in real else event
 
 
 def _lanes(events: Sequence[Event]) -> list[str]:
-    """Return each event's lane: a name on the graph, or one lane for each goal if an action has several."""
+    """Return each event's lane: a name on the graph or, if an action has several goals, one lane for each goal."""
     number: dict[str, int] = {}
     numbers = []
     for event in events:
@@ -202,7 +202,7 @@ def _first_unlike(events: Sequence[Event], part: Part, reference: Reference) -> 
 
 
 def _astray(part: Part, reference: Reference, title: str, start: float | None) -> Iterator[Moment]:
-    """Yield the subject's unexpected endpoints of each role in which an expected endpoint is missing."""
+    """Yield the subject's unexpected endpoints, for each role in which an expected endpoint is missing."""
     for role, words in _ENDS.items():
         expected = set(reference.interface.get(role, {}))
         missing = expected - set(part.endpoints(role))
@@ -222,9 +222,10 @@ def _astray(part: Part, reference: Reference, title: str, start: float | None) -
 
 
 def _missed(part: Part, reference: Reference, title: str, start: float | None) -> Iterator[Moment]:
-    """Yield the first messages of the reference solution that did not come, if the part has the same inputs.
+    """Yield the reference solution's messages that are due next and did not come, if the part has the same inputs.
 
-    Times count from the subject's first message, or else its first log line: the task asks only for intervals.
+    Times are counted from the subject's first message, or else from its first log line, because the task asks only
+    for intervals.
     """
     known = next(
         (one for one in reference.parts if one.name == part.name and one.inputs == part.inputs), None
@@ -236,7 +237,8 @@ def _missed(part: Part, reference: Reference, title: str, start: float | None) -
         if len(due) < 2:
             continue  # no interval
         near = (due[1][0] - due[0][0]) / 2
-        # The first message heard need not be the first one sent: DDS numbers each publisher's messages from 1.
+        # The first message that was heard need not be the first one sent: DDS numbers each publisher's messages from
+        # 1.
         number = int(part.of("message", topic)[0].data.get("number", 1)) if came else 1
         due = due[min(number, len(due)) - 1 :]
         first = came or [(_time(event, start), "") for event in part.of("log")]
@@ -256,13 +258,13 @@ def _fields(data: Mapping[str, Any]) -> str:
     if len(fields) == 1 and not inner:
         return str(next(iter(fields.values())))
     leaves = dict(_leaves(fields))
-    # Nested messages are mostly zeros, so show only the other fields.
+    # Nested messages are mostly zeros, so only the other fields are shown.
     told = {name: value for name, value in leaves.items() if value or not inner} or leaves
     return ", ".join(f"{name}={value}" for name, value in told.items())
 
 
 def _goal(data: Mapping[str, Any]) -> str:
-    """Return a goal in words; a bare number would look like the number of the goal."""
+    """Return a goal's fields in words; a number without a name would look like the number of the goal."""
     fields = data.get("fields", {})
     name = next(iter(fields), "") if len(fields) == 1 else ""
     return f"goal, {name} {_fields(data)}" if name else f"goal {_fields(data)}"
@@ -282,7 +284,7 @@ class _Kind(NamedTuple):
     Attributes:
         direction: The direction of the dot.
         label: Returns the label of the dot.
-        key: True if the moment is important: it is always kept.
+        key: True if the moment is important and therefore always kept.
         numbered: True if the event belongs to a goal of the judge and carries the goal's number.
     """
 

@@ -1,4 +1,4 @@
-"""Run one check: look, judge, look again if that is fair, and name the mistake."""
+"""Runs one check: looks, judges, looks again if that is fair, and names the mistake."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ if TYPE_CHECKING:
 UNKNOWN = "unknown"
 """The key of the diagnosis if the mistake is not a known one."""
 MAX_DETAIL = 6_000
-"""Limit of a traceback on a card, in characters."""
+"""The maximum length of a traceback on a card, in characters."""
 MAX_WORDS = 500
-"""Limit of one sentence of a verdict, in characters; it may quote the subject's output."""
+"""The maximum length of one sentence of a verdict, in characters; it may quote the subject's output."""
 
 
 @dataclass(frozen=True)
@@ -55,10 +55,11 @@ class Checked:
     """The result of a check.
 
     Attributes:
-        verdict: What the judge found.
-        evidence: What that follows from.
-        crowded: True if the subject did not pass, nothing proves a mistake, and the machine was busier in the real-time
-            look than the judge allows for, or the subject had not discovered the judge's endpoints.
+        verdict: The decision, with the findings.
+        evidence: The evidence from which the verdict was derived.
+        crowded: True if the verdict is not a pass and may be unfair: nothing proves a mistake, and in the look in
+            real time the machine was busier than the judge allows for, or the subject had not discovered the judge's
+            endpoints.
     """
 
     verdict: Verdict
@@ -81,16 +82,16 @@ def check(
     mistake whatever the load is. A check that cannot be decided within :data:`.deciding.LIMIT` has failed.
 
     Args:
-        exercise: What is asked for.
-        subject: What is judged.
-        reference: What the reference solution did.
-        seed: What random inputs are drawn from.
+        exercise: The exercise that the subject has to fulfill.
+        subject: The subject to judge.
+        reference: The recorded behavior of the reference solution.
+        seed: The seed of all random inputs.
         domain_id: The ROS domain.
-        marks_crowded: Return a marked verdict instead of raising TooBusy.
+        marks_crowded: True to return a verdict that is marked as crowded instead of raising TooBusy.
 
     Raises:
         ExerciseFailed: The exercise's own code raised an exception.
-        TooBusy: The machine was too busy to decide; or a student has waited for long on a busy machine.
+        TooBusy: The machine was too busy to decide, or a student has waited for a long time on a busy machine.
         NotDelivered: The subject did not pass, nothing proves a mistake, and this machine lost messages.
     """
     with of_exercise(exercise):
@@ -102,7 +103,7 @@ def _check(
 ) -> Checked:
     began = time.monotonic()
     crowded, delivered = False, delivers()
-    # A student waits for a check cell. A grader does not.
+    # A student may be waiting for a check cell; a grader's check makes no student wait.
     waited_for = subject.in_a_notebook and not marks_crowded
     hurry = Hurry(is_building=lambda: subject.is_building) if waited_for else _no_hurry
     subject.begin(domain_id)
@@ -116,7 +117,8 @@ def _check(
         with limited():
             verdict = judge(exercise, evidence, seed)
         names = {} if verdict.passed or exercise.runner else misnamed(evidence, verdict)
-        if names:  # a wrong name costs one criterion: judge the others under the subject's name
+        # A wrong name costs one criterion. The other criteria are judged under the name that the subject uses.
+        if names:
             look_at = partial(look_at, names=names)
             try:
                 seen = look_at(Pace.FAST)
@@ -157,13 +159,13 @@ def _check(
 def _is_explained(
     exercise: Exercise, evidence: Evidence, verdict: Verdict, names: Mapping[str, object]
 ) -> bool:
-    """Return True if a mistake that is certain explains every failed criterion: a wrong name explains only its own."""
+    """Return True if mistakes that are certain explain every failed criterion; a wrong name explains only its own."""
     failed = sum(not criterion.passed for criterion in verdict.criteria)
     return is_certain(exercise, evidence) and not (names and failed > len(names))
 
 
 def _no_hurry() -> None:
-    """Do nothing: a check without a waiting student takes its time."""
+    """Do nothing: without a waiting student, a check may take as long as it needs."""
 
 
 def _so_far(verdict: Verdict) -> str:
@@ -173,7 +175,7 @@ def _so_far(verdict: Verdict) -> str:
 
 
 def decide(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
-    """Return the verdict that follows from kept evidence, within the judge's limit."""
+    """Return the verdict that follows from kept evidence, within the judge's limit of processor time."""
     try:
         with limited():
             return judge(exercise, evidence, seed)
@@ -196,22 +198,22 @@ def look(
     """Run the scenario once and return the evidence.
 
     Args:
-        exercise: What is asked for.
-        subject: What is judged.
-        reference: What the reference solution did.
+        exercise: The exercise that the subject has to fulfill.
+        subject: The subject to judge.
+        reference: The recorded behavior of the reference solution.
         pace: The pace of this look.
-        seed: What random inputs are drawn from.
+        seed: The seed of all random inputs.
         domain_id: The ROS domain.
-        before: The evidence of the first look.
+        before: The evidence of the first look, if this is the second one.
         hurry: Called repeatedly while the judge waits; it may end the look by raising an exception.
-        names: What :func:`autograder.judge.verdicts.misnamed.misnamed` has found in an earlier look.
+        names: The wrong names that :func:`autograder.judge.verdicts.misnamed.misnamed` found in an earlier look.
     """
     bench = TestBench(subject, domain_id, reference, pace, Random(seed), before, hurry, names)
     try:
         exercise.scenario(bench)
     finally:
         bench.close()
-    # A scenario may shuffle its parts; the verdict's text must not depend on their order.
+    # A scenario may shuffle its parts, but the verdict's text must not depend on their order.
     places = {part.name: place for place, part in enumerate(reference.parts)}
     parts = sorted(bench.parts, key=lambda part: places.get(part.name, len(places)))
     return Seen(Evidence(parts, reference, pace is Pace.REAL_TIME), bench.doubtful, bench.unmet)
@@ -245,7 +247,7 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
 
 
 def _with_name(finding: Finding, wrong: Event | None) -> Finding:
-    """Return the finding of a criterion, which fails if it is the one that a wrong name costs."""
+    """Return a criterion's finding; failed, if this is the criterion that a wrong name costs."""
     if wrong is None or not finding.passed:
         return finding
     return Finding(False, f"the name {wrong.name}", f"the name {wrong.data['real']}")
@@ -254,8 +256,8 @@ def _with_name(finding: Finding, wrong: Event | None) -> Finding:
 def diagnose(exercise: Exercise, evidence: Evidence) -> tuple[Diagnosis, str]:
     """Return the first known mistake that the evidence shows, and the traceback that shows it, if any.
 
-    No other traceback is returned: a student would take it for the mistake, although it may come from another run and
-    a correct line.
+    No other traceback is returned, because a student would take it for the mistake, although it may come from another
+    run and from a correct line.
     """
     found = _recognised(exercise, evidence)
     if found is not None:
@@ -283,11 +285,11 @@ def _recognised(exercise: Exercise, evidence: Evidence) -> tuple[Mistake, Advice
 
 
 def is_certain(exercise: Exercise, evidence: Evidence) -> bool:
-    """Return True if the evidence proves a mistake whatever the load of the machine was."""
+    """Return True if the evidence proves a mistake however busy the machine was."""
     found = _recognised(exercise, evidence)
     return found is not None and found[0].certain
 
 
 def _cut(text: str, limit: int = MAX_WORDS) -> str:
-    """Return a sentence cut to the length that fits on a card."""
+    """Return a sentence, cut to the length that fits on a card."""
     return text if len(text) <= limit else f"{text[: limit - 1]}…"

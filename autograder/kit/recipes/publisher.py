@@ -110,7 +110,7 @@ class Hears:
         return len(simulated(evidence.main.of("message", topic))) >= self._messages // 2
 
     def _enough(self, before: Evidence | None) -> int:
-        """Return the messages to wait for in real time: a row if more than that came in simulated time."""
+        """Return how many messages to wait for in real time: only those that the rate needs if more came before."""
         return self._row(before) if before is not None and self._is_simulated(before) else PERSISTENT
 
     def _row(self, before: Evidence | None) -> int:
