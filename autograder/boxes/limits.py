@@ -95,8 +95,8 @@ BUILD_LIMITS = Limits(
     scratch_bytes=300_000_000,
     scratch_files=20_000,
 )
-"""The limits of a build; an interface package takes 10 s of processor time, 400 MB, and writes 5 million bytes in
-600 files.
+"""The limits for the box of a build. An interface package takes 10 s of processor time and 400 MB of memory, and writes
+5 million bytes in 600 files.
 """
 
 

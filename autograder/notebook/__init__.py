@@ -1,6 +1,6 @@
-"""Export the names that a notebook of the course imports: background executors and the check.
+"""The names that a notebook of the course imports: background executors and the check.
 
-Nothing here is secret and nothing here decides a grade: the judge runs in a process of its own.
+Nothing here is secret or decides a grade, because the judge runs in a process of its own.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Add lines to the files of a package, by functions that a cell may call any number of times in any order.
+"""Adds lines to the files of a package, with functions that a cell may call any number of times in any order.
 
-A cell that writes the whole ``setup.py`` would remove what a later lab has added. These functions change one place
-of a file: an entry point replaces the earlier one of the same name, and a line is never added twice.
+A cell that writes the whole ``setup.py`` would remove what a later lab has added. These functions change one part of
+a file only: an entry point replaces the earlier one with the same name, and a line is never added twice.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ if TYPE_CHECKING:
 
 PACKAGE = "my_robot_pkg"
 _ADDED = "# by add_data_files"
-"""The comment that tells a line of data_files that was added from those of the package itself."""
+"""The comment that marks a line of data_files as added here, and not part of the original package."""
 _DEFINITIONS = re.compile(r"rosidl_generate_interfaces\s*\(\s*\$\{PROJECT_NAME\}[^)]*")
 
 
 @dataclass(frozen=True)
 class _Element:
-    """An element of a list in setup.py: of entry points, or of data files.
+    """An element of a list in setup.py: an entry point, or an entry of data_files.
 
     Attributes:
-        source: The text in setup.py, which is written back unchanged.
-        text: The value of the element; the source if only running setup.py would tell the value.
+        source: The text of the element in setup.py, which is written back unchanged.
+        text: The value of the element; the same as ``source`` if the value is known only by running setup.py.
         above: The comments on the lines above the element.
         behind: The comment at the end of the element's line.
     """
@@ -44,16 +44,16 @@ class _Element:
 
 
 def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str = PACKAGE) -> str:
-    """Add entry points to a package's ``setup.py``, replacing those with the same executable or function.
+    """Add entry points to a package's ``setup.py``. They replace those with the same executable or function.
 
     Args:
-        workspace: The folder that contains ``src``.
-        entries: Each ``executable = package.module:function``.
+        workspace: The workspace folder, which contains ``src``.
+        entries: Entry points, each of the form ``executable = package.module:function``.
         package: The name of the package.
 
     Returns:
-        The executables that the package has now, one on each line, with a warning for each invalid entry; or what the
-        student has to do.
+        A text for the student: the executables that the package has now, one per line, with a warning for each
+        invalid entry; or what the student has to do.
     """
     setup = Path(workspace) / "src" / package / "setup.py"
     wanted = list(entries)
@@ -93,15 +93,15 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
 def add_data_files(
     workspace: str | Path, pairs: Iterable[tuple[str, Sequence[str]]], package: str = PACKAGE
 ) -> str:
-    """Have a package's ``setup.py`` install files, instead of those that an earlier call has added.
+    """Make a package's ``setup.py`` install files, instead of those that an earlier call has added.
 
     Args:
-        workspace: The folder that contains ``src``.
-        pairs: Each a folder below that of the package in ``install``, and the files that come into it.
+        workspace: The workspace folder, which contains ``src``.
+        pairs: Pairs of a folder, below the package's folder in ``install``, and the files that are installed into it.
         package: The name of the package.
 
     Returns:
-        The pairs that ``setup.py`` installs now, a line each, or what the student has to do.
+        The pairs that ``setup.py`` installs now, one per line, or what the student has to do.
     """
     setup = Path(workspace) / "src" / package / "setup.py"
     wanted = list(pairs)
@@ -134,7 +134,7 @@ def _is_data_files(pair: object) -> bool:
 
 
 def _listed_data_files(tree: ast.Module) -> ast.List | None:
-    """The list that a setup.py gives as ``data_files``."""
+    """Return the list that a setup.py passes as ``data_files``; None if there is none."""
     values = (
         node.value for node in ast.walk(tree) if isinstance(node, ast.keyword) and node.arg == "data_files"
     )
@@ -142,14 +142,14 @@ def _listed_data_files(tree: ast.Module) -> ast.List | None:
 
 
 class _CannotUse(ValueError):
-    """A setup.py that cannot be changed. The message says what the student has to do."""
+    """A setup.py cannot be changed. The message says what the student has to do."""
 
 
 def _read(setup: Path) -> tuple[str, ast.Module]:
-    """The text of a setup.py, and its syntax tree.
+    """Return the text of a setup.py, and its syntax tree.
 
     Raises:
-        _CannotUse: There is no such file, or it cannot be read.
+        _CannotUse: The file does not exist or cannot be read.
     """
     try:
         text = setup.read_text(encoding="utf-8")
@@ -162,15 +162,15 @@ def _read(setup: Path) -> tuple[str, ast.Module]:
 
 
 def add_dependencies(workspace: str | Path, names: Iterable[str], package: str = PACKAGE) -> str:
-    """Add missing ``<depend>`` lines to ``package.xml`` of a package.
+    """Add missing ``<depend>`` lines to the ``package.xml`` of a package.
 
     Args:
-        workspace: The folder that contains ``src``.
-        names: The packages that it needs.
+        workspace: The workspace folder, which contains ``src``.
+        names: The names of the packages on which it depends.
         package: The name of the package.
 
     Returns:
-        The dependencies that it has now, or what the student has to do.
+        The dependencies that the package has now, or what the student has to do.
     """
     manifest = Path(workspace) / "src" / package / "package.xml"
     if not manifest.is_file():
@@ -187,13 +187,13 @@ def add_dependencies(workspace: str | Path, names: Iterable[str], package: str =
 
 
 def add_definition(workspace: str | Path, package: str, definition: str, needs: Iterable[str] = ()) -> str:
-    """Have a package of interfaces generate code from one more definition, once the file is there.
+    """Make an interface package generate code from one more definition file. The file must exist.
 
     Args:
-        workspace: The folder that contains ``src``.
+        workspace: The workspace folder, which contains ``src``.
         package: The name of the package.
-        definition: The path of the file in the package, such as ``action/Fibonacci.action``.
-        needs: The packages that the generated code needs.
+        definition: The path of the definition file in the package, such as ``action/Fibonacci.action``.
+        needs: The packages on which the generated code depends.
 
     Returns:
         The definitions from which the package now generates code, or what the student has to do.
@@ -225,7 +225,7 @@ def _without_package(entries: list[str], package: str) -> list[str]:
 
 
 def _parts(entry: str) -> tuple[str, str]:
-    """Return the executable, and what it starts."""
+    """Return the executable, and the function that it starts."""
     name, _, target = "".join(entry.split()).partition("=")
     return name, target
 
@@ -236,7 +236,7 @@ def _written(entry: str) -> _Element:
 
 
 def _elements(text: str, tree: ast.Module, programs: ast.List) -> tuple[list[_Element], list[str]]:
-    """Return the elements of a list in a setup.py, and the comments below its last element."""
+    """Return the elements of a list in setup.py, and the comments below its last element."""
     names = {
         target.id: node.value.value
         for node in tree.body
@@ -258,7 +258,7 @@ def _elements(text: str, tree: ast.Module, programs: ast.List) -> tuple[list[_El
 
 
 def _comments(text: str, programs: ast.List) -> dict[int, str]:
-    """Return the comments in the list of a setup.py, by line (from 1), in order."""
+    """Return the comments inside a list of setup.py, by line number (from 1), in order."""
     first, last = programs.lineno, programs.end_lineno or programs.lineno
     return {
         token.start[0]: token.string
@@ -268,7 +268,7 @@ def _comments(text: str, programs: ast.List) -> dict[int, str]:
 
 
 def _value(node: ast.expr, names: Mapping[str, object]) -> str | None:
-    """Return a text that is composed of texts and names of texts; None if finding it takes more."""
+    """Return the value of an expression built from strings and names of strings; None for any other expression."""
     match node:
         case ast.Constant(value=value):
             return str(value)
@@ -286,7 +286,7 @@ def _value(node: ast.expr, names: Mapping[str, object]) -> str | None:
 
 
 def _with_list(text: str, programs: ast.List, elements: list[_Element], last_comments: list[str]) -> str:
-    """Return the file with these elements in its list, and comments below them."""
+    """Return the text of the file with these elements in its list, and the comments below them."""
     lines = text.encode().split(b"\n")
     first, last = programs.lineno - 1, (programs.end_lineno or programs.lineno) - 1
     before = b"\n".join([*lines[:first], lines[first][: programs.col_offset]]).decode()
@@ -298,5 +298,5 @@ def _with_list(text: str, programs: ast.List, elements: list[_Element], last_com
 
 
 def _lines(element: _Element) -> list[str]:
-    """Return an element of the list with its comments, one on each line."""
+    """Return the lines for an element of the list: its comments, then the element."""
     return [*element.above, f"{element.source},{'  ' * bool(element.behind)}{element.behind}"]

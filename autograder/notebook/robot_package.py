@@ -1,6 +1,6 @@
-"""Complete a student's package with the programs of Lab 1.2, for the notebooks that start them.
+"""Adds the programs of Lab 1.2 to a student's package, for the notebooks that start them.
 
-A launch file starts programs of packages. Without them, a student who wrote the nodes only in the notebook would see
+A launch file starts programs of packages. A student who wrote the nodes only in the notebook would otherwise see
 "executable not found" in an exercise about something else.
 """
 
@@ -21,11 +21,11 @@ _CLASS = re.compile(r"^class ", re.MULTILINE)
 def complete_package(workspace: str | Path = "ros2_ws", source: Path | None = None) -> str:
     """Put the course's talker and listener into the student's package if they are missing.
 
-    Nothing that a student has written is changed, except that entry points are added to ``setup.py``.
-    Running it again changes nothing.
+    It changes nothing that a student has written, except that it adds entry points to ``setup.py``. Running it again
+    changes nothing.
 
     Args:
-        workspace: The folder that contains ``src``; it is created if it does not exist.
+        workspace: The workspace folder, which contains ``src``; it is created if it does not exist.
         source: The package to copy from; by default the course's own.
 
     Returns:
@@ -34,7 +34,7 @@ def complete_package(workspace: str | Path = "ros2_ws", source: Path | None = No
     package = Path(workspace) / "src" / PACKAGE
     try:
         source = source or course.root() / course.SOLUTIONS / "ros2_ws" / "src" / PACKAGE
-    except course.NoCourse:  # in a sandbox
+    except course.NoCourse:  # in a sandbox there is no course folder
         return "This notebook is graded by itself: what your package lacks, the check takes from the course's own."
     if not source.is_dir():  # a hand-out for students contains no solutions
         return _what_is_missing(package)
@@ -65,7 +65,7 @@ def _has_program(package: Path, name: str) -> bool:
 
 
 def _is_empty(module: Path) -> bool:
-    """Return True if a module is still as Lab 1.2's cell writes it, with nothing copied into it."""
+    """Return True if a module is still as Lab 1.2's cell writes it, with no class copied into it yet."""
     return module.is_file() and not _CLASS.search(module.read_text(encoding="utf-8", errors="replace"))
 
 

@@ -1,9 +1,9 @@
-"""Build a workspace from a notebook, and use its packages in the running kernel.
+"""Builds a workspace from a notebook, and makes its packages usable in the running kernel.
 
-A kernel cannot source a workspace: the loader reads ``LD_LIBRARY_PATH`` only when a process starts. But a kernel
-can load the package's libraries once with global symbols (``RTLD_GLOBAL``, 5 ms; tried with a service type on Jazzy).
-The loader then finds each library by its name, and so does rosidl's type support, which opens its libraries by
-name, too.
+A running kernel cannot source a workspace, because the loader reads ``LD_LIBRARY_PATH`` only when a process starts.
+But a kernel can load the package's libraries once with global symbols (``RTLD_GLOBAL``, 5 ms; tried with a service
+type on Jazzy). After that, the loader finds each library by its name, and so does rosidl's type support, which also
+opens its libraries by name.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ if TYPE_CHECKING:
     from autograder.workspaces.colcon import Build
 
 MAX_LOG = 4_000
-"""Limit of the log of a failed build, in characters."""
+"""The maximum length of the log of a failed build, in characters."""
 
 
 @dataclass(frozen=True, repr=False)
 class WorkspaceBuild:
-    """The result of `build_workspace`, as a cell shows it.
+    """The result of `build_workspace`, in the form that a cell shows.
 
     Attributes:
         build: The result of the build.
@@ -77,12 +77,13 @@ class WorkspaceBuild:
 def build_workspace(folder: str | os.PathLike[str] = "ros2_ws") -> WorkspaceBuild:
     """Build a workspace as ``colcon build`` does, and make its packages available in this kernel.
 
-    Sources that did not change are not built a second time. The result is in the workspace's ``install`` folder, for
+    Sources that did not change are not built again. The result is in the workspace's ``install`` folder, for
     terminals to source. Programs that this kernel starts from now on (``!ros2 run``, a launch) find the packages
-    without that, and so does ``import``. A package that the kernel has already imported stays old: a note says so.
+    without sourcing, and so does ``import``. If the kernel has already imported a package, it keeps the old one, and
+    a note says so.
 
     Args:
-        folder: The workspace: the folder that contains ``src``.
+        folder: The workspace folder, which contains ``src``.
     """
     made = OwnBuilds().build(look(Path(folder)), None)
     if not made.ok:
@@ -121,7 +122,7 @@ def load_libraries(prefix: Path) -> None:
     """
     waiting = sorted((prefix / "lib").glob("lib*.so"))
     while waiting:
-        # A library may need another one, and no file states the order: try again until none is left.
+        # A library may need another one, and no file lists the right order. So try repeatedly until all are loaded.
         failed: list[tuple[Path, OSError]] = []
         for library in waiting:
             try:

@@ -1,10 +1,11 @@
 """``python -m autograder.workspaces``: the command that a check runs when it is given a path.
 
-It builds the packages in the workspace, reports, then becomes the student's program.
+It builds the packages in the workspace, reports the result, then becomes the student's program.
 
-In a terminal the check starts it as a process, in a notebook the judge asks for it, and the judge reads its output.
-The report on the build comes before any output of the student's program. Everything runs with the student's rights,
-on the student's own computer; a class is graded by `autograder.workspaces.service` instead.
+In a terminal, the check starts this command as a process; in a notebook, the kernel starts it when the judge asks.
+The judge reads the output. The report on the build comes before any output of the student's program. Everything runs
+with the student's rights on the student's own computer. When a class is graded, `autograder.workspaces.service` does
+this work instead.
 """
 
 from __future__ import annotations
@@ -32,10 +33,10 @@ if TYPE_CHECKING:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """``python -m autograder.workspaces EXERCISE PATH``, or ``EXERCISE -- COMMAND`` for a launch command.
+    """Run ``python -m autograder.workspaces EXERCISE PATH``, or ``EXERCISE -- COMMAND`` for a launch command.
 
-    If an exercise has several programs, the name of one follows the path. A launch may be followed by ``--alone`` and
-    a program that runs instead of the launch.
+    If an exercise has several programs, the path is followed by the name of one. A launch may be followed by
+    ``--alone`` and the name of a program to run instead of the launch.
     """
     exercise = exercises.get(arguments[0])
     die_with_parent(number=signal.SIGTERM)
@@ -69,16 +70,17 @@ def _launch(rest: Sequence[str]) -> int:
 
 
 def _run(launch: Prepared) -> int:
-    """Run a launch to its end, and report how it starts its processes. Return its exit code.
+    """Run a launch to its end, and report the processes that it starts. Return its exit code.
 
-    On the wire, a topic that is renamed in the code looks like one that the launch file remaps. The process's command
-    line tells them apart, because every launch passes a remapping to a node there.
+    On the wire, a topic that was renamed in the code looks like one that the launch file remaps. The command lines of
+    the processes tell the two apart, because a launch passes a remapping on a node's command line.
     """
-    # Ctrl-C reaches the whole process group: the launch ends its nodes and then itself, and this waits for it.
+    # Ctrl-C reaches the whole process group. The launch ends its nodes and then itself, and this process waits for
+    # that.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     process = subprocess.Popen(launch.command, env=launch.environment, preexec_fn=_listen_to_interrupts)
     signal.signal(signal.SIGTERM, lambda *_: process.terminate())
-    # The launch may have written half a line: begin a new one, or the report would not be recognized.
+    # The launch may have written half a line. Begin a new line, or the report would not be recognized.
     with watched(process.pid, lambda line: tell(f"\n{line}")):
         return process.wait()
 

@@ -1,7 +1,8 @@
-"""The result of a build, accepted as data: regular files and folders, nothing else.
+"""The result of a build, accepted only as data: regular files and folders, nothing else.
 
-Outside a box, files made in a box must be nothing but bytes. A link in the archive (a library has some, from its name
-to the name with its version) becomes a copy of its target: a later reader of the folder never follows a link.
+Outside a box, files that were made in a box must be nothing but bytes. A link in the archive (a library has one, from
+its name to the name with its version) becomes a copy of its target, so that no later reader of the folder follows a
+link.
 """
 
 from __future__ import annotations
@@ -20,17 +21,17 @@ if TYPE_CHECKING:
 MAX_FILES = 5_000
 MAX_BYTES = 64_000_000
 BLOCK = 4_096
-"""Bytes that each file and folder takes in addition to its content, so that thousands of empty ones count, too."""
+"""Bytes that each file and folder counts in addition to its content, so that thousands of empty ones count, too."""
 MAX_NAME = 240
-"""The longest part of a path, in bytes."""
+"""The maximum length of one part of a path, in bytes."""
 MAX_DEPTH = 24
-"""The most parts of a path."""
+"""The maximum number of parts of a path."""
 MAX_LINKS = 8
-"""The most links in a chain."""
+"""The maximum number of links in a chain."""
 MAX_PAX = 2_000
-"""The largest pax header in bytes; one with a long path has some hundreds.
+"""The maximum size of a pax header in bytes; one with a long path has some hundreds.
 
-Python searches it in quadratic time: hours for a few megabytes of digits.
+The limit is needed because Python searches the header in quadratic time: a few megabytes of digits would take hours.
 """
 
 
@@ -43,15 +44,15 @@ _OF_THIS_MACHINE = (
     errno.EIO,
     errno.EROFS,
 )
-"""Errors of this machine, which no archive can cause: a full disk, an exhausted quota, too many open files."""
+"""Errors of this machine that no archive can cause: a full disk, an exhausted quota, too many open files."""
 
 
 class BadArtefacts(ValueError):
-    """Not an archive, or one with content that no build of a workspace makes."""
+    """The archive is invalid, or contains something that no build of a workspace makes."""
 
 
 class _ShortHeaders(tarfile.TarInfo):
-    """An entry of a tar file whose headers are no larger than those of a build's entries."""
+    """An entry of a tar file, read with a limit on the size of its headers."""
 
     @classmethod
     def frombuf(cls, buf: bytes | bytearray, encoding: str, errors: str) -> Self:
@@ -84,17 +85,18 @@ def pack(install: Path) -> bytes:
 
 
 def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> None:
-    """Write an archive of a build's install folder.
+    """Unpack an archive of a build's install folder into a folder.
 
     Args:
-        archive: A tar file with any content: the code that was built could have written it.
-        folder: A folder that does not exist yet.
-        most: The limit on bytes of all files and folders together.
+        archive: A tar file. It may contain anything, because the code that was built could have written it.
+        folder: The folder to create. It must not exist yet.
+        most: The maximum size in bytes of all files and folders together.
 
     Raises:
         BadArtefacts: The archive has entries that lead out of the folder, links to anything but its own files,
-            devices, or too much of anything. Files written until then stay.
-        OSError, MemoryError: This machine's disk, memory or open files are used up: not the build's fault.
+            devices, or too much of anything. Files written before the error stay.
+        OSError, MemoryError: The disk, memory or open files of this machine are used up, which is not the build's
+            fault.
     """
     if not archive:
         raise BadArtefacts("what the build made could not be packed")
@@ -130,8 +132,8 @@ def check_room(size: int, most: int, number: int = 0) -> None:
     """Check the size of a build's result.
 
     Args:
-        size: The bytes of its files and folders.
-        most: The limit in bytes.
+        size: The size of its files and folders in bytes.
+        most: The maximum size in bytes.
         number: The number of files and folders.
 
     Raises:
@@ -174,7 +176,7 @@ def _parts(name: str) -> tuple[str, ...]:
 
 
 def _target(member: tarfile.TarInfo) -> PurePosixPath:
-    """Return the target of a link. Its text is enough, because nothing in the folder is a link."""
+    """Return the target of a link. The text of the link is enough, because nothing in the folder itself is a link."""
     inside = os.path.normpath(PurePosixPath(*_parts(member.name)).parent / member.linkname)
     if inside.startswith(("..", "/")) or "\0" in inside:
         raise BadArtefacts(f"{member.name!r} leads out of the install folder")

@@ -1,4 +1,4 @@
-"""Jobs in boxes: builds without a network, programs on a network of only themselves and a judge."""
+"""Jobs in boxes: builds without a network, and programs on a network that they share only with a judge."""
 
 from __future__ import annotations
 
@@ -30,21 +30,22 @@ if TYPE_CHECKING:
     from autograder.workspaces.jobs import BuildOrder, ProgramJob
 
 PROGRAM_LIMITS = Limits(cpu_seconds=200.0, memory_bytes=1_500_000_000, processes=400)
-"""The limits of a program, if the system itself does not enforce the limits of the whole submission."""
+"""The limits for the box of a program, if the system does not enforce the limits of the whole submission."""
 PACK_SECONDS = 60.0
-"""Wall time for packing the result of a build."""
+"""Time limit in seconds of wall time for packing the result of a build."""
 LOOK_EVERY = 0.5
-"""Seconds between checks whether a build is still wanted."""
+"""Seconds between two checks whether a build is still needed."""
 
 
 class BoxedJobs:
     """Implements :class:`autograder.workspaces.jobs.Jobs`.
 
     Args:
-        supervisors: The socket address of the fork server that starts supervisors.
-        network: The boxes' network for programs; this class uses it from another thread.
-        folder: A folder for this object alone, for intermediate files.
-        programs: The socket address of the fork server for programs; empty to start each program without one.
+        supervisors: The socket address of the fork server that starts the boxes' supervisors.
+        network: The network for programs' boxes. This class uses it from another thread.
+        folder: A folder for intermediate files that nothing else uses.
+        programs: The socket address of the fork server for programs; empty to start each program without a fork
+            server.
     """
 
     def __init__(self, supervisors: str, network: Enclosure, folder: Path, programs: str = "") -> None:
@@ -55,23 +56,23 @@ class BoxedJobs:
 
     @property
     def environment(self) -> Mapping[str, str]:
-        """The variables of every box."""
+        """The environment variables of every box."""
         return box_environment()
 
     def place(self, name: str, entry: Path) -> Path:
-        """The entry's path inside a box: in the home folder."""
+        """Return the path of a build's folder inside a box: it is in the home folder."""
         del entry
         return HOME / name
 
     def tree(self, sources: Path) -> Path:
-        """The path of the notebook in the student's box."""
+        """Return the path at which the student's box sees the notebook's folder."""
         del sources
         return WORK
 
     def build(self, order: BuildOrder, command: Sequence[str], entry: CachedBuild) -> Built:
-        """Build in a box of its own, and pack the result when no process of the build is alive any more.
+        """Build in a separate box, and pack the result when no process of the build is alive any more.
 
-        A build that needs more memory than most is repeated while no other such build runs.
+        If a build needs more than its share of memory, repeat it while no other such build runs.
         """
         built, needs_room = self._build(order, command, entry.folder, BUILD_LIMITS)
         if needs_room:
@@ -81,10 +82,10 @@ class BoxedJobs:
 
     @contextlib.contextmanager
     def _turn(self, cancelled: Callable[[], bool]) -> Iterator[None]:
-        """Hold a lock that all workers of a batch share: one on the folder of the fork servers.
+        """Hold a lock on the folder of the fork servers, which all workers of a batch share.
 
         Raises:
-            GivenUp: The build is no longer wanted.
+            GivenUp: The build is no longer needed.
         """
         folder = os.open(Path(self._supervisors).parent, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
         try:
@@ -125,7 +126,7 @@ class BoxedJobs:
                     output_bytes=MAX_ARCHIVE_BYTES,
                 )
                 if packed.returncode is None:
-                    # Packing a few MB takes milliseconds, so the machine was busy and the build did not fail.
+                    # Packing a few MB takes milliseconds. So the machine was too busy; the build did not fail.
                     return Built(None, output, late=PACK_SECONDS), False
                 whole = packed.returncode == 0 and not packed.cut
                 return Built(returncode, output, packed.output if whole else b""), False
@@ -134,7 +135,7 @@ class BoxedJobs:
             shutil.rmtree(folder, ignore_errors=True)
 
     def start(self, job: ProgramJob) -> BoxedProgram:
-        """Start the program in a box on the network; a `ros2 run` starts from the fork server of programs."""
+        """Start the program in a box on the network. For `ros2 run`, fork it from the fork server for programs."""
         binds = [Bind(job.sources, WORK)]
         binds += [Bind(entry / "install", HOME / name / "install") for name, entry in job.entries.items()]
         command, *words = job.command
@@ -164,7 +165,7 @@ class BoxedProgram:
         self.pid = running.pid
 
     def read(self, within: float) -> bytes | None:
-        """Return the output, stdout and stderr in one; None for nothing yet, b"" at its end."""
+        """Return the output so far, stdout and stderr in one; None if nothing has come yet, b"" at the end."""
         if self._guard.exceeded():
             self._ended = True
         if self._ended:
@@ -176,11 +177,11 @@ class BoxedProgram:
         return data
 
     def exit_code(self) -> int | None:
-        """The exit code of the first program in the box."""
+        """Return the exit code of the first program in the box; None if it still runs."""
         return self._code
 
     def interrupt(self) -> None:
-        """Send Ctrl-C while the program runs: afterwards another process may have its id."""
+        """Send Ctrl-C, but only while the program runs: afterwards another process may have its id."""
         if not self._ended:
             self._running.interrupt()
 
@@ -191,7 +192,7 @@ class BoxedProgram:
 
 
 def _wait(running: Running, over: Callable[[], bool]) -> tuple[int | None, bool]:
-    """Return the exit code, None if it was stopped, and whether it was stopped because of the time limit."""
+    """Return the exit code (None if the box was stopped), and whether it was stopped because of the time limit."""
     deadline = time.monotonic() + BUILD_SECONDS
     while running.read(LOOK_EVERY):
         if over():
@@ -202,7 +203,7 @@ def _wait(running: Running, over: Callable[[], bool]) -> tuple[int | None, bool]
 
 
 def _covers(hidden: Sequence[Path], folder: Path) -> list[Bind]:
-    """Return mounts that put an empty folder or file over each of these."""
+    """Return mounts that hide each of these files and folders behind an empty one."""
     if not hidden:
         return []
     empty_folder, empty_file = folder / "empty", folder / "empty-file"

@@ -1,7 +1,8 @@
-"""Builds of workspaces, each made once for the same sources: in a student's kernel, in a terminal and for a class.
+"""Builds of workspaces. Each build is made only once for the same sources.
 
-The sources are read once. A build depends only on these bytes and on the tools; their hash is the key under which the
-build is stored. The three places differ only in the process that builds (:class:`autograder.workspaces.jobs.Jobs`).
+The sources are read once. A build depends only on these bytes and on the tools; a hash of both is the key under which
+the build is stored. Builds in a student's kernel, in a terminal and for a class differ only in the process that makes
+them (:class:`autograder.workspaces.jobs.Jobs`).
 """
 
 from __future__ import annotations
@@ -34,25 +35,25 @@ if TYPE_CHECKING:
     from autograder.workspaces.sources import Tree
 
 FORMAT = "3"
-"""A part of every key: change it when the stored form of a build changes."""
+"""The version of the stored form of a build; it is part of every key. Change it when the form changes."""
 MAX_LINE = 1_000
-"""The most characters of an output line that are parsed."""
+"""The maximum number of characters of an output line that are parsed."""
 NO_DEFAULTS = {"COLCON_DEFAULTS_FILE": os.devnull}
-"""Turns off the user's own settings for colcon, which are not in the key."""
+"""Environment variables that turn off the user's own settings for colcon, because the key does not contain them."""
 _TOOLS = ("colcon_core-", "colcon_cmake-", "colcon_ros-", "setuptools-", "cmake-")
 _ENVIRONMENT = ("CC", "CXX", "CFLAGS", "CXXFLAGS", "LDFLAGS", "CMAKE_GENERATOR", "RMW_IMPLEMENTATION")
 
 
 class BuildTookTooLong(RuntimeError):
-    """The build did not end in time, so its sources cannot be judged.
+    """A build did not end in time, so its sources cannot be judged.
 
     Args:
-        seconds: The time limit.
+        seconds: The time limit in seconds.
         found: The workspace.
-        log: The output of the build until then.
+        log: The output of the build so far.
 
     Attributes:
-        build: The build in the form of a failed one.
+        build: The build in the form of a failed build.
     """
 
     def __init__(self, seconds: float, found: Build, log: str) -> None:
@@ -66,10 +67,10 @@ class Builds:
     Args:
         folder: The folder of the cache.
         jobs: Runs colcon and the built programs.
-        room: Bytes that a build may add to the cache, if the build comes as an archive.
+        room: The maximum size in bytes that a build may add to the cache, if the build comes as an archive.
 
     Attributes:
-        jobs: As given.
+        jobs: The jobs that were passed to the constructor.
     """
 
     def __init__(self, folder: Path, jobs: Jobs, room: int = artefacts.MAX_BYTES) -> None:
@@ -85,21 +86,22 @@ class Builds:
         name: str = WORKSPACE,
         cancelled: Callable[[], bool] = lambda: False,
     ) -> Build:
-        """Build the needed packages of a workspace.
+        """Build the packages of a workspace that an exercise needs.
 
-        If a package named in package.xml fails, the packages that depend on it are built without it. From Lab 1.3 on
-        ``my_robot_pkg`` depends on ``my_robot_interfaces``, but its programs of earlier labs import nothing from it.
-        A program finds its imports at run time among the course's own packages, or reports what is missing.
+        If a package that others depend on (in package.xml) cannot be built, those others are built without it. From
+        Lab 1.3 on, ``my_robot_pkg`` depends on ``my_robot_interfaces``, but its programs of earlier labs import
+        nothing from it. At run time a program finds its imports among the course's own packages, or reports what is
+        missing.
 
         Args:
             found: The workspace, after :func:`autograder.workspaces.colcon.look`.
-            targets: The needed packages; they are built with their dependencies, or without one if only that one
-                fails. None for all packages.
-            name: See :meth:`autograder.workspaces.jobs.Jobs.place`.
-            cancelled: Returns True when the build is no longer wanted.
+            targets: Returns the needed packages. They are built with their dependencies, or without one if only that
+                one fails. None for all packages.
+            name: The kind of workspace; see :meth:`autograder.workspaces.jobs.Jobs.place`.
+            cancelled: Returns True when the build is no longer needed.
 
         Returns:
-            The build; its ``install`` is the path in this process.
+            The build; its ``install`` is a path that this process can use.
 
         Raises:
             BuildTookTooLong: The build was stopped at its time limit.
@@ -113,7 +115,7 @@ class Builds:
         if not wanted or not made.package or made.package in wanted:
             return made
         own = tuple(package for package in found.packages if package.name in wanted)
-        # CMake looks for a package's dependencies during the build; setuptools does not.
+        # CMake looks for a package's dependencies during the build, so it would fail; setuptools does not.
         if any(package.build_type != "ament_python" for package in own):
             return made
         alone = self._build(replace(found, packages=own), targets, name, cancelled)
@@ -135,16 +137,20 @@ class Builds:
         except BadSources as error:
             return replace(found, trouble="bad_package", line=str(error))
         except cache.GivenUp as error:
-            return replace(found, trouble="build", line=str(error))  # no one will read it
+            # The build was canceled, so no process will read this.
+            return replace(found, trouble="build", line=str(error))
         return replace(made, seconds=time.monotonic() - began)
 
     def _find_or_make(self, found: Build, chosen: Sequence[Package], order: BuildOrder) -> Build:
-        """Return the build of the chosen packages; the order has their folders as paths inside the place."""
+        """Return the build of the chosen packages, from the cache or new.
+
+        The build request gives the folders of the packages as paths inside the box.
+        """
         del chosen
         return self._entry(found, self._keyed(order))
 
     def _keyed(self, order: BuildOrder, *words: str) -> BuildOrder:
-        """Return the order with its key, which may contain more words than the order itself."""
+        """Return the build request with its key, a hash of the request and of further words."""
         return replace(
             order,
             key=key(
@@ -159,7 +165,7 @@ class Builds:
         )
 
     def _entry(self, found: Build, order: BuildOrder, folder: Path | None = None) -> Build:
-        """Return the build from a cache, or make it there; the cache of these builds if none is given."""
+        """Return the build from the given cache, or make it there; by default in the cache of these builds."""
         with cache.entry(order.key, folder or self._folder, order.cancelled) as entry:
             install = entry.folder / "install"
             if entry.complete:
@@ -184,7 +190,7 @@ class Builds:
             return failed(found, log)
         try:
             if built.archive is not None:
-                # Builds stay in the cache for a while, and other builds need space, too.
+                # Builds stay in the cache for a while, so this one must leave space for others.
                 artefacts.unpack(built.archive, install, self._room)
         except artefacts.BadArtefacts as error:
             return failed(found, f"{log}\nerror: {error}")
@@ -196,13 +202,13 @@ def key(tree: Tree, *words: str) -> str:
 
     Args:
         tree: The sources.
-        words: Other facts that matter, such as the command.
+        words: Other facts that influence the build, such as the command.
     """
     return hashlib.sha256("\0".join((FORMAT, tree.digest, *toolchain(), *words)).encode()).hexdigest()
 
 
 def toolchain() -> tuple[str, ...]:
-    """Return everything else that decides a build: the interpreter, the build tools, the compiler and the underlay."""
+    """Return everything else that influences a build: interpreter, build tools, compiler and underlay."""
     programs = [
         shutil.which(os.environ.get(name) or usual) or "" for name, usual in (("CC", "cc"), ("CXX", "c++"))
     ]
@@ -220,7 +226,7 @@ def toolchain() -> tuple[str, ...]:
 
 
 def _underlay() -> str:
-    """Return the ROS that a build finds first, sourced or of the environment, with a mark; empty if there is none."""
+    """Return the path and a version mark of the ROS that a build finds first; empty if there is none."""
     for prefix in filter(None, (*os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep), sys.prefix)):
         generators = str(Path(prefix, "share", "rosidl_default_generators", "package.xml"))
         if mark := state(generators):
@@ -230,9 +236,10 @@ def _underlay() -> str:
 
 @functools.cache
 def _tools() -> tuple[str, ...]:
-    """Return the build tools with their versions, from the names of their folders (PEP 376).
+    """Return the build tools with their versions, taken from the names of their folders (PEP 376).
 
-    This runs at each start of a program in a workspace, and importing importlib.metadata takes five times as long.
+    This runs each time a program in a workspace starts, and importing importlib.metadata would take five times as
+    long.
     """
     entries: set[str] = set()
     for folder in filter(None, sys.path):
@@ -243,7 +250,7 @@ def _tools() -> tuple[str, ...]:
 
 
 def state(file: str) -> str:
-    """Return a mark of a tool's file that a later file of this name does not have; empty if the file is missing."""
+    """Return a text that changes when a tool's file changes; empty if the file is missing."""
     try:
         found = Path(file).stat()
     except OSError:
@@ -258,7 +265,7 @@ def _are_light(packages: Sequence[Package]) -> bool:
 
 
 def _log(built: Built, place: Path) -> str:
-    """Return the output as text, cut so that any content can be parsed quickly."""
+    """Return the output of a build as text, cut so that any content can be parsed quickly."""
     text = built.output.decode("utf-8", "replace").replace(f"{place}/", "")
     if built.returncode is None:
         text += "\nerror: the build took more memory, processes or processor time than a build may take"

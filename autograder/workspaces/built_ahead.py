@@ -1,8 +1,8 @@
-"""The builds that all submissions share: packages of the course itself, built before any notebook asks for them.
+"""Builds that all submissions share: packages of the course itself, built before any notebook needs them.
 
 ``solutions/ros2_ws`` contains the course's own programs. ``solutions/*/built_ahead.json`` contains the packages that
-the labs' own texts and solutions make; ``python -m tests.measure built_ahead`` writes these files. A package that is
-missing there, or has changed since, costs time and nothing else: each submission builds it for itself.
+the labs' texts and solutions make; ``python -m tests.measure built_ahead`` writes these files. If a package is
+missing there, or has changed since, each submission builds it for itself, which only costs time.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ if TYPE_CHECKING:
 
 FILE = "built_ahead.json"
 Files = dict[str, str | None]
-"""Packages that are built together: the texts of files, and None for a folder, by paths relative to ``src``."""
+"""Packages that are built together, by paths relative to ``src``: the text of each file, and None for a folder."""
 _ROOM = 1_000_000_000
 _done: set[Path] = set()
 
 
 def recorded(root: Path) -> list[Files]:
-    """Read the packages that the chapters of a course have recorded."""
+    """Return the packages that the chapters of a course have recorded."""
     found: list[Files] = []
     for file in sorted((root / "solutions").glob(f"*/{FILE}")):
         found += msgspec.json.decode(file.read_bytes(), type=list[Files])
@@ -48,10 +48,10 @@ def recorded(root: Path) -> list[Files]:
 
 
 def build_ahead(folder: Path, jobs: Jobs) -> None:
-    """Build every shared package that is missing; once in the life of this process.
+    """Build every shared package that is missing, once in the life of this process.
 
     Args:
-        folder: See :func:`autograder.workspaces.cache.graders_root`.
+        folder: The folder for these builds; see :func:`autograder.workspaces.cache.graders_root`.
         jobs: Runs colcon.
     """
     if folder in _done:
@@ -62,9 +62,12 @@ def build_ahead(folder: Path, jobs: Jobs) -> None:
     ]
     if (own := reference_workspace()).is_dir():
         every.append(lambda: builds.build(look(own), None, name=COURSE))
-    first = os.getpid() % max(1, len(every))  # workers that start together begin with different ones
+    first = os.getpid() % max(
+        1, len(every)
+    )  # workers that start at the same time begin with different packages
     for build in (*every[first:], *every[:first]):
-        with contextlib.suppress(BuildTookTooLong):  # each submission with this package builds it for itself
+        # Each submission that contains this package then builds it for itself.
+        with contextlib.suppress(BuildTookTooLong):
             build()
     _done.add(folder)
 

@@ -9,10 +9,10 @@ if TYPE_CHECKING:
 
 
 class ByteBudget:
-    """A budget of bytes for files to be read.
+    """The number of bytes that may still be read from a set of files.
 
     Args:
-        size: The bytes for all files together.
+        size: The maximum number of bytes for all files together.
 
     Attributes:
         sufficed: True if the budget was enough for every file so far.
@@ -23,7 +23,7 @@ class ByteBudget:
         self.sufficed = True
 
     def has(self, file: Path) -> bool:
-        """True if the budget is enough for a file, which is then subtracted. A missing file costs nothing."""
+        """Return True if the budget is enough for a file, and subtract its size. A missing file costs nothing."""
         try:
             size = file.stat().st_size
         except OSError:

@@ -1,8 +1,9 @@
-"""A cache of builds: one folder for each build, named by the key of its sources, that only its owner may use.
+"""A cache of builds: one folder for each build, named by the key of its sources. Only its owner may use it.
 
-An entry is built at its final path (an install folder contains its own path) under a lock, and counts only once its
-marker is written: an interrupted build is removed and repeated. If the builder is killed, as a kernel is when
-JupyterLab restarts it, the build is ended, too, and holds the lock until none of its processes can write any more.
+An entry is built at its final path, because an install folder contains its own path. This happens under a lock, and
+the entry counts only once its marker is written, so an interrupted build is removed and repeated. If the builder is
+killed, as a kernel is when JupyterLab restarts it, the build is ended, too; it holds the lock until none of its
+processes can write any more.
 """
 
 from __future__ import annotations
@@ -28,13 +29,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 VARIABLE = "AUTOGRADER_WORKSPACE_CACHE"
-"""The variable that names another folder for the cache; a grader gives each box its own."""
+"""The environment variable for the path of the cache. A grader gives each box a separate one."""
 LIMIT = 1_000_000_000
-"""The limit on bytes of all entries together; one interface package takes two million."""
+"""The maximum size in bytes of all entries together; one interface package takes two million."""
 IN_USE = 900.0
-"""Seconds after its last use in which an entry is not removed: its programs may run as long as a check lasts."""
+"""Seconds for which an entry is kept after its last use, because its programs may run as long as a check lasts."""
 ASK_EVERY = 0.1
-"""Seconds between checks whether an entry is free, for callers who may give up."""
+"""Seconds between two checks whether an entry is free, for callers that may give up waiting."""
 _MARKER = "complete"
 _NAME = "ros2-course-autograder"
 
@@ -45,12 +46,12 @@ class GivenUp(RuntimeError):
 
 @dataclass(frozen=True)
 class CachedBuild:
-    """A folder of the cache, locked while it is held.
+    """A folder of the cache, locked while the caller uses it.
 
     Attributes:
-        folder: The path.
+        folder: The path of the folder.
         complete: True if the entry contains a finished build.
-        lock: The descriptor of its lock, which every process that writes into the folder holds, too.
+        lock: The descriptor of the lock. Every process that writes into the folder holds it, too.
     """
 
     folder: Path
@@ -58,22 +59,22 @@ class CachedBuild:
     lock: int
 
     def finish(self) -> None:
-        """Mark the build as finished; it counts from now on."""
+        """Mark the build as finished. From now on the entry counts."""
         (self.folder / _MARKER).write_text(self.folder.name, encoding="utf-8")
 
 
 def root() -> Path:
     """Return the folder of the cache, which only this user owns and can open.
 
-    A folder that another user owns or may write to is not used, because its builds would be run. Then a new temporary
-    folder is used instead, and work goes on without earlier builds.
+    If another user owns the folder or may write to it, it is not used, because programs from it would be run. A new
+    temporary folder is used instead, without the earlier builds.
     """
     named = os.environ.get(VARIABLE)
     return _own(Path(named) if named else platformdirs.user_cache_path(_NAME) / "workspaces")
 
 
 def graders_root() -> Path:
-    """Return the folder for builds of the course's own packages: made in boxes, and shown to boxes only as needed."""
+    """Return the folder for builds of the course's own packages, made in boxes and shown to boxes only as needed."""
     return _own(platformdirs.user_cache_path(_NAME) / "graded-builds")
 
 
@@ -89,32 +90,32 @@ def _own(folder: Path) -> Path:
 
 @functools.cache
 def _in_place_of(folder: Path) -> Path:
-    """Make a folder for this process alone, which is removed when the process ends."""
+    """Make a folder for this process alone, to use instead of an unsafe one. It is removed when the process ends."""
     del folder
     made, owner = fresh_folder("workspace-builds-"), os.getpid()
 
     @atexit.register
     def remove() -> None:
-        if os.getpid() == owner:  # not in a fork, which also runs this at its end
+        if os.getpid() == owner:  # not in a forked process, which also runs this function when it ends
             shutil.rmtree(made, ignore_errors=True)
 
     return made
 
 
 def is_ones_own(folder: Path) -> bool:
-    """True if only this user may write to a folder."""
+    """Return True if only this user may write to a folder."""
     found = folder.lstat()
     own = stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid()
     return own and not found.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
 
 
 def is_complete(key: str, base: Path) -> bool:
-    """True if there is a finished entry, without waiting for a process that makes it."""
+    """Return True if a finished entry exists, without waiting for a process that may be making it."""
     return _is_of(key, base / key / _MARKER)
 
 
 def _is_of(key: str, marker: Path) -> bool:
-    """True if the marker was written for a build of this key, not for one whose folder was renamed since."""
+    """Return True if the marker was written for a build with this key, not for one whose folder was renamed later."""
     try:
         return marker.read_text(encoding="utf-8") == key
     except (OSError, UnicodeDecodeError):
@@ -125,15 +126,15 @@ def _is_of(key: str, marker: Path) -> bool:
 def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -> Iterator[CachedBuild]:
     """Hold the entry of a key, so that no other process builds it at the same time.
 
-    An unfinished entry is empty when it is given to the caller, and is removed if the caller does not finish it.
+    If the entry is not finished, the caller gets it empty. It is removed again unless the caller finishes it.
 
     Args:
         key: The key of the build.
-        base: The cache.
-        cancelled: Called from time to time while another process holds the entry; True gives up.
+        base: The folder of the cache.
+        cancelled: Called from time to time while another process holds the entry. If it returns True, waiting ends.
 
     Raises:
-        GivenUp: The entry is no longer wanted.
+        GivenUp: The caller no longer needs the entry.
     """
     with _turn(base / f"{key}.lock", cancelled) as lock:
         folder = base / key
@@ -155,7 +156,7 @@ def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -
 
 @contextlib.contextmanager
 def _turn(file: Path, cancelled: Callable[[], bool]) -> Iterator[IO[str]]:
-    """Hold a lock. Its last holder may have removed the file with its entry; then a new file is locked instead."""
+    """Hold a lock file. Its last holder may have removed it with its entry; then a new file is made and locked."""
     while True:
         with file.open("a") as lock:
             await_turn(lock.fileno(), cancelled)
@@ -172,20 +173,20 @@ def _is_at(lock: IO[str], file: Path) -> bool:
 
 
 def await_turn(lock: int, cancelled: Callable[[], bool]) -> None:
-    """Take a lock once no other process has it.
+    """Take a lock as soon as no other process has it.
 
     Args:
         lock: A descriptor of the locked file; closing it releases the lock.
-        cancelled: Called from time to time; True gives up.
+        cancelled: Called from time to time. If it returns True, waiting ends.
 
     Raises:
-        GivenUp: The lock is no longer wanted.
+        GivenUp: The caller no longer needs the lock.
     """
     while True:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            # No event tells that a lock is free, so this polls.
+            # No event reports that a lock has become free, so this polls.
             if cancelled():
                 raise GivenUp("nobody waits for the entry any more") from None
             time.sleep(ASK_EVERY)
@@ -194,14 +195,14 @@ def await_turn(lock: int, cancelled: Callable[[], bool]) -> None:
 
 
 def make_room(base: Path, limit: int = LIMIT, in_use: float = IN_USE) -> list[str]:
-    """Remove the least recently used entries, until all together take at most ``limit`` bytes.
+    """Remove the least recently used entries until all entries together have at most ``limit`` bytes.
 
-    Remains of failed or killed builds are removed, too.
+    Leftovers of failed or killed builds are removed, too.
 
     Args:
-        base: The cache.
-        limit: The limit in bytes.
-        in_use: Seconds after its last use in which an entry stays.
+        base: The folder of the cache.
+        limit: The maximum size in bytes.
+        in_use: Seconds for which an entry is kept after its last use.
 
     Returns:
         The keys that were removed.
@@ -223,16 +224,16 @@ def make_room(base: Path, limit: int = LIMIT, in_use: float = IN_USE) -> list[st
 
 
 def _remove(base: Path, folder: Path, used: float | None) -> bool:
-    """Remove an entry last used at this time, or never finished; False if another process uses it or has since."""
+    """Remove an entry that was last used at this time (None: unfinished). Return False if it is in use or was since."""
     file = base / f"{folder.name}.lock"
     with file.open("a") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
-            return False  # another process uses it
+            return False  # another process is using it
         if not _is_at(lock, file) or _last_use(folder) != used:
             return False  # another process has just removed, made or used it
-        # Without its marker the entry does not count, even if removing the rest fails.
+        # Remove the marker first: without it the entry does not count, even if removing the rest fails.
         (folder / _MARKER).unlink(missing_ok=True)
         shutil.rmtree(folder, ignore_errors=True)
         file.unlink(missing_ok=True)
@@ -252,6 +253,6 @@ def size_of(folder: Path) -> int:
     for root_, _, names in os.walk(folder):
         size += BLOCK
         for name in names:
-            with contextlib.suppress(FileNotFoundError):  # another worker may be removing it
+            with contextlib.suppress(FileNotFoundError):  # another worker may be removing this file
                 size += BLOCK + Path(root_, name).lstat().st_size
     return size

@@ -1,4 +1,4 @@
-"""A workspace before and after its build, colcon's command line, and what colcon's output tells about a failure."""
+"""A workspace before and after its build; colcon's command line; and the reason of a failure in colcon's output."""
 
 from __future__ import annotations
 
@@ -21,9 +21,11 @@ if TYPE_CHECKING:
     from autograder.workspaces.packages import Package
 
 MAX_LOG = 40_000
-"""The characters that are kept of a failed build's log, from its end."""
+"""The number of characters to keep from the end of a failed build's log."""
 _REFUSED = "setup()' was never called"
-"""In the last line of a build if setuptools refuses the arguments in setup.py: then no log has the reason."""
+"""The last line of a build contains this if setuptools refuses the arguments in setup.py. Then no log contains the
+reason.
+"""
 _WHAT_REFUSED = (
     "setuptools refuses setup.py; `python3 setup.py --version`, in the folder of the package, says why"
 )
@@ -35,20 +37,20 @@ class Build:
     """A workspace: the packages in it, and the result of building them.
 
     Attributes:
-        workspace: Its folder.
-        ok: Whether every package was built.
-        install: The folder of installed packages; empty if the build failed.
-        chosen: The packages of ``install`` that belong to the build; empty where all do.
+        workspace: The folder of the workspace.
+        ok: True if every package was built.
+        install: The folder of the installed packages; None if the build failed.
+        chosen: The packages of ``install`` that belong to this build; empty if all of them do.
         packages: The packages of the workspace, as their files describe them.
         unusable: The reasons why other packages cannot be used.
-        seconds: The wall time of the build.
-        reused: True if the same sources had been built before.
+        seconds: The duration of the build in seconds of wall time.
+        reused: True if the build was already in the cache.
         trouble: ``"no_workspace"``, ``"no_package"``, ``"bad_package"``, ``"entry_point"`` or ``"build"``; empty if
-            all is well.
-        package: The package that failed; empty if none did.
-        line: The most telling line of a failure.
-        log: The log of a failure.
-        changed: The sources, in words, that the student has changed since the last `colcon build`.
+            there is none.
+        package: The name of the package that failed; empty if none did.
+        line: The line of the log that explains the failure best.
+        log: The log of the failed build.
+        changed: The sources that the student has changed since the last `colcon build`, in words.
     """
 
     workspace: Path
@@ -67,7 +69,7 @@ class Build:
 
     @property
     def prefixes(self) -> list[Path]:
-        """One folder for each installed package."""
+        """The prefixes of the installed packages, one folder for each."""
         found = package_prefixes(self.install) if self.install else []
         return [prefix for prefix in found if not self.chosen or prefix.name in self.chosen]
 
@@ -76,7 +78,7 @@ class Build:
         return tuple(p for prefix in self.prefixes if prefix.name == package for p in programs(prefix))
 
     def launch_files(self, package: str) -> tuple[Path, ...]:
-        """The launch files that a package has installed, as paths below the prefix."""
+        """Return the launch files that a package has installed, as paths below the package's prefix."""
         return tuple(f for prefix in self.prefixes if prefix.name == package for f in launch_files(prefix))
 
     def entry_points(self, package: str, budget: ByteBudget) -> tuple[str, ...]:
@@ -87,15 +89,15 @@ class Build:
 
 
 Targets = Callable[[Build], Iterable[str]]
-"""Returns the packages of a workspace that are needed; no packages means all."""
+"""A function that returns the names of the packages that are needed in a workspace. No names means all packages."""
 
 
 def failed(found: Build, log: str) -> Build:
-    """Return a workspace that could not be built, with the reason from colcon's output."""
+    """Return a workspace that could not be built, with the reason taken from colcon's output."""
     search = _FAILED.search(log)
     name = search["name"] if search else ""
     own = _log_of(log, name)
-    # When colcon first asks setup.py, its output is outside the package's part of the log.
+    # Before the build, colcon asks setup.py for its metadata; that output is not in the package's part of the log.
     own = log if "CalledProcessError" in telling_line(own) else own
     made = replace(found, trouble="build", package=name, line=telling_line(own), log=own[-MAX_LOG:])
     if _REFUSED not in made.line:
@@ -105,10 +107,10 @@ def failed(found: Build, log: str) -> Build:
 
 
 def look(workspace: Path) -> Build:
-    """Return the packages that can be built, without building them.
+    """Return a workspace with the packages that can be built, without building them.
 
     Args:
-        workspace: The folder that contains ``src``.
+        workspace: The workspace folder, which contains ``src``.
     """
     workspace = workspace.resolve()
     src = workspace / "src"
@@ -124,7 +126,7 @@ def look(workspace: Path) -> Build:
 
 
 def choose(found: Build, targets: Targets | None) -> tuple[list[Package], Build]:
-    """Return the packages to build, and the workspace, with the trouble if these packages cannot be built.
+    """Return the packages to build, and the workspace. Its ``trouble`` is set if these packages cannot be built.
 
     A package that is not needed does no harm, even if it is unfinished or broken.
     """
@@ -135,26 +137,26 @@ def choose(found: Build, targets: Targets | None) -> tuple[list[Package], Build]
 
 
 def moved(packages: Iterable[Package], src: Path, there: Path) -> list[Package]:
-    """Return the packages with the paths that they have where their sources are written again.
+    """Return the packages with the paths that they will have when their sources are written to another folder.
 
     Args:
         packages: The packages.
-        src: The present folder of the packages.
+        src: The current folder of the packages.
         there: The other folder.
     """
     return [replace(package, folder=there / package.folder.relative_to(src)) for package in packages]
 
 
 def command(packages: Iterable[Package], folder: Path, cmake: Sequence[str] = ()) -> list[str]:
-    """Return colcon's command line for these packages alone, with ``build``, ``install`` and ``log`` in the folder.
+    """Return colcon's command line for these packages only, with ``build``, ``install`` and ``log`` in the folder.
 
     Args:
         packages: The packages.
-        folder: The folder for everything that is made.
+        folder: The folder for everything that colcon makes.
         cmake: More arguments for CMake.
 
-    Release defines NDEBUG: without it, a value of the wrong type in a field of a generated message ends the process
-    with SIGABRT instead of raising an exception.
+    The build type is Release, which defines NDEBUG. Without NDEBUG, a value of the wrong type in a field of a
+    generated message ends the process with SIGABRT instead of raising an exception.
     """
     words = [
         "-m", "colcon", "--log-base", str(folder / "log"),
@@ -168,7 +170,7 @@ def command(packages: Iterable[Package], folder: Path, cmake: Sequence[str] = ()
 
 
 def _log_of(log: str, package: str) -> str:
-    """Return the part of colcon's output about one package, else all of it."""
+    """Return the part of colcon's output that is about one package; all of it if there is no such part."""
     if package:
         found = re2.search(rf"(?ms)^--- output: {re2.escape(package)}\n(.*?)^---$", log)
         if found:

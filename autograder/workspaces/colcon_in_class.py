@@ -1,8 +1,8 @@
-"""`colcon` in a graded notebook: the grader makes plain builds, and colcon itself does everything else.
+"""`colcon` in a graded notebook: the grader makes plain builds, and the real colcon does everything else.
 
-``colcon build`` in a workspace, with at most ``--packages-select`` or ``--packages-up-to``, ends as usual: with the
-packages in ``install``, and lines that tell which are finished. Only the files for colcon's next build (``build``)
-are missing, and ``log`` is empty.
+A plain build is ``colcon build`` in a workspace, with at most ``--packages-select`` or ``--packages-up-to``. It ends
+as usual, with the packages in ``install`` and lines that list the finished packages. Only the files for colcon's next
+build (in ``build``) are missing, and ``log`` is empty.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ UP_TO = "--packages-up-to"
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Request a build from the grader, or become colcon.
+    """Request a build from the grader, or become the real colcon.
 
     Args:
         arguments: The arguments of the command line.
@@ -41,14 +41,14 @@ def main(arguments: Sequence[str]) -> int:
             try:
                 return _told(made)
             except CannotPlace:
-                pass  # colcon reports the reason
+                pass  # the real colcon reports the reason
     command = python_child("-m", "colcon", *arguments).command
     os.execv(command[0], command)
     return 1
 
 
 def _chosen(arguments: Sequence[str]) -> tuple[str, list[str]] | None:
-    """Return the option and the packages of a plain build; None for any other command."""
+    """Return the option and the package names of a plain build; None for any other command."""
     match list(arguments):
         case ["build"]:
             return "", []
@@ -67,10 +67,10 @@ def _told(made: Build) -> int:
     """Print what colcon would print. Return the exit code.
 
     Raises:
-        CannotPlace: The install folder cannot take the build.
+        CannotPlace: The build cannot be copied into the workspace's install folder.
     """
     if not made.ok and not made.log:
-        print(f"colcon build: {made.line}")  # the build did not begin
+        print(f"colcon build: {made.line}")  # the build did not even begin
         return 1
     if not made.ok:
         print(f"{made.log.rstrip()}\nFailed   <<< {made.package} [{made.seconds:.2f}s, exited with code 1]")

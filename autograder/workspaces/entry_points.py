@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 FORM = re2.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*")
-"""Executable, module and function. re2 refuses texts with lone surrogates."""
+"""Matches an entry point: executable, module and function. re2 does not accept texts with lone surrogates."""
 
 
 def console_scripts(tree: ast.AST) -> ast.List | None:
-    """Return the list of ``console_scripts`` in a setup.py."""
+    """Return the list of ``console_scripts`` in a setup.py; None if there is none."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Dict):
             for key, value in zip(node.keys, node.values, strict=True):
@@ -26,7 +26,7 @@ def console_scripts(tree: ast.AST) -> ast.List | None:
 
 
 def first_objection(tree: ast.AST) -> str:
-    """Return what is wrong with the first invalid entry point of a setup.py; empty if all are valid."""
+    """Return what is wrong with the first invalid entry point in a setup.py; empty if all are valid."""
     listed = console_scripts(tree)
     return next((objection(text) for text in _texts(listed) if not is_entry_point(text)), "")
 
@@ -38,12 +38,12 @@ def _texts(listed: ast.List | None) -> Iterator[str]:
 
 
 def is_entry_point(text: str) -> bool:
-    """True if a text has the format of an entry point."""
+    """Return True if a text has the format of an entry point."""
     return text.isascii() and FORM.fullmatch(text) is not None
 
 
 def objection(entry: object) -> str:
-    """Return what is wrong with an invalid entry point, and what to write."""
+    """Return a sentence that says what is wrong with an invalid entry point, and what to write."""
     if isinstance(entry, str) and entry.count("=") > 1 and entry.count(":") > 1:
         return (
             f"Two entry points have run together: {entry!r}. A comma is missing between them: Python joins two strings "
@@ -54,7 +54,7 @@ def objection(entry: object) -> str:
 
 
 def _what_is_wrong(entry: str) -> str:
-    """Return the mistake in an entry point as a sentence and a space; empty if it is not a known one."""
+    """Return the mistake in an entry point, as a sentence with a space after it; empty if it is not a known one."""
     if len(entry.strip()) <= 1:
         return "It is a single letter: put the string into a list, in square brackets. "
     if "(" in entry:

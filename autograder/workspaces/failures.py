@@ -1,4 +1,4 @@
-"""Finds the one line of a build's log that tells why it failed."""
+"""Finds the line of a build's log that explains best why the build failed."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ _NINJA_MAKE = re2.compile(r"^(?:make|gmake|ninja|---|<<<|>>>)")
 
 
 def telling_line(log: str) -> str:
-    """Return the most telling line of a failed build, with the file and line if the log has them.
+    """Return the line of a failed build that explains it best, with file and line number if the log has them.
 
     Args:
-        log: What colcon's commands printed, in order.
+        log: The output of colcon's commands, in order.
 
     Returns:
-        One line; empty only for an empty log.
+        One line; empty only if the log is empty.
     """
     if found := _COMPILER.search(log):
         return f"{_short(found['file'])}:{found['line']}: {found['what']}"
     python = _python(log)
-    # CMake prints status lines to another stream; on a busy machine they come between the lines of an error.
+    # CMake prints status lines to another stream. On a busy machine they appear between the lines of an error.
     log = _CMAKE_STATUS.sub("", log) or log
     if found := _CMAKE.search(log):
-        # A generator's error is the cause; the failure of CMake's call to it is only a consequence.
+        # The error in a generator is the cause; the failure of CMake's call to the generator is only a consequence.
         if python and "execute_process" in found["what"]:
             return python
         what = " ".join(found["what"].split())
@@ -51,7 +51,7 @@ def telling_line(log: str) -> str:
 
 
 def _python(log: str) -> str:
-    # A failed call by colcon or CMake is only the consequence; the called program printed the cause.
+    # The failure of a call by colcon or CMake is only a consequence; the called program printed the cause.
     found = list(_PYTHON.finditer(log))
     errors = [error for error in found if "CalledProcessError" not in error["what"]] or found
     if not errors:
@@ -61,7 +61,7 @@ def _python(log: str) -> str:
     if not places:
         return error["what"].strip()
     file, line = places[-1]["file"], places[-1]["line"]
-    # setuptools executes the text of setup.py without its file name.
+    # setuptools executes the text of setup.py without the name of the file.
     file = "setup.py" if file == "<string>" and "run_setup" in log else file
     return f"{_short(file)}:{line}: {error['what'].strip()}"
 
@@ -71,7 +71,7 @@ def _is_a_library(file: str) -> bool:
 
 
 def _place(error: re2.Match[str], log: str) -> str:
-    """Return the package's own line behind a CMake error, which may be raised in a library's file."""
+    """Return the line of the package's own files that led to a CMake error, even if a library's file raised it."""
     stack = _CALL_STACK.match(log, error.end())
     own = _CALL.search(stack["calls"].strip().splitlines()[-1].strip()) if stack else None
     place = own or error

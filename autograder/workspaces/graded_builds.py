@@ -1,9 +1,9 @@
-"""Builds on which a grade may depend: made in a box from the sources alone, and accepted as data.
+"""Builds on which a grade may depend: made in a box from the sources alone, and accepted only as data.
 
-No submission shares a build with another one, or with its own second execution: otherwise the time of a build would
-tell a notebook what classmates have handed in, or that it runs for the second time. Only packages that the course
-itself publishes or makes are built ahead, once for all (:mod:`autograder.workspaces.built_ahead`). No box can write
-to either folder.
+No submission shares a build with another submission, or with a second execution of itself. Otherwise the duration of
+a build would reveal to a notebook what classmates have handed in, or that it runs for the second time. Only packages
+that the course itself publishes or makes are built in advance, once for all
+(:mod:`autograder.workspaces.built_ahead`). No box can write to either folder.
 """
 
 from __future__ import annotations
@@ -26,20 +26,22 @@ if TYPE_CHECKING:
     from autograder.workspaces.packages import Package
 
 ROOM = 32_000_000
-"""The limit in bytes for all builds of a notebook; an interface package takes two million, a Python package 300,000."""
+"""The maximum size in bytes of all builds of a notebook. An interface package takes two million, a Python package
+300,000.
+"""
 
 
 class GradedBuilds(Builds):
     """The builds for one execution of a submission.
 
-    Packages with nothing but interfaces often differ only in comments and spaces, so a build made ahead is used if it
-    means the same.
+    Packages that only define interfaces often differ just in comments and spaces. So a build made in advance is used
+    if its sources mean the same.
 
     Args:
-        folder: The folder for the builds of this execution, which only the grader can write to.
+        folder: The folder for the builds of this execution. Only the grader can write to it.
         jobs: Runs colcon and the built programs.
-        ahead: The folder of builds made ahead; None if nothing is shared.
-        room: The limit in bytes on all builds used here, also those made ahead.
+        ahead: The folder of builds made in advance; None if nothing is shared.
+        room: The maximum size in bytes of all builds used here, including those made in advance.
     """
 
     def __init__(self, folder: Path, jobs: Jobs, ahead: Path | None = None, room: int = ROOM) -> None:
@@ -60,7 +62,7 @@ class GradedBuilds(Builds):
         return self._entry(found, order)
 
     def _entry(self, found: Build, order: BuildOrder, folder: Path | None = None) -> Build:
-        """Return the build if the limit allows it: a build made ahead counts as much as a new one."""
+        """Return the build if the size limit allows it. A build made in advance counts as much as a new one."""
         made = super()._entry(found, order, folder)
         if made.install is None or order.key in self._paid:
             return made
@@ -74,5 +76,5 @@ class GradedBuilds(Builds):
 
 
 def _hidden_from(packages: Sequence[Package]) -> Sequence[Path]:
-    """Return the course's own interfaces, which a build that makes interfaces must not see."""
+    """Return the files of the course's own interfaces, which a build of interfaces must not see."""
     return course_interfaces() if any(package.interface_files for package in packages) else ()

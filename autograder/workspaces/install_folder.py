@@ -1,7 +1,7 @@
-"""A colcon install folder: its layout, and the environment in which its packages are found.
+"""A colcon install folder: its layout, and the environment in which programs find its packages.
 
-The environment is the one that ``source install/setup.bash`` makes. It is computed here because sourcing needs a
-shell, half a second, and a path without spaces.
+The environment equals the one that ``source install/setup.bash`` makes. It is computed here, because sourcing would
+need a shell, half a second, and a path without spaces.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ if TYPE_CHECKING:
 
 LIBRARY = f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
 BESIDE = ("build", "log")
-"""The other folders that colcon makes, for its next build and for people."""
+"""The other folders that colcon makes: for its next build, and for people to read."""
 _LAYOUT = ".colcon_install_layout"
 _INDEX = "share/ament_index/resource_index"
 
 
 class CannotPlace(RuntimeError):
-    """The workspace's install folder cannot take the build. The message says what to do."""
+    """A build cannot be copied into the workspace's install folder. The message says what to do."""
 
 
 def package_prefixes(install: Path) -> list[Path]:
-    """Return the prefix of each package in an isolated install folder, in the order of their names."""
+    """Return the prefix of each package in an isolated install folder, sorted by package name."""
     if not install.is_dir():
         return []
     return sorted(folder for folder in install.iterdir() if (folder / "share").is_dir())
@@ -47,14 +47,14 @@ def is_isolated(install: Path) -> bool:
 
 
 def python_folders(prefix: Path) -> list[Path]:
-    """The folders of a prefix that Python imports from."""
+    """Return the folders of a prefix from which Python imports."""
     return [*_libraries(prefix), *filter(None, [linked_build(prefix)])]
 
 
 def linked_build(prefix: Path) -> Path | None:
-    """Return the build folder that Python imports a package from; None unless `--symlink-install` installed it.
+    """Return the build folder from which Python imports a package; None unless `--symlink-install` installed it.
 
-    The path is worked out, not read from the link in the prefix: the prefix may belong to a submission.
+    The path is computed and not read from the link in the prefix, because the prefix may belong to a submission.
     """
     build = prefix.parent.parent / BESIDE[0] / prefix.name
     linked = any(any(folder.glob("*.egg-link")) for folder in _libraries(prefix))
@@ -62,7 +62,7 @@ def linked_build(prefix: Path) -> Path | None:
 
 
 def _libraries(prefix: Path) -> list[Path]:
-    # Debian's Python installs into dist-packages if it is given a prefix.
+    # Debian's Python installs into dist-packages when a prefix is given.
     candidates = [prefix / LIBRARY, prefix / "local" / LIBRARY.replace("site-", "dist-")]
     return [folder for folder in candidates if folder.is_dir()]
 
@@ -73,7 +73,7 @@ def programs(prefix: Path) -> list[str]:
 
 
 def entry_points(prefix: Path, budget: ByteBudget) -> Iterator[str]:
-    """Yield the entry points of the Python package in a prefix, as ``name = module:function``, within the limit."""
+    """Yield the entry points of the Python package in a prefix, as ``name = module:function``, up to the byte limit."""
     files = (file for folder in python_folders(prefix) for file in folder.glob("*/entry_points.txt"))
     for file in filter(budget.has, files):
         for line in file.read_text(encoding="utf-8", errors="replace").splitlines():
@@ -82,23 +82,23 @@ def entry_points(prefix: Path, budget: ByteBudget) -> Iterator[str]:
 
 
 def has_service(prefix: Path, interface: str) -> bool:
-    """True if the package in a prefix has the Python module of a service type.
+    """Return True if the package in a prefix has the Python module of a service type.
 
     Args:
         prefix: The prefix.
-        interface: The type's name, such as ``"AddTwoInts"``.
+        interface: The name of the type, such as ``"AddTwoInts"``.
     """
     words = (f"_{c.lower()}" if c.isupper() and i else c.lower() for i, c in enumerate(interface))
     return any(prefix.rglob(f"{prefix.name}/srv/_{''.join(words)}.py"))
 
 
 def is_indexed(prefix: Path) -> bool:
-    """True if ament finds the package in a prefix."""
+    """Return True if ament finds the package in a prefix."""
     return (prefix / _INDEX / "packages" / prefix.name).is_file()
 
 
 def files_of_interfaces(prefix: Path, package: str) -> Iterator[Path]:
-    """Yield all files and folders of an interface package in a prefix, which it may share with other packages."""
+    """Yield all files and folders of an interface package in a prefix, which may also contain other packages."""
     for pattern in (
         f"share/{package}",
         f"include/{package}",
@@ -112,12 +112,12 @@ def files_of_interfaces(prefix: Path, package: str) -> Iterator[Path]:
 def with_prefixes(
     environment: Mapping[str, str], prefixes: Iterable[Path], *, last: bool = False
 ) -> dict[str, str]:
-    """Return an environment in which the packages of these prefixes are found.
+    """Return an environment in which programs find the packages in these prefixes.
 
     Args:
         environment: The environment to begin with.
         prefixes: The prefixes, one for each package.
-        last: True if packages that are already in the environment come first.
+        last: True if packages that are already in the environment take precedence.
     """
     chosen = list(prefixes)
     additions = {
@@ -138,7 +138,7 @@ def with_prefixes(
 
 
 def relocated(environment: Mapping[str, str], here: Path, there: Path) -> dict[str, str]:
-    """Return the environment for a process that sees one folder at another path."""
+    """Return the environment for a process that sees a folder at a different path."""
     old, new = f"{here}{os.sep}", f"{there}{os.sep}"
     return {
         name: os.pathsep.join(
@@ -151,7 +151,7 @@ def relocated(environment: Mapping[str, str], here: Path, there: Path) -> dict[s
 
 
 def without_workspaces(environment: Mapping[str, str], workspace: Path) -> dict[str, str]:
-    """Return the environment without paths in a workspace: a build must not see the results of an earlier one."""
+    """Return the environment without paths in a workspace, because a build must not see results of an earlier one."""
     result = dict(environment)
     inside = f"{workspace.resolve()}{os.sep}"
     for name in (
@@ -168,10 +168,10 @@ def without_workspaces(environment: Mapping[str, str], workspace: Path) -> dict[
 
 
 def place(made: Build) -> Path:
-    """Copy a build from the cache into ``install`` of its workspace, so that terminals can source it.
+    """Copy a build from the cache into the workspace's ``install`` folder, so that terminals can source it.
 
-    The same packages are replaced, other packages stay. A running program keeps the libraries that it has loaded,
-    because files are replaced, not overwritten.
+    Packages of the build replace earlier ones; other packages stay. A running program keeps the libraries that it has
+    loaded, because files are replaced and not overwritten.
 
     Returns:
         The install folder.
@@ -205,7 +205,7 @@ def _replace(old: Path, new: Path) -> None:
 
 
 def rename_paths(folder: Path, old: str, new: str) -> None:
-    """Replace one path by another in the text files of a folder (setup scripts, what CMake and setuptools wrote)."""
+    """Replace one path by another in a folder's text files: setup scripts, and files by CMake and setuptools."""
     for root, _, names in os.walk(folder):
         for file in (Path(root, name) for name in names):
             content = file.read_bytes()

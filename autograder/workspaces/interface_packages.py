@@ -1,7 +1,7 @@
-"""Packages with nothing but interface definitions, and which differences in their texts do not affect a build.
+"""Packages that only define interfaces, and which differences between their texts do not affect a build.
 
-Students write the same three lines with different comments and spaces. A text is simplified only if it certainly
-means the same; otherwise it stays unchanged, and the package is built on its own.
+Students write the same three lines with different comments and spaces. A text is simplified only if the simple form
+certainly means the same. Otherwise it stays unchanged, and the package is built separately.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ if TYPE_CHECKING:
     from autograder.workspaces.packages import Package
 
 MAX_SIMPLIFIED = 50_000
-"""The limit in bytes for sources to be simplified; a student's have a thousand.
+"""The maximum size in bytes of sources to be simplified; a student's have about a thousand.
 
-Larger ones are built as they are, because simplifying takes quadratic time.
+Larger sources are built as they are, because simplifying takes quadratic time.
 """
 _PROSE = ("LICENSE", "README.md", "README.rst", "CHANGELOG.rst")
-"""Files for people, which no build reads."""
+"""Files for people to read; no build reads them."""
 _FOR_PEOPLE = {"description", "maintainer", "author", "license", "url"}
 """Elements of package.xml that only people read. Required ones are put back with a fixed text."""
 
 
 def holds_only_interfaces(package: Package) -> bool:
-    """True if a package can contain nothing but interfaces: it has only the files of an interface package."""
+    """Return True if a package can contain only interfaces, because it has only the files of an interface package."""
     files = [path for path in package.folder.rglob("*") if path.is_file()]
     known = {"package.xml", "CMakeLists.txt", *_PROSE}
     return (
@@ -49,7 +49,7 @@ def holds_only_interfaces(package: Package) -> bool:
 
 
 def simplified(tree: Tree) -> Tree:
-    """Return the sources of such packages with simplified texts, so that those with the same meaning are equal."""
+    """Return the sources of such packages with simplified texts, so that sources with the same meaning are equal."""
     if sum(len(source.data or b"") for source in tree.sources) > MAX_SIMPLIFIED:
         return tree
     return Tree(tuple(replace(source, data=_simple(source)) for source in tree.sources))
@@ -67,9 +67,9 @@ def _simple(source: Source) -> bytes | None:
 
 
 def simple_definition(text: str) -> str:
-    """Return a definition without comments and needless spaces; a line with anything unusual stays unchanged.
+    """Return a definition without comments and needless spaces. A line with anything unusual stays unchanged.
 
-    To rosidl, a blank after ``---`` or before a type, or a blank outside ASCII, is an error.
+    rosidl rejects a space after ``---`` or before a type, and any whitespace that is not ASCII.
     """
     lines = []
     for line in text.splitlines():
@@ -82,16 +82,16 @@ def simple_definition(text: str) -> str:
 
 
 def simple_cmake(text: str) -> str:
-    """Return a CMakeLists.txt without comments and needless spaces, or unchanged if it has more than plain commands.
+    """Return a CMakeLists.txt without comments and needless spaces; unchanged if it has more than plain commands.
 
-    See cmake-language(7): bracket arguments and comments, escapes, and quoted texts of several lines are not changed.
+    Bracket arguments and comments, escapes, and quoted texts of several lines (cmake-language(7)) are not changed.
     """
     if re2.search(r"\\|\[=*\[", text) or any(line.count('"') % 2 for line in text.splitlines()):
         return text
     found = list(re2.finditer(r'"[^"\n]*"|#[^\n]*|[()]|\n|[^\s()"#]+', text))
     for one, other in pairwise(found):
         if one.end() == other.start() and not any(re2.match(r"[()#\n]", word[0]) for word in (one, other)):
-            return text  # a quoted text in the middle of a word
+            return text  # a quoted text inside a word
     words = [word[0] for word in found if not word[0].startswith("#")]
     out, depth = "", 0
     for word in words:

@@ -1,7 +1,7 @@
-"""Builds and programs as jobs: their orders, their results, and the interface of what runs them, here or in a box.
+"""Builds and programs as jobs: requests, results, and the interface of what runs them, here or in a box.
 
-A build yields nothing but bytes: output, and the files in its install folder. The caller never executes or unpickles
-any of it.
+A build yields only bytes: output, and the files in its install folder. The caller never executes or unpickles any of
+them.
 """
 
 from __future__ import annotations
@@ -20,32 +20,34 @@ if TYPE_CHECKING:
     from autograder.workspaces.sources import Tree
 
 BUILD_SECONDS = 170.0
-"""The time limit of a build in seconds of wall time; an interface package takes five on two idle cores.
+"""The time limit of a build, in seconds of wall time. An interface package takes five seconds on two idle cores.
 
-An exercise waits longer than this, so that a busy machine is never taken for a failed build.
+An exercise waits longer than this, so that a build on a busy machine is never mistaken for a failed one.
 """
 MAX_LOG_BYTES = 1_000_000
-"""The limit on the kept output of a build, in bytes."""
+"""The maximum number of bytes that are kept of a build's output."""
 MAX_LINE = 4_000
-"""The limit on one line of a program's output, in bytes."""
+"""The maximum length of a line of a program's output, in bytes."""
 MAX_ARCHIVE_BYTES = 64_000_000
-"""The limit on everything that a build makes, as an archive; an interface package has 1.3 million bytes."""
+"""The maximum size in bytes of the archive of everything that a build makes; an interface package has 1.3 million
+bytes.
+"""
 
 
 @dataclass(frozen=True)
 class BuildOrder:
-    """An order for a build.
+    """A request for a build.
 
     Attributes:
-        name: See :meth:`Jobs.place`.
+        name: The kind of workspace; see :meth:`Jobs.place`.
         workspace: A folder whose content the build must not find.
-        tree: The sources of the build, in ``src`` of its place.
-        packages: The packages in the sources; their folders are relative to the place.
-        cancelled: Called from time to time; the build is ended when it returns True.
+        tree: The sources of the build. They are put into ``src`` of the build's folder.
+        packages: The packages in the sources. Their folders are relative to the build's folder.
+        cancelled: Called from time to time. If it returns True, the build is ended.
         cmake: More arguments for CMake.
         variables: More environment variables.
         hidden: Files and folders of the environment that the build must not find.
-        key: A hash of all this and of the tools.
+        key: A hash of the whole request and of the tools.
     """
 
     name: str
@@ -64,11 +66,12 @@ class Built:
     """The result of a build.
 
     Attributes:
-        returncode: colcon's exit code; None if the build was stopped, at a limit or because it was no longer wanted.
+        returncode: colcon's exit code; None if the build was stopped, at a limit or because it was no longer needed.
         output: The output of the build.
-        archive: The install folder as a tar file, made when no process of the build was alive any more; empty if it
-            could not be packed; None if the build failed, or was made in the entry itself.
-        late: The seconds after which a too long build was stopped, perhaps because the machine was busy; else 0.
+        archive: The install folder as a tar file, made when no process of the build was alive any more. It is empty
+            if it could not be packed, and None if the build failed or was made in the cache entry itself.
+        late: The number of seconds after which the build was stopped as too long, perhaps because the machine was
+            busy; else 0.
     """
 
     returncode: int | None
@@ -82,10 +85,11 @@ class ProgramJob:
     """A program to run.
 
     Attributes:
-        command: The command, with paths as the job sees them.
+        command: The command, with paths as the program sees them.
         environment: All environment variables.
-        sources: The submitted files; the job sees them at :meth:`Jobs.tree`, which is also the working folder.
-        entries: Builds that the program may read, by the names of their places.
+        sources: The folder of the submitted files. The program sees it at :meth:`Jobs.tree`, which is also its
+            working folder.
+        entries: Builds that the program may read, by the names of their kinds of workspace.
         hidden: Files and folders of the environment that the program must not find.
     """
 
@@ -100,37 +104,37 @@ class Program(Protocol):
     """A running program."""
 
     pid: int
-    """The number, outside the sandbox, of the first process of the job: all others descend from it."""
+    """The process id, as seen outside the sandbox, of the first process of the program. All others descend from it."""
 
     def read(self, within: float) -> bytes | None:
-        """Return the output since the last call; None for nothing yet, b"" at its end.
+        """Return the output since the last call; None if nothing has come yet, b"" at the end.
 
         Args:
-            within: Seconds to wait for output.
+            within: The maximum number of seconds to wait for output.
         """
         ...
 
     def exit_code(self) -> int | None:
-        """The exit code once the program has ended; negative for a signal."""
+        """Return the exit code once the program has ended; negative if a signal ended it."""
         ...
 
     def interrupt(self) -> None:
-        """Send Ctrl-C as a terminal does: to the program and to what it has started."""
+        """Send Ctrl-C as a terminal does: to the program and to the processes that it has started."""
         ...
 
     def end(self) -> None:
-        """Kill the program and everything that it has started; may be called twice."""
+        """Kill the program and everything that it has started. This may be called twice."""
         ...
 
 
 def output_lines(
     program: Program, wanted: Callable[[], bool] = lambda: True, within: float = 0.1
 ) -> Iterator[str]:
-    """Yield the lines of a program's output, until it ends or they are no longer wanted; long lines are cut.
+    """Yield the lines of a program's output until it ends or they are no longer needed. Long lines are cut.
 
     Args:
         program: The program.
-        wanted: Called from time to time; False ends the lines.
+        wanted: Called from time to time. If it returns False, no more lines are yielded.
         within: Seconds between these calls while there is no output.
     """
     line = b""
@@ -147,30 +151,30 @@ def _as_text(line: bytes) -> str:
 
 
 class Jobs(Protocol):
-    """Builds and runs, here (:mod:`autograder.workspaces.plain_jobs`) or in boxes (``boxed_jobs``)."""
+    """Runs builds and programs, as processes (:mod:`autograder.workspaces.plain_jobs`) or in boxes (``boxed_jobs``)."""
 
     @property
     def environment(self) -> Mapping[str, str]:
-        """The whole environment of a job, before variables are added."""
+        """The complete environment of a job, before the variables of a request are added."""
         ...
 
     def place(self, name: str, entry: Path) -> Path:
-        """Return the path at which jobs see a folder of the cache of builds.
+        """Return the path at which jobs see a folder of the build cache.
 
         Args:
-            name: The kind of workspace, such as ``"ros2_ws"``: each kind has its own place.
-            entry: The folder.
+            name: The kind of workspace, such as ``"ros2_ws"``. Each kind is seen at its own path.
+            entry: The folder of the cache.
         """
         ...
 
     def build(self, order: BuildOrder, command: Sequence[str], entry: CachedBuild) -> Built:
-        """Run colcon.
+        """Run colcon for a build.
 
         Args:
-            order: The order.
+            order: The build request.
             command: The command, with paths as the job sees them.
-            entry: Its folder contains ``src``, which the build may read. Of the files that the build writes, only
-                ``install`` in the place is kept.
+            entry: The entry of the cache. Its folder contains ``src``, which the build may read. Of the files that
+                the build writes, only ``install`` is kept.
         """
         ...
 

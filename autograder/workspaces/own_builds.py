@@ -1,7 +1,8 @@
 """Builds of a student's own workspace: in a notebook or a terminal, on the student's own computer.
 
-In a graded notebook they are requested from the grader instead. The result of ``colcon build`` depends on the sources
-alone, so the check can use the same build. The box receives it as an archive and sees nothing of its folder.
+In a graded notebook, builds are requested from the grader instead. The result of ``colcon build`` depends only on the
+sources, so the check can use the same build. The box receives the build as an archive, and does not see the folder in
+which it was made.
 """
 
 from __future__ import annotations
@@ -30,16 +31,16 @@ if TYPE_CHECKING:
     from autograder.workspaces.packages import Package
 
 GRADERS = "AUTOGRADER_BUILDS"
-"""The environment variable, in a graded notebook, for the path of the grader's socket."""
+"""The environment variable that, in a graded notebook, contains the path of the grader's socket."""
 LIMIT = 300.0
-"""Seconds of wall time that the grader may take for a build."""
+"""Time limit in seconds of wall time for the grader to make a build."""
 
 
 class OwnBuilds(Builds):
-    """Builds made in the cache itself, or, in a graded notebook, by the grader.
+    """Builds made in the cache itself or, in a graded notebook, by the grader.
 
-    Each is made as if for the first time: the workspace is not written to, and earlier results in its ``install`` are
-    not used.
+    Each build is made as if for the first time: the workspace is not written to, and earlier results in its
+    ``install`` folder are not used.
     """
 
     def __init__(self) -> None:
@@ -53,7 +54,7 @@ class OwnBuilds(Builds):
         name: str = WORKSPACE,
         cancelled: Callable[[], bool] = lambda: False,
     ) -> Build:
-        """Build the needed packages; a build that took too long is reported like a failed one."""
+        """Build the needed packages. A build that took too long is returned like a failed one."""
         try:
             return super().build(found, targets, name=name, cancelled=cancelled)
         except BuildTookTooLong as error:
@@ -66,10 +67,10 @@ class OwnBuilds(Builds):
 
 
 class StudentsBuilds(OwnBuilds):
-    """For a student's own check: the student's build, if it holds what the sources say now; else a new build.
+    """Builds for a student's own check: the student's build if it is up to date with the sources, else a new build.
 
-    If sources were changed, the check builds them, as a class does: the sources are what is handed in, and a right
-    answer must not fail because it is not built yet. The card then names the changed files.
+    If sources were changed, the check builds them, as the grader of a class does. The sources are what is handed in,
+    and a right answer must not fail because the student has not built it yet. The card then names the changed files.
     """
 
     def _find_or_make(self, found: Build, chosen: Sequence[Package], order: BuildOrder) -> Build:
@@ -89,7 +90,7 @@ def _ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) ->
         socket: The path of the grader's socket.
         found: The workspace, after :func:`autograder.workspaces.colcon.look`.
         chosen: The packages.
-        install: The folder for the build, which does not exist yet.
+        install: The folder to create for the build. It must not exist yet.
 
     Returns:
         The build, with paths that fit its new install folder; None if the grader does not answer, or refuses.

@@ -1,13 +1,15 @@
-"""The student's own build of a workspace: whether `install` holds what `src` says now, and what was changed since.
+"""The student's own build of a workspace: is `install` up to date with `src`, and what was changed since?
 
-The times decide: when a file's content or name last changed (``st_ctime``), against when the package's last
-`colcon build` began. Both come from one file system, so from one clock, and no program can set the first one. The
-contents alone could not decide: `install` holds no copy of setup.py or CMakeLists.txt. But a newer file that equals its
-installed copy counts as unchanged, because running a cell that writes a program touches the file.
+This is decided by comparing two times: when a file's content or name last changed (``st_ctime``), and when the
+package's last `colcon build` began. Both times come from the same file system, and so from the same clock, and no
+program can set the first one. Comparing contents would not be enough, because `install` has no copy of setup.py or
+CMakeLists.txt. But a newer file that equals its installed copy counts as unchanged, because running a cell that
+writes a program touches the file.
 
-`colcon` never removes what an earlier build has installed. So an `install` with a module or a program that the sources
-do not have is not used: a class, which builds from the sources alone, would not have it either. The same holds for a
-launch file that the last build did not install: `ros2 launch` refuses a name that it finds twice.
+`colcon` never removes what an earlier build has installed. So an `install` folder with a module or program that the
+sources do not have is not used: the grader of a class builds from the sources alone and would not have it either. The
+same holds for a launch file that the last build did not install, because `ros2 launch` refuses a name that it finds
+twice.
 """
 
 from __future__ import annotations
@@ -35,20 +37,21 @@ if TYPE_CHECKING:
     from autograder.workspaces.packages import Package
 
 _MOST_NAMED = 3
-"""Changed files that are named."""
+"""The maximum number of changed files to name."""
 _BEGAN = "colcon_command_prefix_*.sh"
-"""colcon writes this file into a package's build folder when it begins to build the package."""
+"""A file that colcon writes into a package's build folder when it begins to build the package."""
 _RESULT = "colcon_build.rc"
-"""colcon writes the exit code of a package's build into this file."""
+"""The file into which colcon writes the exit code of a package's build."""
 _RECORDS = ("install.log", "install_manifest.txt")
 """Files in a package's build folder that list what its last build installed: setuptools' list and CMake's."""
 _OPTIMIZED = re2.compile(r"(?m)^CMAKE_BUILD_TYPE:\w+=(?:Release|RelWithDebInfo|MinSizeRel)$")
-"""In CMakeCache.txt where NDEBUG is defined. Without it a value of the wrong type ends the process, as it does not in
-a class (:func:`autograder.workspaces.colcon.command`)."""
+"""Matches a build type in CMakeCache.txt that defines NDEBUG. Without NDEBUG, a value of the wrong type ends the
+process, which does not happen when a class is graded (:func:`autograder.workspaces.colcon.command`).
+"""
 
 
 def is_current(workspace: Path, packages: Sequence[Package]) -> bool:
-    """Return True if the student's last `colcon build` of each package succeeded, and holds what is in `src` now."""
+    """Return True if the last `colcon build` of each package succeeded and is up to date with `src`."""
     return is_isolated(workspace / "install") and all(
         _succeeded(workspace, package)
         and not any(_changed(workspace, package))
@@ -58,9 +61,9 @@ def is_current(workspace: Path, packages: Sequence[Package]) -> bool:
 
 
 def changed_since(workspace: Path, packages: Iterable[Package]) -> str:
-    """Return the sources that were changed since the last `colcon build`, in words; empty if there are none.
+    """Return in words the sources that were changed since the last `colcon build`; empty if there are none.
 
-    A package that was never built has none.
+    A package that was never built has no changed sources.
     """
     names = [
         f"`{file.relative_to(package.folder.parent)}`"
@@ -83,7 +86,7 @@ def _succeeded(workspace: Path, package: Package) -> bool:
 
 
 def _changed(workspace: Path, package: Package) -> Iterator[Path]:
-    """The sources of a package that were changed since its last build began."""
+    """Yield the sources of a package that were changed since its last build began."""
     build, prefix = _folders(workspace, package)
     began = max((file.stat().st_mtime_ns for file in build.glob(_BEGAN)), default=None)
     if began is None or not prefix.is_dir():
@@ -97,13 +100,13 @@ def _changed(workspace: Path, package: Package) -> Iterator[Path]:
 
 
 def _left_over(workspace: Path, package: Package) -> Iterator[Path]:
-    """Return the installed files that differ from the package's sources, or that the last build did not install."""
+    """Yield the installed files that the package's sources do not contain, or that the last build did not install."""
     build, prefix = _folders(workspace, package)
     recorded = {path for record in _RECORDS for path in _text(build / record).splitlines()}
     launches = [prefix / file for file in launch_files(prefix)]
     yield from (file for file in launches if str(file) not in recorded)
     linked = _linked(prefix)
-    # The links of a workspace that was copied lead to the first one.
+    # If the workspace is a copy, its links still lead to the original workspace.
     yield from (folder for folder in linked if not folder.is_relative_to(package.folder))
     modules = [] if linked else [(f, m) for f in python_folders(prefix) for m in f.rglob("*.py")]
     shared = prefix / "share" / package.name
@@ -115,7 +118,7 @@ def _left_over(workspace: Path, package: Package) -> Iterator[Path]:
 
 
 def _linked(prefix: Path) -> list[Path]:
-    """The folders of modules that `--symlink-install` has linked: what is in these is what runs."""
+    """Return the folders of modules that `--symlink-install` has linked, which are the ones that run."""
     build = linked_build(prefix)
     return (
         [entry.resolve() for entry in build.iterdir() if entry.is_symlink() and entry.is_dir()]
@@ -125,12 +128,12 @@ def _linked(prefix: Path) -> list[Path]:
 
 
 def _folders(workspace: Path, package: Package) -> tuple[Path, Path]:
-    """The folders into which colcon has built and installed a package."""
+    """Return the folders into which colcon has built and installed a package."""
     return workspace / "build" / package.name, workspace / "install" / package.name
 
 
 def _sources(package: Package) -> Iterator[Path]:
-    """The files of a package that a class would take: links are not among them."""
+    """Yield the files of a package that a grader would take; links are not among them."""
     for file in sorted(package.folder.rglob("*")):
         if (
             is_source(file.relative_to(package.folder).as_posix())
@@ -141,7 +144,7 @@ def _sources(package: Package) -> Iterator[Path]:
 
 
 def _is_copy(copy: Path, file: Path, folder: Path) -> bool:
-    """Return True if a file has the bytes of another one, and the path that this has in a folder."""
+    """Return True if a file has the same bytes as another one, and the same path below its folder."""
     inside = file.relative_to(folder).parts
     return copy.parts[-len(inside) :] == inside and copy.is_file() and copy.read_bytes() == file.read_bytes()
 

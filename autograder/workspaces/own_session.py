@@ -1,4 +1,4 @@
-"""A program in a session of its own: read while it is wanted, and ended with everything that it has started."""
+"""A program in a session of its own: its output is read while needed, and all its processes are ended with it."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 LOOK_EVERY = 0.5
-"""Seconds between checks whether a program is still wanted."""
+"""Seconds between two checks whether a program is still needed."""
 
 
 class OwnSession:
-    """A program that a terminal's or kernel's interrupt does not reach, with stdout and stderr in one stream.
+    """A program that an interrupt of the terminal or kernel does not reach. Its stdout and stderr are one stream.
 
-    It runs below a keeper process (:func:`autograder.process_trees.keep`), so that none of its processes outlives
-    this one, however this one ends.
+    It runs below a keeper process (:func:`autograder.process_trees.keep`). So none of its processes outlives this
+    process, however this process ends.
 
     Args:
         command: The program and its arguments.
         environment: All environment variables.
-        cwd: The working folder; None for this process's.
-        holds: Descriptors that stay open until no process of the program is alive, such as a lock's.
+        cwd: The working folder; None for the working folder of this process.
+        holds: Descriptors, such as that of a lock, that stay open until no process of the program is alive.
 
     Raises:
         FileNotFoundError: The program does not exist.
@@ -69,10 +69,10 @@ class OwnSession:
         self._output.close()
 
     def read(self, within: float) -> bytes | None:
-        """Return the output since the last call; None for nothing yet, b"" at its end.
+        """Return the output since the last call; None if nothing has come yet, b"" at the end.
 
         Args:
-            within: Seconds to wait for output.
+            within: The maximum number of seconds to wait for output.
         """
         if self._output.closed:
             return b""
@@ -85,15 +85,16 @@ class OwnSession:
     def collect(
         self, limit: float, size: int, unwanted: Callable[[], bool] = lambda: False
     ) -> tuple[bytes, bool]:
-        """Read the output until its end, or until it is no longer wanted.
+        """Read the output until it ends or is no longer needed.
 
         Args:
-            limit: Seconds of wall time within which the program must end.
-            size: The bytes to keep.
-            unwanted: Called from time to time; True stops.
+            limit: Time limit in seconds of wall time for the program to end.
+            size: The maximum number of bytes to keep.
+            unwanted: Called from time to time. If it returns True, reading stops.
 
         Returns:
-            The output, and whether the time was up. If the program has not ended, :meth:`exit_code` is None.
+            The output, and True if the time limit was reached. If the program has not ended, :meth:`exit_code` is
+            None.
         """
         output = bytearray()
         deadline = time.monotonic() + limit
@@ -104,7 +105,7 @@ class OwnSession:
         return bytes(output), False
 
     def exit_code(self) -> int | None:
-        """The exit code once the program has ended; negative for a signal."""
+        """Return the exit code once the program has ended; negative if a signal ended it."""
         return self._process.poll()
 
     def wait(self) -> int:
@@ -112,15 +113,16 @@ class OwnSession:
         return self._process.wait()
 
     def interrupt(self) -> None:
-        """Send Ctrl-C as a terminal does: to the program and to its whole group."""
+        """Send Ctrl-C as a terminal does: to the program and its whole process group."""
         if self.exit_code() is None:
             process_trees.signal_group(self.pid, signal.SIGINT)
 
     def end(self, polite: float = 0.0) -> None:
-        """Kill the program and everything that it has started, even outside its group; may be called twice.
+        """Kill the program and everything that it has started, even outside its group. It may be called twice.
 
         Args:
-            polite: Seconds of wall time, after an interrupt, in which it may end by itself.
+            polite: If not 0, interrupt the program first, and give it this many seconds of wall time to end by
+                itself.
         """
         if polite > 0.0:
             self.interrupt()
@@ -128,6 +130,6 @@ class OwnSession:
                 self._process.wait(timeout=polite)
         if self.exit_code() is None:
             process_trees.end_below(self.pid)
-        # The keeper, which may be stopped; and, if the program has killed the keeper, what is left.
+        # Kill the keeper, which may be stopped. If the program has killed the keeper, kill what is left of the group.
         process_trees.signal_group(self.pid, signal.SIGKILL)
         self._process.wait()

@@ -1,4 +1,4 @@
-"""The packages in a workspace's ``src`` folder, as their files describe them, and the workspace of a launch file."""
+"""The packages in a workspace's ``src`` folder, as their files describe them; and the workspace of a launch file."""
 
 from __future__ import annotations
 
@@ -24,38 +24,40 @@ if TYPE_CHECKING:
     from autograder.messages.workspaces import Source
 
 WORKSPACE = "ros2_ws"
-"""The name of workspaces in the course."""
+"""The name of every workspace in the course."""
 DEFINITIONS = (".msg", ".srv", ".action")
-"""The name endings of interface files."""
+"""The file name extensions of interface files."""
 UNREADABLE = (SyntaxError, ValueError, LookupError, RecursionError, MemoryError)
-"""The errors with which Python's parsers of Python and XML refuse a text: malformed, in an encoding that they do not
-know, too deep."""
+"""The errors with which Python's parsers of Python and XML reject a text: malformed, in an unknown encoding, or too
+deeply nested.
+"""
 LAUNCH_LANGUAGES = (".py", ".xml", ".yaml", ".yml")
-"""The endings of the names of launch files, one for each language and each spelling of it."""
+"""The file name extensions of launch files, in all languages and spellings."""
 MAX_FILES = 5_000
 MAX_BYTES = 100_000_000
-"""The limits on files and bytes of sources; above them the path is not a workspace."""
+"""The maximum numbers of files and bytes of sources. A path with more is not a workspace."""
 MAX_PACKAGES = 50
-"""The most packages that are read; a workspace of the course has a few."""
+"""The maximum number of packages to read; a workspace of the course has a few."""
 MAX_PACKAGE_XML = 20_000
-"""The limit on a package.xml in bytes; real ones have a few thousand.
+"""The maximum size of a package.xml in bytes; real ones have a few thousand.
 
-Validating takes quadratic time, so entities are refused, with which two thousand bytes stand for eight million.
+The limit is needed because validating takes quadratic time. Entities are refused, because with them two thousand
+bytes can stand for eight million.
 """
 MAX_SETUP = 50_000
-"""The limit on a setup.py in bytes. Python's own parser takes minutes for half a megabyte of one f-string."""
+"""The maximum size of a setup.py in bytes. Python's own parser takes minutes for an f-string of half a megabyte."""
 MAX_CMAKE_LISTS = 50_000
-"""The limit on a CMakeLists.txt in bytes."""
+"""The maximum size of a CMakeLists.txt in bytes."""
 MAX_LOOK = 100_000
-"""The limit in bytes for slow parsing, over all packages' files: Python's parser and catkin_pkg need half a second
-for a file of the largest size. A file beyond it is skipped, not reported as missing or wrong.
+"""The maximum number of bytes, over all packages' files, for slow parsers: Python's parser and catkin_pkg need half a
+second for the largest file. A file beyond this limit is skipped, and not reported as missing or wrong.
 """
 
 _HIDING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 
 
 class BadPackage(ValueError):
-    """A package.xml that cannot be used. The message is for a student."""
+    """A package.xml cannot be used. The message is for a student."""
 
 
 @dataclass(frozen=True)
@@ -63,10 +65,10 @@ class Package:
     """A package of the workspace.
 
     Attributes:
-        name: The name in its package.xml.
+        name: The package's name in its package.xml.
         folder: The folder of the package.
-        build_type: Such as ``"ament_python"``; empty if package.xml names none.
-        dependencies: Every package it depends on, and the groups it is a member of.
+        build_type: The build type, such as ``"ament_python"``; empty if package.xml has none.
+        dependencies: Every package on which it depends, and the groups of which it is a member.
     """
 
     name: str
@@ -76,7 +78,7 @@ class Package:
 
     @property
     def commented(self) -> tuple[str, ...]:
-        """The dependencies that it would also have if commented-out lines of its package.xml counted."""
+        """The dependencies that it would have in addition if lines inside comments of its package.xml counted."""
         comments = re2.findall(r"(?s)<!--(.*?)-->", _text(self.folder / "package.xml"))
         line = r"<(?:\w*depend|member_of_group)\b[^>]*>\s*([^<\s]+)\s*</"
         return tuple(name for comment in comments for name in re2.findall(line, comment))
@@ -89,7 +91,7 @@ class Package:
 
     @property
     def modules(self) -> tuple[Path, ...]:
-        """The package's Python files, as paths inside the package, the least nested first."""
+        """The package's Python files, as paths inside the package, least nested first."""
         found = [file.relative_to(self.folder) for file in self.folder.rglob("*.py") if file.is_file()]
         return tuple(sorted(found, key=lambda file: (len(file.parts), file)))
 
@@ -105,14 +107,14 @@ class Package:
     def programs(self) -> tuple[str, ...]:
         """The console scripts that its setup.py names.
 
-        The file is read, not run: texts of the form ``name = module:function`` anywhere in it count. Computed names,
-            and those in setup.cfg, are known only after the build.
+        The file is read and not run: every text in it of the form ``name = module:function`` counts. Computed names,
+        and those in setup.cfg, are known only after the build.
         """
         return tuple(_entry_points(_text(self.folder / "setup.py")))
 
     @property
     def bad_entry_point(self) -> str:
-        """What is wrong with an entry point in its setup.py that setuptools refuses; empty if all are valid."""
+        """What is wrong with an entry point in setup.py that setuptools refuses; empty if all are valid."""
         return first_objection(_parsed(_text(self.folder / "setup.py")))
 
 
@@ -131,18 +133,21 @@ def find_packages(src: Path) -> tuple[list[Package], list[str]]:
 
 
 def launch_files(folder: Path) -> list[Path]:
-    """The launch files below a folder, as paths inside it: named so, or in a folder named `launch`."""
+    """Return the launch files below a folder, as paths inside it.
+
+    A launch file has a name like ``x.launch.py``, or is in a folder named `launch`.
+    """
     every = (path for path in folder.rglob("*") if path.suffix in LAUNCH_LANGUAGES and path.is_file())
     named = (path for path in every if path.stem.endswith("launch") or path.parent.name == "launch")
     return sorted(path.relative_to(folder) for path in named)
 
 
 def workspace_of(file: Path, beside: Iterable[Path]) -> Path | None:
-    """Return the workspace that contains a launch file, or the one in a folder next to it.
+    """Return the workspace that contains a launch file, or a workspace in one of the folders next to it; else None.
 
     Args:
         file: The launch file.
-        beside: Folders that may contain a workspace of the course's name.
+        beside: Folders that may contain a workspace with the course's usual name.
     """
     around = [folder for folder in file.resolve().parents if (folder / "src").is_dir()]
     candidates = [*around[:1], *(folder / WORKSPACE for folder in beside)]
@@ -151,7 +156,7 @@ def workspace_of(file: Path, beside: Iterable[Path]) -> Path | None:
 
 
 def needed(packages: Iterable[Package], targets: Iterable[str]) -> list[Package]:
-    """Return the targets and everything they depend on, as far as it is among the packages; in the packages' order."""
+    """Return the targets and everything on which they depend, as far as it is among the packages, in the same order."""
     there = list(packages)
     dependencies: dict[str, set[str]] = {}
     for package in there:
@@ -166,7 +171,7 @@ def needed(packages: Iterable[Package], targets: Iterable[str]) -> list[Package]
 
 
 def sources_of(src: Path, packages: Iterable[Package]) -> Tree:
-    """Return all sources of a build of packages, read once.
+    """Return all sources that a build of these packages needs, each read once.
 
     Args:
         src: The folder of the packages.
@@ -194,7 +199,7 @@ def _package_files(src: Path) -> Iterator[Path]:
         if any(name in names for name in _HIDING):
             folders[:] = []
         elif "package.xml" in names:
-            folders[:] = []  # colcon does not look for packages inside packages
+            folders[:] = []  # colcon does not look for packages inside other packages
             yield Path(root, "package.xml")
 
 
@@ -226,7 +231,7 @@ def _package(file: Path, budget: ByteBudget) -> Package:
 
 
 def _validate(file: Path, shown: str) -> None:
-    # colcon silently takes a package with an invalid package.xml for a plain Python package.
+    # colcon silently treats a package with an invalid package.xml as a plain Python package.
     try:
         from catkin_pkg.package import InvalidPackage, parse_package
     except ImportError:
@@ -237,7 +242,7 @@ def _validate(file: Path, shown: str) -> None:
         what = re2.sub(r"^Error\(s\) in package '[^']*':\s*", "", str(error)).strip()
         raise BadPackage(f"{shown} is not valid: {what}") from error
     except AssertionError as error:
-        # The only assertion is about the format, and its message asks to update catkin_pkg.
+        # catkin_pkg asserts only that the format is valid, and its message asks the user to update catkin_pkg.
         raise BadPackage(f'{shown} is not valid: <package format="…"> has to be 1, 2 or 3') from error
     except (*UNREADABLE, ExpatError) as error:
         raise BadPackage(f"{shown} is not valid: {_told(error)}") from error
@@ -248,7 +253,7 @@ def _told(error: Exception) -> str:
 
 
 def _parsed(setup: str) -> ast.Module:
-    """Return the syntax tree of a setup.py; an empty one if it is too long or not valid Python."""
+    """Return the syntax tree of a setup.py; an empty tree if it is too long or not valid Python."""
     try:
         return ast.parse(setup if len(setup) <= MAX_SETUP else "")
     except UNREADABLE:

@@ -1,6 +1,6 @@
-"""Jobs as processes of this user: in a notebook, in a terminal, and for a grader that may work without boxes.
+"""Jobs as processes of this user: in a notebook, in a terminal, and for a grader that is allowed to work without boxes.
 
-Reports are the same as with boxes, but nothing isolates a build or a program from the process that runs it.
+The reports are the same as with boxes, but nothing isolates a build or program from the process that runs it.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ class PlainJobs:
 
     Args:
         environment: The environment of the jobs.
-        handed_in: True if another person wrote the code. It then gets its own home folder, and only what an archive
-            can contain is taken from a build.
+        handed_in: True if another person wrote the code. Then jobs get a separate home folder, and only files that an
+            archive can contain are taken from a build.
     """
 
     def __init__(self, environment: Mapping[str, str], *, handed_in: bool) -> None:
@@ -40,28 +40,29 @@ class PlainJobs:
         self._handed_in = handed_in
 
     def place(self, name: str, entry: Path) -> Path:
-        """The entry itself."""
+        """Return the entry's own path: without a box, jobs see it there."""
         del name
         return entry
 
     def tree(self, sources: Path) -> Path:
-        """The sources themselves."""
+        """Return the sources' own path: without a box, programs see them there."""
         return sources
 
     def build(self, order: BuildOrder, command: Sequence[str], entry: CachedBuild) -> Built:
-        """Build in the entry; a submitted build is packed, and then removed from the entry."""
+        """Build in the entry. A submitted build is packed, and then removed from the entry."""
         seconds, size = (
             (BUILD_SECONDS, MAX_LOG_BYTES) if self._handed_in else (OWN_BUILD_SECONDS, sys.maxsize)
         )
         environment = {**without_workspaces(self.environment, order.workspace), **order.variables}
-        environment.pop("PYTHONDONTWRITEBYTECODE", None)  # setuptools warns of it in every log
+        # With this variable, setuptools would print a warning in every log.
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)
         start = PlainProgram if self._handed_in else OwnSession
         with start(command, environment, entry.folder, (entry.lock,)) as colcon:
             output, late = colcon.collect(seconds, size, order.cancelled)
             code = colcon.exit_code()
         archive = pack(entry.folder / "install") if self._handed_in and code == 0 else None
         made = (*BESIDE, "install") if self._handed_in else BESIDE
-        # A tree may be deeper than Python's recursion allows.
+        # Use rm, because the folders may be nested more deeply than Python's recursion allows.
         subprocess.run(["rm", "-rf", *(str(entry.folder / name) for name in made)], check=False)
         return Built(code, output, archive, late=seconds if late else 0.0)
 
@@ -71,7 +72,7 @@ class PlainJobs:
 
 
 class PlainProgram(OwnSession):
-    """Implements :class:`autograder.workspaces.jobs.Program`, with its own home and temporary folders."""
+    """Implements :class:`autograder.workspaces.jobs.Program`, with separate home and temporary folders."""
 
     def __init__(
         self, command: Sequence[str], environment: Mapping[str, str], cwd: Path, holds: Sequence[int] = ()

@@ -1,4 +1,4 @@
-"""From a path to a program, here or in a box: checks the workspace, builds what is needed, and reports."""
+"""From a path to a program, here or in a box: check the workspace, build what is needed, and report."""
 
 from __future__ import annotations
 
@@ -20,11 +20,13 @@ if TYPE_CHECKING:
     from autograder.workspaces.program_plans import Plan
 
 COURSE = "course_ws"
-"""The place of the course's own packages, which come after the student's."""
+"""The name under which jobs see the course's own packages. The student's packages take precedence over them."""
 
 
 _ALL_OUTPUT = {"OVERRIDE_LAUNCH_PROCESS_OUTPUT": "both"}
-"""Shows a node's output, whatever its launch file says (launch/actions/execute_local.py, ``output``)."""
+"""An environment variable that makes a launch show a node's output, whatever its launch file says
+(launch/actions/execute_local.py, ``output``).
+"""
 
 
 @dataclass(frozen=True)
@@ -33,8 +35,8 @@ class Prepared:
 
     Attributes:
         command: The command.
-        environment: All environment variables; the builds are found in them.
-        builds: The builds that the program may read, by the names of their places.
+        environment: All environment variables, with which the program finds the builds.
+        builds: The builds that the program may read, by the names of their kinds of workspace.
     """
 
     command: Sequence[str]
@@ -44,13 +46,13 @@ class Prepared:
 
 @dataclass(frozen=True)
 class Preparation:
-    """Prepares what an exercise runs from a workspace or a launch file, and reports on the way.
+    """Prepares the program that an exercise runs from a workspace or a launch file, and reports on the way.
 
     Attributes:
-        builds: Provide the builds; their jobs will run the program.
+        builds: Finds or makes the builds. Their jobs will run the program.
         report: Called with each line of the report for the check.
         build_ended: Called when a build has ended, before the line about it.
-        cancelled: Returns True when the program is no longer wanted.
+        cancelled: Returns True when the program is no longer needed.
     """
 
     builds: Builds
@@ -59,10 +61,10 @@ class Preparation:
     cancelled: Callable[[], bool] = lambda: False
 
     def workspace(self, plan: Plan, folder: Path) -> Prepared | None:
-        """Prepare what an exercise runs from a workspace.
+        """Prepare the program that an exercise runs from a workspace.
 
         Returns:
-            The program; None if there is nothing to run, with the reason in the report.
+            The program; None if there is nothing to run. The report then contains the reason.
         """
         found = look(folder)
         self.report(report_line("found", found, plan))
@@ -78,12 +80,12 @@ class Preparation:
         return Prepared(command, self._with(self.builds.jobs.environment, WORKSPACE, made), {WORKSPACE: made})
 
     def launch(self, command: Sequence[str], file: Path | None, workspace: Path | None) -> Prepared | None:
-        """Prepare a launch with the student's packages and, after these, the course's own ``my_robot_pkg``.
+        """Prepare a launch with the student's packages and, after them, the course's own ``my_robot_pkg``.
 
         Args:
             command: The launch command.
             file: The launch file, if it is known.
-            workspace: The workspace of the launch file; the packages that the file needs are built.
+            workspace: The workspace of the launch file. The packages that the file needs are built.
 
         Returns:
             The program; None if the student's packages could not be built.
@@ -100,7 +102,7 @@ class Preparation:
         return self._launched(command, file, made, course) if made.ok else None
 
     def _course(self) -> Build | None:
-        """The course's own packages, built; None in what students are handed: those would be Lab 1.2's solutions."""
+        """Return the build of the course's own packages; None in a hand-out, as they are Lab 1.2's solutions."""
         if not (own := reference_workspace()).is_dir():
             return None
         course = self.builds.build(look(own), None, name=COURSE)
@@ -111,7 +113,7 @@ class Preparation:
     def _launched(
         self, command: Sequence[str], file: Path | None, made: Build | None, course: Build | None
     ) -> Prepared:
-        """A launch with the student's packages and the course's, which come first if the student's lack programs."""
+        """Return a launch with both builds. The course's comes first if the student's lacks programs."""
         environment: Mapping[str, str] = {**self.builds.jobs.environment, **_ALL_OUTPUT}
         builds: dict[str, Build] = {}
         if made is not None:
@@ -130,7 +132,7 @@ class Preparation:
     def _with(
         self, environment: Mapping[str, str], name: str, made: Build, *, last: bool = False
     ) -> Mapping[str, str]:
-        """Return environment variables that expose a build at its path in the job."""
+        """Return environment variables with which a job finds a build at the path where the job sees it."""
         found = with_prefixes(environment, made.prefixes, last=last)
         if made.install is None:
             return found
@@ -138,7 +140,7 @@ class Preparation:
         return relocated(found, entry, self.builds.jobs.place(name, entry))
 
     def _at_its_place(self, command: Sequence[str], made: Build) -> Sequence[str]:
-        """The command with the paths into a build as the started program sees them."""
+        """Return the command with the paths into a build as the started program sees them."""
         if made.install is None:
             return command
         entry = made.install.parent

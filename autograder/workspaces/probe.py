@@ -1,6 +1,6 @@
-"""A program that serves an interface of a workspace, so that the judge can see its type on the wire.
+"""A program that serves an interface type from a workspace, so that the judge can see the type on the wire.
 
-``python -m autograder.workspaces.probe PACKAGE/srv/NAME SERVICE``
+Usage: ``python -m autograder.workspaces.probe PACKAGE/srv/NAME SERVICE``
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import sys
 
 
 def main(type_name: str, service: str) -> None:
-    """Serve until interrupted. A failed import shows its traceback."""
+    """Serve until interrupted. If the import fails, its traceback is printed."""
     package, kind, name = type_name.split("/")
     interface = getattr(importlib.import_module(f"{package}.{kind}"), name)
     import rclpy

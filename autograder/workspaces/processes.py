@@ -1,4 +1,4 @@
-"""The processes of a launch, as they are reported to its check."""
+"""The processes of a launch, as they are reported to the check."""
 
 from __future__ import annotations
 
@@ -17,13 +17,15 @@ if TYPE_CHECKING:
 LOOK_EVERY = 0.05
 """Seconds between two scans of the launch's processes."""
 MAX_COMMAND_LINE = 32_000
-"""The limit on a command line in bytes: a process can give itself one of megabytes, and change it before each scan."""
+"""The maximum length of a command line in bytes: a process can give itself one of megabytes, and change it before each
+scan.
+"""
 MAX_COMMAND_LINES = 500
-"""The most command lines to report for one launch; a launch has some ten."""
+"""The maximum number of command lines to report for one launch; a usual launch has about ten."""
 
 
 def _arguments_of(pid: int) -> list[str]:
-    """Return the words that a process was started with; empty if it has ended."""
+    """Return the arguments with which a process was started; empty if it has ended."""
     try:
         with Path(f"/proc/{pid}/cmdline").open("rb", buffering=0) as file:
             words = file.read(MAX_COMMAND_LINE).rstrip(b"\0")
@@ -33,17 +35,17 @@ def _arguments_of(pid: int) -> list[str]:
 
 
 def _own_id(pid: int) -> int:
-    """Return the id that a process itself sees, which differs in a PID namespace; 0 if it has ended."""
+    """Return a process's id in its own PID namespace; 0 if the process has ended."""
     return int((_status(pid, "NSpid") or ["0"])[-1])
 
 
 def _parent_of(pid: int) -> int:
-    """Return the parent of a process, original or adoptive; 0 if it has ended."""
+    """Return the current parent of a process, which may have adopted it; 0 if the process has ended."""
     return int((_status(pid, "PPid") or ["0"])[0])
 
 
 def _status(pid: int, name: str) -> list[str]:
-    """Return the words of a line of proc(5)'s status; empty if the line does not exist."""
+    """Return the words in a line of ``/proc/PID/status`` (proc(5)); empty if the line does not exist."""
     try:
         lines = Path(f"/proc/{pid}/status").read_text().splitlines()
     except OSError:
@@ -52,17 +54,17 @@ def _status(pid: int, name: str) -> list[str]:
 
 
 def tell(line: str) -> None:
-    """Print a line in one write, so that other output to the same pipe cannot interrupt it."""
+    """Print a line in one write, so that other output to the same pipe cannot come in between."""
     os.write(1, f"{line}\n".encode("utf-8", "replace"))
 
 
 @contextlib.contextmanager
 def watched(pid: int, report: Callable[[str], None]) -> Iterator[None]:
-    """Watch the processes below one process, in a thread.
+    """Watch all processes that descend from one process, in a thread.
 
     Args:
-        pid: The process at the top.
-        report: Called once for each process and command line, with a line of the report for the check.
+        pid: The process from which the others descend.
+        report: Called once for each process and command line, with the line for the check's report.
     """
     ended = threading.Event()
     watcher = threading.Thread(target=_watch, args=(pid, ended, report), daemon=True)

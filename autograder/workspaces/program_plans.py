@@ -1,4 +1,4 @@
-"""An exercise's plan for a workspace: the packages that it needs, what they must contain, and the command to run."""
+"""An exercise's plan for a workspace: the packages that it needs, what they must contain, and what to run."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 _LAUNCH_FILES = ("launch.py", ".xml", ".yaml", ".yml")
 """The name endings of launch files."""
 _LARGEST = 500_000
-"""The limit in bytes for a launch file and all files that it includes; a student's folder may contain files of any
-size.
+"""The maximum size in bytes of a launch file and all files that it includes, because a student's folder may contain
+files of any size.
 """
 
 
@@ -39,11 +39,12 @@ class Plan:
     """The plan of an exercise about a workspace.
 
     Attributes:
-        targets: The packages that it needs, by name; none of them means all that there are.
-        missing: What it asks for and the build has not brought; empty where all is there.
-        command: Returns the command, to be run in the environment of the build. Called only if nothing is missing.
+        targets: The names of the packages that the exercise needs; if empty, it needs all packages.
+        missing: Returns the things that the exercise needs and the build did not produce; empty if nothing is
+            missing.
+        command: Returns the command to run in the environment of the build. It is called only if nothing is missing.
         definition: The name of the interface file that the exercise is about; empty if there is none.
-        launches: The path of the installed launch file; None if the exercise launches none.
+        launches: Returns the path of the installed launch file; None if the exercise launches none.
     """
 
     targets: Callable[[Build], Iterable[str]]
@@ -56,12 +57,12 @@ class Plan:
 def plan_for(
     runner: RunsProgram | RunsPrograms | ServesInterface | LaunchesFromPackage, arguments: Sequence[str] = ()
 ) -> Plan:
-    """The plan for what an exercise runs in a workspace.
+    """Return the plan for the program, launch or interface that an exercise runs from a workspace.
 
     Args:
         runner: What the exercise runs.
-        arguments: The arguments of this start; if there are several programs, the first argument is the name of one.
-            Those of a launch may name a program that runs instead.
+        arguments: The arguments of this start. If there are several programs, the first argument names one. The
+            arguments of a launch may name a program to run instead.
     """
     match runner:
         case RunsProgram(package=package, program=program):
@@ -83,7 +84,7 @@ def _program_plan(package: str, program: str, arguments: Sequence[str]) -> Plan:
 
 
 def _missing(made: Build, package: str, wanted: str, there: Iterable[str]) -> str:
-    """The package, if it was not built; what is wanted of the package, if it is not there; else empty."""
+    """Return the package if it was not built, else the thing wanted from it if that is missing; else an empty text."""
     if not any(prefix.name == package for prefix in made.prefixes):
         return package
     return "" if wanted in there else wanted
@@ -96,13 +97,14 @@ def _launch_plan(package: str, file: str, arguments: Sequence[str]) -> Plan:
         return [known.name for known in found.packages if known.name in {package, *named}]
 
     def installed(made: Build) -> list[Path]:
-        """The files that `ros2 launch` finds of this name, in the first language in which there is one."""
+        """Return the launch files with this name that `ros2 launch` would find, in the first language that has any."""
         shares = [prefix / "share" / package for prefix in made.prefixes if prefix.name == package]
         found = _of_name(file, shares)
         return [path for path in found if path.name == found[0].name]
 
     def command(made: Build) -> Sequence[str]:
-        # Launch by path: by name, ros2 finds the course's package first if the student's package lacks the programs.
+        # Launch by path: by name, ros2 would find the course's package first if the student's package lacks the
+        # programs.
         paths = installed(made)
         name = [str(paths[0])] if len(paths) == 1 else [package, paths[0].name]
         return alone(arguments) or [ros2(), "launch", *name]
@@ -116,7 +118,7 @@ def _launch_plan(package: str, file: str, arguments: Sequence[str]) -> Plan:
 
 
 def _of_name(file: str, folders: Iterable[Path]) -> list[Path]:
-    """The launch files of this name, without its language's ending, in some folders; in the order of the languages."""
+    """Return the launch files with this name (without extension) in some folders, sorted by language."""
     found = [folder / path for folder in folders for path in launch_files(folder)]
     return sorted(
         (path for path in found if path.stem == file), key=lambda path: LAUNCH_LANGUAGES.index(path.suffix)
@@ -150,7 +152,7 @@ def _interface_plan(runner: ServesInterface) -> Plan:
 
 
 def launch_targets(file: Path) -> Callable[[Build], Iterable[str]]:
-    """Return a function that finds the packages whose names are in a launch file, or in one that it includes.
+    """Return a function that finds the packages named in a launch file, or in a file that it includes.
 
     Args:
         file: The launch file, in any language.
@@ -164,16 +166,17 @@ def launch_targets(file: Path) -> Callable[[Build], Iterable[str]]:
 
 
 def alone(arguments: Sequence[str]) -> Sequence[str]:
-    """Return the command for the single program that the arguments name; empty if they ask for a launch."""
+    """Return the command for the single program that the arguments name; empty if they ask for the launch."""
     words = list(arguments)
     return [ros2(), "run", *words[words.index(ALONE) + 1 :]] if ALONE in words else []
 
 
 def lacks_programs(file: Path, made: Build, course_build: Build) -> bool:
-    """True if a launch file starts programs of the course's package that the student's package does not have.
+    """Return True if a launch file starts programs of the course's package that the student's package does not have.
 
-    A student who wrote talker and listener only in the notebooks has no programs to launch. A student who launches
-    programs with other names has them: ``talker`` is then a variable, a node's name or a word in a comment.
+    A student who wrote talker and listener only in the notebooks has no programs to launch. If a student's launch
+    file starts programs with other names, it may still contain the word ``talker``, as a variable, a node's name or
+    in a comment.
     """
     words, own, given = _launch_words(file, made), _programs(made), _programs(course_build)
     if words is None:
@@ -182,7 +185,7 @@ def lacks_programs(file: Path, made: Build, course_build: Build) -> bool:
 
 
 def reference_workspace() -> Path:
-    """Return the workspace with the course's own talker and listener; students do not receive it."""
+    """Return the workspace with the course's own talker and listener. Students do not receive it."""
     return course.root() / "solutions" / WORKSPACE
 
 
@@ -190,7 +193,7 @@ def reference_workspace() -> Path:
 def course_interfaces() -> tuple[Path, ...]:
     """Return all files and folders of the course's own interfaces.
 
-    A build that makes interfaces must not find these: copies of them would look like generated ones.
+    A build of interfaces must not find these, because copies of them would look like generated files.
     """
     prefixes = {sys.prefix, *os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)} - {""}
     packages = course.interfaces()
@@ -206,9 +209,10 @@ def ros2() -> str:
 
 
 def _launch_words(file: Path, build: Build) -> set[str] | None:
-    """Return the words of a launch file and of the files that it includes: those whose names are in its text.
+    """Return the words in a launch file and in the files that it includes, that is, whose names are in its text.
 
-    Tags and keys, such as ``<node`` and ``node:``, are not among the words. None if the files are too long to parse.
+    Tags and keys, such as ``<node`` and ``node:``, are not among the words. It returns None if the files are too long
+    to parse.
     """
     near = [
         *file.parent.iterdir(),

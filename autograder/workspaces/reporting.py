@@ -18,17 +18,18 @@ if TYPE_CHECKING:
     from autograder.workspaces.program_plans import Plan
 
 MAX_LOG = 3_000
-"""The characters of a build's log that are reported, from its end."""
+"""The number of characters to report from the end of a build's log."""
 
 
 def report_line(phase: str, made: Build, plan: Plan | None = None, missing: str = "") -> str:
-    """Return the line about a workspace.
+    """Return the line of the report about a workspace.
 
     Args:
-        phase: ``"found"`` for the sources, before they are built; ``"built"`` for the result of the build.
+        phase: ``"found"`` for a report on the sources, before the build; ``"built"`` for one on the result of the
+            build.
         made: The workspace or its build.
-        plan: The exercise's plan for it; None if every package is equally important.
-        missing: What the exercise needs and the workspace lacks.
+        plan: The exercise's plan for it; None if all packages are equally important.
+        missing: The thing that the exercise needs and the workspace lacks.
     """
     needed = set(plan.targets(made)) if plan else set[str]()
     definition = plan.definition if plan else ""
@@ -54,10 +55,10 @@ def report_line(phase: str, made: Build, plan: Plan | None = None, missing: str 
 
 
 def no_sources_line(trouble: str) -> str:
-    """Return the report if there is nothing that could be built.
+    """Return the report for the case that there is nothing to build.
 
     Args:
-        trouble: The reason, for the student.
+        trouble: The reason, in words for the student.
     """
     return as_line(WorkspaceReport("built", built=False, trouble="no_workspace", line=trouble))
 
@@ -90,7 +91,7 @@ def _interface(package: Package, file: Path, definition: str, budget: ByteBudget
 
 
 def _without_comments(text: str) -> str:
-    """Return a definition without its comments and empty lines. Inside quotes, # is an ordinary character."""
+    """Return a definition without comments and empty lines. A # inside quotes does not begin a comment."""
     lines = (
         line if re2.search(r"^[^#]*['\"]", line) else line.partition("#")[0] for line in text.splitlines()
     )

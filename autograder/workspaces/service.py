@@ -1,13 +1,13 @@
 """The grader's side of checks of workspaces and launch files: it receives sources, builds, runs and reports.
 
-It lives in the grader's worker, outside all boxes, and has two Unix sockets:
+It runs in the grader's worker, outside all boxes, and has two Unix sockets:
 
 * The **judge's** socket, which the student's box cannot see. One connection is one check. The judge sends the sources
-that it got from the notebook; the service writes and reads them, has them built and run, and tells the judge what the
-workspace contains, how the build ended, how processes were started, and what the programs print.
-* The **notebook's** socket, for builds alone: what `colcon build` would make in the box is made once outside it.
+  that it got from the notebook. The service writes and reads them, and has them built and run. It tells the judge
+  what the workspace contains, how the build ended, which processes were started, and what the programs print.
+* The **notebook's** socket, only for builds: what `colcon build` would make in the box is made once outside it.
 
-The messages of both are in :mod:`autograder.messages.workspaces`.
+The messages on both sockets are defined in :mod:`autograder.messages.workspaces`.
 """
 
 from __future__ import annotations
@@ -38,18 +38,18 @@ if TYPE_CHECKING:
     from autograder.workspaces.jobs import Jobs
 
 MAX_BUILDS = 20
-"""The most builds that one notebook may request; after that colcon itself works in the box."""
+"""The maximum number of builds that one notebook may request. After that, colcon itself works in the box."""
 PIECE = 400_000
-"""Bytes of an archive in one message."""
+"""The number of bytes of an archive in one message."""
 
 
 @dataclass(frozen=True)
 class ServiceSockets:
-    """The sockets on which the service listens.
+    """The paths of the sockets on which the service listens.
 
     Attributes:
-        judge: The socket for the judge's box alone.
-        notebook: The socket for the student's box; None for no such socket.
+        judge: The socket that only the judge's box sees.
+        notebook: The socket that the student's box sees; None for no such socket.
     """
 
     judge: Path
@@ -57,15 +57,15 @@ class ServiceSockets:
 
 
 class WorkspaceService:
-    """Serves one submission; leaving the context ends everything that runs for it.
+    """Serves one submission. At the end of the ``with`` block, everything that runs for it is ended.
 
     Args:
-        sockets: The sockets to make, in existing folders.
+        sockets: The sockets to create, in existing folders.
         jobs: Runs builds and programs.
-        builds: The folder for builds; no other process may use it.
+        builds: The folder for builds. No other process may use it.
         variables: More environment variables for programs, such as ROS settings.
-        folder: A folder for this object alone, for sources.
-        ahead: The folder of builds made ahead, if it exists.
+        folder: A folder for sources that nothing else uses.
+        ahead: The folder of builds made in advance; None if there is none.
     """
 
     def __init__(
@@ -115,7 +115,7 @@ class WorkspaceService:
         return listener
 
     def _accept(self, listener: socket.socket, serve: Callable[[Lines, Path], None]) -> None:
-        """Serve one connection after the other: a check is alone, and so is a build."""
+        """Serve connections one after the other, so that only one check and one build runs at a time."""
         while not self._closing.is_set():
             try:
                 connection, _ = listener.accept()

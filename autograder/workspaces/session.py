@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from autograder.workspaces.preparation import Prepared
 
 MAX_OUTPUT = 2_000_000
-"""The characters of a run's output that are passed on."""
+"""The maximum number of characters of a run's output to pass on."""
 
 
 @dataclass(frozen=True)
@@ -38,11 +38,11 @@ class Submitted:
     """The sources of a check.
 
     Attributes:
-        runner: What the exercise runs from the sources.
-        tree: The folder with the sources.
-        path: The workspace or launch file in that folder.
-        trouble: Why no sources were written, for the student; empty if they were.
-        variables: More environment variables for its programs.
+        runner: How the exercise runs the sources.
+        tree: The folder that contains the sources.
+        path: The path of the workspace or launch file in that folder.
+        trouble: Why no sources were written, in words for the student; empty if they were.
+        variables: More environment variables for the submitted programs.
     """
 
     runner: Runner | None
@@ -53,13 +53,13 @@ class Submitted:
 
 
 class Session:
-    """One check. The judge may start the submitted programs several times; they are built once.
+    """One check. The judge may start the submitted programs several times, but they are built only once.
 
     Args:
         lines: The connection to the judge.
-        builds: Provide the builds; their jobs run the programs.
+        builds: Finds or makes the builds. Their jobs run the programs.
         variables: Environment variables for the programs.
-        folder: An empty folder for this object alone.
+        folder: An empty folder that nothing else uses.
     """
 
     def __init__(
@@ -143,18 +143,18 @@ class _Run:
         self._thread.start()
 
     def end(self) -> None:
-        """Kill what runs, and wait until none of its processes is alive."""
+        """Kill the program, and wait until none of its processes is alive."""
         self._cancelled.set()
         self._thread.join()
 
     def interrupt(self) -> None:
-        """Send Ctrl-C to what runs."""
+        """Send Ctrl-C to the program."""
         with self._changing:
             if self._program is not None:
                 self._program.interrupt()
 
     def _run(self) -> None:
-        """Check the workspace, build, report, run, and pass on the output."""
+        """Check the workspace, build it, report, run the program, and pass on its output."""
         try:
             self._work()
         except Hangup:
@@ -191,11 +191,11 @@ class _Run:
         self._follow(self._prepare.launch(command, file, workspace), watch=True)
 
     def _hidden(self) -> Sequence[Path]:
-        """The course's own interfaces that a task has the student make, hidden so that they cannot be copied."""
+        """Return the course's own interfaces that students have to make; hidden, so that they cannot be copied."""
         return course_interfaces() if isinstance(self._submitted.runner, ServesInterface) else ()
 
     def _follow(self, prepared: Prepared | None, *, watch: bool = False) -> None:
-        """Run a program until it ends or is no longer wanted."""
+        """Run a program until it ends or is no longer needed."""
         if prepared is None:
             self._exited(1)
             return
@@ -217,15 +217,15 @@ class _Run:
             self._exited(program.exit_code())
 
     def _pass_on(self, program: Program) -> None:
-        """Pass on the output, line by line, while it is wanted."""
+        """Pass on the program's output, line by line, while it is needed."""
         left = MAX_OUTPUT
         for text in output_lines(program, lambda: not self._cancelled.is_set()):
-            left -= len(text) + 1  # an empty line has to be sent, too
+            left -= len(text) + 1  # an empty line counts, too, because it has to be sent
             if left > 0:
                 self._lines.say(messages.Output(self.number, text))
 
     def _report(self, line: str) -> None:
-        """Send the judge a line of the report, with paths as they are in the notebook's folder."""
+        """Send the judge a line of the report, with paths changed to those in the notebook's folder."""
         tree = self._submitted.tree
         text = line.replace(f"{tree}/", "").replace(str(tree), ".")
         self._lines.say(messages.ReportLine(self.number, text))

@@ -1,12 +1,13 @@
-"""Sources as one value, read once: both the hash in a build's key and the files of the build come from it.
+"""Sources as one value, read once: the hash in a build's key and the files of the build both come from it.
 
-So a build contains nothing that is not in its key. Files that are not sources (links, pipes, devices, files that
-tools leave behind or compilers make, unreadable files) are in neither; nor are times, rights other than to execute,
-and the order of a folder. Names are bytes: two that differ in case or in their Unicode normal form are two.
+So a build contains nothing that is not in its key. Neither contains files that are not sources: links, pipes,
+devices, files that tools leave behind or compilers make, unreadable files. Nor do they contain times, permissions
+other than to execute, or the order of files in a folder. Names are bytes: two names that differ in case or in their
+Unicode normal form are different.
 
-In a class they are collected in the process that runs a student's code, and checked and written in another one. The
-student's process may send anything, as a student may write any files: only the number, sizes and names of files must
-be harmless.
+When a class is graded, the sources are collected in the process that runs a student's code, and checked and written
+in another process. The student's process may send anything, and a student may write any files; so only the number,
+sizes and names of files must be harmless.
 """
 
 from __future__ import annotations
@@ -27,29 +28,29 @@ if TYPE_CHECKING:
     from autograder.messages.lines import Lines
 
 MAX_FILES = 1_000
-"""The limit on files and folders of one submission."""
+"""The maximum number of files and folders in one submission."""
 MAX_BYTES = 4_000_000
-"""The limit on bytes of all files together."""
+"""The maximum size in bytes of all files together."""
 MAX_FILE = 500_000
-"""The limit on one file in bytes; as text it still fits into one message."""
+"""The maximum size of a file in bytes; written as text, it still fits into one message."""
 MAX_PATH = 300
-"""The limit on a path in bytes, including slashes."""
+"""The maximum length of a path in bytes, including slashes."""
 MAX_NAME = 120
-"""The limit on each part of a path in bytes."""
+"""The maximum length of each part of a path, in bytes."""
 MAX_DEPTH = 16
-"""The limit on parts of a path."""
+"""The maximum number of parts of a path."""
 MAX_HELD = MAX_BYTES + MAX_FILES * MAX_PATH
-"""The limit on content bytes and path characters that are held while they are being received."""
+"""The maximum amount, in bytes of content and characters of paths, to hold in memory while sources are received."""
 LAUNCH_COMPANIONS = (".py", ".xml", ".yaml", ".yml", ".json", ".txt")
-"""The name endings of files next to a launch file that it may need."""
+"""The extensions of files next to a launch file that the launch file may need."""
 _NOT_SOURCES = {"__pycache__", ".git", ".ipynb_checkpoints", ".pytest_cache", ".mypy_cache", ".ruff_cache"}
-"""Folders that tools leave among sources."""
+"""Folders that tools leave among the sources."""
 _MACHINE_CODE = (b"\x7fELF", b"!<arch>\n", b"!<thin>\n")
-"""The first bytes of programs, libraries and object files, and of archives of these (elf(5), ar(5))."""
+"""The bytes with which programs, libraries and object files begin, and archives of these (elf(5), ar(5))."""
 
 
 class BadSources(ValueError):
-    """Sources that cannot be used. The message is for a student."""
+    """The sources cannot be used. The message is for a student."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,8 @@ class Tree:
     """The files and folders of one or more packages.
 
     Attributes:
-        sources: Each folder before its content; paths are relative to the workspace's ``src``.
+        sources: The files and folders; each folder comes before its content. Paths are relative to the workspace's
+            ``src``.
     """
 
     sources: tuple[Source, ...]
@@ -73,10 +75,10 @@ class Tree:
         return digest.hexdigest()
 
     def write(self, folder: Path) -> None:
-        """Write the sources into a folder that no other process can write to, and that has none of them yet.
+        """Write the sources into a folder to which no other process can write, and which contains none of them yet.
 
         Raises:
-            FileExistsError: One of the files exists already.
+            FileExistsError: One of the files already exists.
         """
         for source in self.sources:
             path = folder / source.path
@@ -88,20 +90,20 @@ class Tree:
 
 
 def is_source(path: str) -> bool:
-    """True if a path may be a source, judged by its names: compiled Python and folders of tools are not."""
+    """Return True if a path may be a source. Names of compiled Python files and of tools' folders are not."""
     return not any(part in _NOT_SOURCES or part.endswith(".pyc") for part in path.split("/"))
 
 
 def read(folder: Path, name: str, largest: int) -> Iterator[Source]:
-    """Yield the sources in a folder and below it, beginning with the folder; none if it is not a folder.
+    """Yield a folder and the sources below it, the folder first; nothing if it is not a folder.
 
     Args:
-        folder: The folder; its own path may contain links, but links below it are not followed.
-        name: The name of the folder among the sources.
-        largest: The limit on a file in bytes.
+        folder: The path of the folder. It may contain links, but links below the folder are not followed.
+        name: The folder's name in the paths of the sources.
+        largest: The maximum size of a file in bytes.
 
     Raises:
-        BadSources: A file is larger.
+        BadSources: A file is larger than that.
     """
     folder = folder.resolve()
     if not folder.is_dir():
@@ -116,16 +118,16 @@ def read(folder: Path, name: str, largest: int) -> Iterator[Source]:
 
 
 def read_file(file: str | Path, name: str, largest: int, folder: int | None = None) -> Source | None:
-    """Read one regular file; return None for anything else, or if it is unreadable.
+    """Read a regular file. Return None if it is not a regular file or is unreadable.
 
     Args:
-        file: The path.
-        name: The name of the file among the sources.
-        largest: The limit in bytes.
+        file: The path of the file.
+        name: The file's path among the sources.
+        largest: The maximum size in bytes.
         folder: The descriptor of the folder to which the path is relative.
 
     Raises:
-        BadSources: The file is larger.
+        BadSources: The file is larger than that.
     """
     try:
         with opened(file, folder) as stream:
@@ -141,9 +143,9 @@ def read_file(file: str | Path, name: str, largest: int, folder: int | None = No
 
 
 def collect_workspace(workspace: Path) -> list[Source]:
-    """Return everything in ``src`` of a workspace, under the workspace's name; links and special files are left out.
+    """Return everything in ``src`` of a workspace, under the workspace's name, without links and special files.
 
-    A path that is not a folder yields nothing; a later step reports that.
+    For a path that is not a folder it returns nothing; a later step reports that.
 
     Raises:
         BadSources: The workspace is too large.
@@ -151,7 +153,7 @@ def collect_workspace(workspace: Path) -> list[Source]:
     if not workspace.is_dir():
         return []
     name = workspace.resolve().name
-    # A package given instead of a workspace is a mistake with its own diagnosis: include its package.xml.
+    # Giving a package instead of a workspace is a mistake with its own diagnosis, which needs the package.xml.
     package = read_file(workspace / "package.xml", f"{name}/package.xml", MAX_FILE)
     sources = read(workspace / "src", f"{name}/src", MAX_FILE)
     return _bounded([Source(name), *([package] if package else []), *sources])
@@ -181,12 +183,12 @@ def collect_launch(file: Path, workspace: Path | None) -> tuple[str, list[Source
 
 
 def checked(sources: Iterable[Source]) -> list[Source]:
-    """Return the sources after checking that they are harmless: names, number, sizes, no duplicates.
+    """Check that sources are harmless (names, number, sizes, no duplicates), and return those to use.
 
     Files that are not sources are dropped here again, so that a box sees nothing that is not in the key.
 
     Raises:
-        BadSources: They could do harm.
+        BadSources: The sources could do harm.
     """
     taken: dict[str, Source] = {}
     for source in sources:
@@ -206,22 +208,22 @@ def _is_source(source: Source) -> bool:
 
 
 def room_of(source: Source) -> int:
-    """Return how much of :data:`MAX_HELD` a source takes."""
+    """Return how much of the limit :data:`MAX_HELD` a source uses."""
     return len(source.data or b"") + len(source.path)
 
 
 def receive(lines: Lines, count: int, path: str, folder: Path) -> None:
-    """Write sources from another process into a folder, after checking that they are harmless.
+    """Receive sources from another process, check that they are harmless, and write them into a folder.
 
     Args:
         lines: The connection to that process.
-        count: The number of sources, as the sender claims.
-        path: The path of the workspace or launch file among them, as the sender claims.
-        folder: An empty folder for this call alone.
+        count: The number of sources that the sender announced.
+        path: The path of the workspace or launch file among the sources, as the sender announced it.
+        folder: An empty folder that nothing else uses.
 
     Raises:
         BadSources: The sources could do harm.
-        NotUnderstood: Another message came.
+        NotUnderstood: A message of another kind came.
         Hangup: The connection was closed.
     """
     if not 0 <= count <= MAX_FILES:
@@ -231,7 +233,7 @@ def receive(lines: Lines, count: int, path: str, folder: Path) -> None:
     for _ in range(count):
         source = lines.hear(Source)
         room -= room_of(source)
-        if room >= 0:  # otherwise the source is read, because more messages may follow, but dropped
+        if room >= 0:  # otherwise the source is still read, because more messages may follow, but dropped
             taken.append(source)
     if room < 0:
         raise _too_much()

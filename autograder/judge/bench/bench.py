@@ -415,7 +415,8 @@ class TestBench:
 
         def over() -> bool:
             nonlocal held
-            ended = self._subject.ended  # This is read before the evidence, so that the evidence has everything that came before the end.
+            # Read this before the evidence, so that the evidence has everything that came before the end.
+            ended = self._subject.ended
             held = condition(look())
             return held or ended
 

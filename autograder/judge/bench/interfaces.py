@@ -1,7 +1,6 @@
 """ROS interfaces found by name, messages as plain data, and type hashes.
 
-A type hash is how DDS discovery describes the fields of an interface. It does not depend on the package's name alone
-(REP-2016).
+A type hash (REP-2016) is how DDS discovery describes the fields of an interface. The package's name is part of it.
 """
 
 from __future__ import annotations

@@ -236,7 +236,7 @@ class Programs:
 
     def _ending(self, program: Program, evidence: Evidence) -> str:
         if program.ends_by_itself and not self._is_there(program, evidence):
-            # a program that did not start has an ending event as well, so this is checked first
+            # A program that did not start has an ending event as well, so this is checked first.
             return "did not start"
         view, entry = program.view(evidence), self._entry(program)
         ending = program.ending(evidence)

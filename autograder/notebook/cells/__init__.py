@@ -1,1 +1,1 @@
-"""Handle the notebook's cells: which one runs, its output, and tracebacks with the student's own lines only."""
+"""The notebook's cells: which one runs, what it prints, and tracebacks with only the student's own lines."""

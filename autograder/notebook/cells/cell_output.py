@@ -1,6 +1,6 @@
 """Write the output of cells: text from any thread, and tracebacks with the student's own lines only.
 
-Ten frames of rclpy do not help a student to find a typo.
+Tracebacks are shortened because ten frames of rclpy do not help a student to find a typo.
 """
 
 from __future__ import annotations
@@ -23,15 +23,16 @@ if TYPE_CHECKING:
     from types import FrameType
 
 _SYNCHRONOUS_IDLE = "\x16"
-"""A character without a meaning for terminals. It has one byte, so it is never split between two reads."""
+"""A character that has no meaning for terminals. It is a single byte, so it is never split between two reads."""
 _LIMIT = 1.0
 _one_at_a_time = threading.Lock()
 
 
 def say(text: str) -> None:
-    """Print below the cell that runs, or that ran last.
+    """Print below the cell that runs now, or else the one that ran last.
 
-    On standard output: stock nbgrader gives no points to a graded cell with anything on standard error.
+    It prints to standard output, because stock nbgrader gives no points to a graded cell that wrote to standard
+    error.
     """
     # A kernel that is shutting down has closed its streams.
     with suppress(OSError, ValueError):
@@ -41,10 +42,10 @@ def say(text: str) -> None:
 def let_log_lines_arrive() -> None:
     """Wait until the log lines written so far are in the output of the running cell.
 
-    rclpy logs through compiled code, which writes to the file descriptor. In a kernel that is a pipe, which
-    a thread of ipykernel copies to ``sys.stdout``. On a busy machine the last lines would arrive after the
-    end of the cell, and nbclient would drop them. So one more character is written to the pipe, and removed
-    at the other end.
+    rclpy logs through compiled code, which writes to the file descriptor. In a kernel that is a pipe, which a thread
+    of ipykernel copies to ``sys.stdout``. On a busy machine the last lines would arrive after the end of the cell,
+    and nbclient would drop them. So this writes one more character to the pipe, waits until it arrives at the other
+    end, and removes it there.
     """
     stream: Any = sys.stdout
     descriptor = getattr(stream, "_original_stdstream_fd", None)
@@ -73,12 +74,12 @@ def let_log_lines_arrive() -> None:
 
 
 def _library_folders() -> tuple[str, ...]:
-    """Return the folders of Python, ROS and this package: code that students did not write."""
+    """Return the folders of code that students did not write: those of Python, ROS and this package."""
     schemes = sysconfig.get_paths()
     folders = {schemes[name] for name in ("stdlib", "platstdlib", "purelib", "platlib")}
     folders.add(str(Path(rclpy.__file__).parent.parent))
     folders.add(str(Path(__file__).parents[1]))
-    # On a system ROS, message packages may be in prefixes different from rclpy's.
+    # With a system-wide ROS, message packages may be in other prefixes than rclpy.
     folders.update(
         prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(":") if "/opt/ros" in prefix
     )
@@ -107,7 +108,7 @@ def student_frames(trace: TracebackType | None) -> TracebackType | None:
 
 
 def last_student_line(error: BaseException) -> tuple[str, int] | None:
-    """Return file and line number of the student's code that raised the error; None if there is none."""
+    """Return the file and line of the student's code that raised the error; None if there is none."""
     trace = student_frames(error.__traceback__)
     if trace is None:
         return None
@@ -147,10 +148,10 @@ _COUNTS = "get_line_number_of_frame"
 def point_at_raising_lines() -> None:
     """Make a traceback's arrow point at the line that raised, even if a ``finally`` follows.
 
-    IPython counts the lines of a frame's file, and treats long files in a faster way. A cell has no file,
-    so IPython 9 treats each cell as long. The faster way puts the arrow at the frame's last line, which is
-    the clean-up if there is a ``finally``, and not the line that raised (Python's data model, "Traceback
-    objects"). So this counts a cell's lines as if it were a file. Outside IPython it does nothing.
+    IPython decides by its length whether to treat a frame's file in a faster way. A cell has no file, so IPython 9
+    takes each cell for a long file. The faster way puts the arrow at the frame's last line, which is the clean-up if
+    there is a ``finally``, and not the line that raised (Python's data model, "Traceback objects"). This function
+    lets IPython count a cell's lines as if they were a file. Outside IPython it does nothing.
     """
     if notebook_shell() is None:
         return

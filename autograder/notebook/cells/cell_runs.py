@@ -1,8 +1,7 @@
-"""Find out which cell of the notebook is running, and whether it has run before.
+"""Which cell of the notebook is running, and whether it has run before.
 
-JupyterLab names the cell in each request to run it (``cellId`` in the request's metadata, handed on by
-IPython to ``pre_run_cell``). Other front ends, such as nbclient and the console, do not, so the text of the
-cell identifies it.
+JupyterLab names the cell in each request to run it (``cellId`` in the request's metadata, which IPython passes to
+``pre_run_cell``). Other front ends, such as nbclient and the console, do not, so there the text identifies the cell.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ class WatchedRun:
     """One run of one cell.
 
     Attributes:
-        cell: Identifies the cell, the same in all its runs.
+        cell: Identifies the cell; equal in all runs of the same cell.
         number: A counter that grows with each run of any cell.
     """
 
@@ -35,7 +34,7 @@ class WatchedRun:
 
 
 class CellWatch:
-    """Follows which cell is running. Outside a notebook no cell runs."""
+    """Watches which cell is running. Outside a notebook no cell ever runs."""
 
     def __init__(self) -> None:
         self.current: WatchedRun | None = None

@@ -1,8 +1,8 @@
-"""Find classes and functions that are out of date: their cell has failed, or defines a different name now.
+"""Detects classes and functions that are out of date: their cell has failed, or now defines a different name.
 
 After a ``SyntaxError``, the class from the run before still exists under its name, or no class does. A check would
-repeat the advice on old code, and a ``NameError`` would blame the cell of the check. A class that was renamed exists
-under both names, and a check of the old name would pass with code that is in no cell any more.
+repeat the advice about old code, and a ``NameError`` would blame the check's cell. A class that was renamed exists
+under both names, and a check of the old name would pass although no cell contains this code any more.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from autograder.notebook.cells.cell_output import last_student_line, notebook_sh
 _ENTRY_POINTS = "entry_points"
 """The list that a cell passes to ``package_files.add_entry_points``."""
 _DEFINED = re.compile(rf"^(?:(?:class|(?:async\s+)?def)\s+(\w+)|({_ENTRY_POINTS})\s*=)", re.MULTILINE)
-"""Finds definitions even in a cell that Python cannot parse."""
+"""Matches definitions even in a cell that Python cannot parse."""
 _CHECKED = r"^[^#\n]*\b(?:check|watch)\(.*\b{}\b"
 
 
@@ -32,7 +32,7 @@ class _Failure:
 
 
 class FailedCells:
-    """Follows which names the cells of a notebook failed to define.
+    """Records which names the cells of a notebook failed to define.
 
     Args:
         shell: IPython's shell.
@@ -53,7 +53,7 @@ class FailedCells:
         )
 
     def why_missing(self, name: str) -> str:
-        """Return why a class or function is not what the cells say now; empty if it is."""
+        """Return why a class or function is not what the cells say now; empty if it is up to date."""
         if failure := self._failures.get(name):
             return f"Your cell that defines {name} stopped before {name} was defined: {failure.error}"
         left, now = self._dropped.get(name, (None, []))
@@ -84,7 +84,8 @@ class FailedCells:
             else:
                 self._failures[name] = _Failure(cell, " ".join(filter(None, (_named(error), _here(error)))))
         for name in known - names:
-            # A definition that another cell, an import or an assignment has made since then is up to date.
+            # If another cell, an import or an assignment has redefined the name since then, the definition is up to
+            # date.
             maker, made = self._made.get(name, ("", None))
             if maker == cell and made is there.get(name):
                 self._dropped[name] = (made, sorted(names))
@@ -92,7 +93,9 @@ class FailedCells:
     def _show_error(self, shell: Any, kind: type, error: Exception, trace: Any, tb_offset: Any) -> None:
         del kind, tb_offset
         words = self._what_to_run(str(error.name)) if isinstance(error, NameError) else ""
-        if words and trace.tb_next is not None and trace.tb_next.tb_next is None:  # raised by the cell itself
+        if (
+            words and trace.tb_next is not None and trace.tb_next.tb_next is None
+        ):  # the cell itself raised the error
             error._render_traceback_ = lambda: [words]  # type: ignore[attr-defined]
         elif here := _here(error):
             error.add_note(here)
@@ -128,7 +131,7 @@ def _named(error: BaseException) -> str:
 
 
 def _here(error: BaseException) -> str:
-    """Return what to write in this course if the error shows code from other sources; otherwise empty."""
+    """Return what to write in this course if the error shows that code was copied from elsewhere; otherwise empty."""
     shown = traceback.format_exception(type(error), error, student_frames(error.__traceback__))
     found = code_of_elsewhere.recognised("".join(shown), code_of_elsewhere.packages(_packages_of_types()))
     return f"{found.text} {found.next_step}" if found else ""
@@ -137,7 +140,7 @@ def _here(error: BaseException) -> str:
 def _packages_of_types() -> tuple[str, ...]:
     try:
         return course.interfaces()
-    except (OSError, course.NoCourse, course.BrokenChapter):  # the grader's kernel has no course
+    except (OSError, course.NoCourse, course.BrokenChapter):  # a grader's kernel has no course folder
         return ()
 
 
@@ -153,9 +156,9 @@ class StaleCodeError(Exception):
 
 
 def raise_if_stale(subject: Any) -> None:
-    """End a check of old code with a message; outside a notebook, do nothing.
+    """End a check of out-of-date code with a message. Outside a notebook, do nothing.
 
-    A check of files goes on, because a student may have written them in an editor.
+    A check of files is not ended, because a student may have written them in an editor.
 
     Raises:
         StaleCodeError: The cell that redefines the subject, or a name that it uses, ended with an error.
@@ -174,7 +177,7 @@ def raise_if_stale(subject: Any) -> None:
 
 
 def _names_read(subject: Any) -> set[str]:
-    """Return the notebook's names that a function, or the methods of a class, read."""
+    """Return the notebook's names that a function, or the methods of a class, use."""
     own = vars(subject).values() if isinstance(subject, type) else (subject,)
     codes = [one.__code__ for one in own if isinstance(one, FunctionType)]
     found = set()

@@ -11,13 +11,13 @@ if TYPE_CHECKING:
     from types import TracebackType
 
 _NEAR = 0.75
-"""Least similarity of two names, from 0 to 1; that of ``sefl`` and ``self`` is 0.75."""
+"""The least similarity, from 0 to 1, for a suggestion; that of ``sefl`` and ``self`` is 0.75."""
 
 
 def meant_name(error: BaseException, trace: TracebackType | None) -> str:
-    """Return ``. Did you mean: 'command'?``; empty if no name is similar, or the error already says it.
+    """Return ``. Did you mean: 'command'?``; empty if no name is similar, or the error already suggests one.
 
-    From Python 3.12 on, ``traceback`` says it. In 3.11, only a program that ends with the error does.
+    From Python 3.12 on, ``traceback`` adds the suggestion. In 3.11 it appears only when the error ends a program.
 
     Args:
         error: A NameError or an AttributeError; there is no suggestion for other errors.

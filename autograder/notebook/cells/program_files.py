@@ -1,8 +1,8 @@
-"""Define the cell magic ``%%program``: like ``%%writefile``, and it copies definitions from the notebook into the file.
+"""The cell magic ``%%program``, which works like ``%%writefile`` and also copies definitions from the notebook.
 
 A line such as ``# copied from this notebook: TalkerNode`` is replaced by the newest definition of each name in a cell
-that has run, with the imports and helpers that it uses. A student who changes the class copies nothing: both cells are
-run again.
+that has run, together with the imports and helpers that the definition uses. A student who changes the class only
+runs both cells again.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _IMPORTS = (ast.Import, ast.ImportFrom)
 
 
 class NotRunError(Exception):
-    """A name has no definition in a cell that has run."""
+    """No cell that has run defines the name."""
 
     def _render_traceback_(self) -> list[str]:
         """Return the message only, because a traceback would not help. IPython calls this."""
@@ -46,11 +46,11 @@ def with_definitions(text: str, cells: list[str]) -> str:
     """Return the text of a program with the definitions that its comments name.
 
     Args:
-        text: The text of the cell below the line of the magic.
+        text: The text of the cell, without the line of the magic.
         cells: The cells that have run, the oldest first.
 
     Raises:
-        NotRunError: A name is not defined in any of them.
+        NotRunError: None of the cells defines one of the names.
     """
     there = _bound(_statements(_COPIED.sub("", text)))
     imports: list[str] = []
@@ -71,11 +71,11 @@ def with_definitions(text: str, cells: list[str]) -> str:
 
 
 Statement = tuple[ast.stmt, str]
-"""A statement at the top level of a cell, and its text."""
+"""A statement at the top level of a cell, as syntax tree and as text."""
 
 
 def _definition(name: str, cells: list[str], there: set[str]) -> list[Statement]:
-    """Return the newest definition of a name, after the statements that it needs; ``there`` grows by their names."""
+    """Return the newest definition of a name, after the statements that it needs. Add their names to ``there``."""
     for source in reversed(cells):
         statements = _statements(source)
         found = next(
@@ -100,7 +100,7 @@ def _definition(name: str, cells: list[str], there: set[str]) -> list[Statement]
 
 
 def _statements(source: str) -> list[Statement]:
-    """Return the statements at the top level of a cell; none if it is not Python alone, such as a cell with a magic."""
+    """Return the statements at the top level of a cell; none if it is not pure Python, but has a magic, for example."""
     try:
         body = ast.parse(source).body
     except (SyntaxError, ValueError):
@@ -140,7 +140,7 @@ def _used(node: ast.stmt) -> set[str]:
 
 
 def load_ipython_extension(shell: Any) -> None:
-    """Define the magic. A kernel of a class calls this, too: its shell is made after this module was imported."""
+    """Define the magic. A kernel that runs a submission calls this, too: its shell is made after the import."""
     shell.register_magic_function(program, "cell", "program")
 
 

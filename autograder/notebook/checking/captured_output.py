@@ -1,11 +1,11 @@
-"""Send a subject's log lines and output to the judge while it is checked, instead of below the cell.
+"""Sends a subject's log lines and output to the judge during a check, instead of printing them below the cell.
 
 Only threads that started during the check are captured, so a demonstration node that still runs in the background is
-not taken for the subject. Text written to the kernel's streams is captured whoever writes it: a handler of Python's
-``logging`` keeps the stream that existed when its cell was run, as ``from sys import stdout`` does.
+not taken for the subject. Text that such a thread writes to the kernel's original streams is captured, too: a handler
+of Python's ``logging`` keeps the stream that existed when its cell was run, and so does ``from sys import stdout``.
 
-A subject that calls ``input()`` gets an EOFError, like a program without a terminal. Otherwise JupyterLab would show an
-input box below the cell, and no other cell could run until the student had answered.
+A subject that calls ``input()`` gets an EOFError, as a program without a terminal does. Otherwise JupyterLab would
+show an input box below the cell, and no other cell could run until the student had answered.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ class CapturedOutput:
     """Forwards output inside a ``with`` block, and restores the streams at its end."""
 
     def __init__(self, tell: Callable[[str, bool], None]) -> None:
-        """Prepare.
+        """Set up capturing; it begins with the ``with`` block.
 
         Args:
-            tell: Called with each line, and with True if it was logged and not printed.
+            tell: Called with each line, and with True if the line was logged, False if it was printed.
         """
         self._tell = tell
         self._others = {thread.ident for thread in threading.enumerate()}
@@ -64,7 +64,8 @@ class CapturedOutput:
         if self._kernel is not None:
             del self._kernel._input_request
         setattr(RcutilsLogger, "log", self._usual_log)  # noqa: B010
-        for stream in reversed(self._streams):  # both may be one stream: restore the last replacement first
+        # Both streams may be the same object: restore the last replacement first.
+        for stream in reversed(self._streams):
             stream.finish()
         sys.stdout, sys.stderr = self._usual_streams
         while self._descriptors:
@@ -91,7 +92,7 @@ class CapturedOutput:
         return threading.get_ident() not in self._others
 
     def _silence_compiled_code(self) -> None:
-        # rcutils writes log lines to the file descriptors; the card shows the important ones.
+        # Discard what rcutils writes to the file descriptors; the card shows the important log lines.
         nowhere = os.open(os.devnull, os.O_WRONLY)
         for descriptor in (1, 2):
             self._descriptors.append((descriptor, os.dup(descriptor)))
@@ -100,20 +101,20 @@ class CapturedOutput:
 
 
 def _no_input_for(captured: Callable[[], bool], usual: Callable[..., str]) -> Callable[..., str]:
-    """Return ipykernel's function behind ``input()`` and ``getpass()``, with an EOFError for captured threads."""
+    """Return ipykernel's function behind ``input()`` or ``getpass()``, made to raise EOFError in captured threads."""
 
     def ask(*arguments: Any, **options: Any) -> str:
         if captured():
-            raise EOFError("EOF when reading a line")  # Python's own words
+            raise EOFError("EOF when reading a line")  # the same words that Python uses
         return usual(*arguments, **options)
 
     return ask
 
 
 class _CapturedStream:
-    """Replaces sys.stdout, and also receives what is written to the stream itself.
+    """Replaces sys.stdout or sys.stderr, and also receives what is written to the original stream object.
 
-    Lines of captured threads go to the judge, those of all other threads are written as usual.
+    Lines of captured threads go to the judge; lines of all other threads are written as usual.
     """
 
     def __init__(self, stream: Any, tell: Callable[[str, bool], None], captured: Callable[[], bool]) -> None:
@@ -128,7 +129,7 @@ class _CapturedStream:
             stream.write = self.write
 
     def write(self, text: str) -> int:
-        """Take some text; whole lines are forwarded at once."""
+        """Accept some text, and forward each line once it is complete."""
         if not self._captured():
             written: int = self._usual_write(text)
             return written
@@ -140,7 +141,7 @@ class _CapturedStream:
         return len(text)
 
     def finish(self) -> None:
-        """Restore the stream, and forward the last line, which has no line end."""
+        """Restore the stream, and forward the last line even without a line end."""
         with suppress(AttributeError):
             if self._own_write is None:
                 del self._stream.write

@@ -1,8 +1,8 @@
-"""Display a check's card, always in the same place below the cell.
+"""Displays a check's card, always at the same place below the cell.
 
-A quick check replaces the card of the check before, so that the page does not jump. A longer check shows a line about
-its progress instead: a student must not take an earlier diagnosis for that of the new code. A card is dimmed, with a
-reason, if its class or function has been redefined.
+A quick check replaces the card of the previous check, so that the page does not jump. A longer check shows a line
+about its progress instead, so that the student does not mistake an earlier diagnosis for one of the new code. If the
+checked class or function is redefined, the card is dimmed and says so.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ if TYPE_CHECKING:
 
 
 VALIDATING = "NBGRADER_VALIDATING"
-"""Set by nbgrader while its Validate button runs the notebook."""
+"""The environment variable that nbgrader sets while its Validate button runs the notebook."""
 SOON = 0.7
 """Seconds of wall time until a running check shows its progress, and between two updates."""
 LONG = 30.0
-"""Seconds of wall time after which a running check says what is known so far, or that the machine is busy."""
+"""Seconds of wall time after which a running check shows what is known so far, or that the machine is busy."""
 CROWDED = 4.0
-"""Average number of runnable processes for each processor, in the last minute, from which a machine counts as busy."""
+"""A machine counts as busy if, over the last minute, it had more runnable processes per processor than this."""
 
 
 @dataclass
@@ -47,9 +47,9 @@ class Progress:
     """The progress of a check.
 
     Attributes:
-        doing: The present step, such as ``"run 2"``.
+        doing: The current step, such as ``"run 2"``.
         known: What the judge knows so far, in a sentence.
-        began: When the check began, in seconds of a monotonic clock.
+        began: The time at which the check began, in seconds of a monotonic clock.
     """
 
     doing: str = "the judge gets ready"
@@ -70,7 +70,7 @@ class Progress:
 
 
 class Telling:
-    """Tells the progress of a check again and again, in a thread of its own, until it is stopped.
+    """Reports the progress of a check repeatedly, in a thread of its own, until it is stopped.
 
     Args:
         tell: Shows the progress on the card of the check.
@@ -78,12 +78,12 @@ class Telling:
 
     def __init__(self, tell: Callable[[], None]) -> None:
         self._tell, self._over = tell, threading.Event()
-        here = contextvars.copy_context()  # it contains the cell to which output belongs
+        here = contextvars.copy_context()  # This context contains the cell to which output belongs.
         self._thread = threading.Thread(target=here.run, args=(self._repeat,), name="check", daemon=True)
         self._thread.start()
 
     def stop(self) -> None:
-        """Return once nothing more will be told."""
+        """Stop. After this returns, nothing more is reported."""
         self._over.set()
         self._thread.join()
 
@@ -94,14 +94,14 @@ class Telling:
 
 @dataclass
 class _Shown:
-    """The card of an exercise that is on the page."""
+    """A card that is on the page, with the exercise and the subject that it is about."""
 
     verdict: Verdict
     before: float | None
     handle: Any
     name: str
     subject: Any
-    """Returns the class or function that was checked while it exists; always None for a path."""
+    """A weak reference: returns the checked class or function while it exists; for a path, it always returns None."""
     dated: bool = False
 
 
@@ -111,11 +111,11 @@ _watching: list[Any] = []
 
 @dataclass
 class CardDisplay:
-    """Displays the card of one check; enter it before the check begins, in the same thread.
+    """Displays the card of one check. Enter it before the check begins, in the same thread.
 
     Attributes:
         exercise: The exercise's id.
-        subject: What is checked.
+        subject: The checked class, function or path.
     """
 
     exercise: str
@@ -149,11 +149,11 @@ class CardDisplay:
             update_card(self._handle, card)
 
     def doing(self, what: str) -> None:
-        """Show the present step, in a few words such as ``"run 2"``."""
+        """Show the current step, in a few words such as ``"run 2"``."""
         self._progress.doing = what
 
     def know(self, so_far: str) -> None:
-        """Show what the judge already knows, once the check has taken long."""
+        """Show what the judge knows so far, once the check has taken long."""
         self._progress.known = so_far
 
     def show(self, verdict: Verdict) -> None:
@@ -187,12 +187,12 @@ class CardDisplay:
 
 
 def _dated(shown: _Shown, notice: str) -> dict[str, str]:
-    """Return a shown card, marked as out of date."""
+    """Return a card that is on the page, marked as out of date."""
     return bundle.mimebundle(shown.verdict, before=shown.before, notice=notice)
 
 
 def renew_card(verdict: Verdict, subject: Any) -> None:
-    """Show a later result on an exercise's card, if there is one on the page."""
+    """Show a later result on the exercise's card, if the page has one."""
     shell, earlier = notebook_shell(), _shown.get(verdict.exercise)
     if shell is not None and earlier is not None:
         before = earlier.verdict.score
@@ -201,13 +201,13 @@ def renew_card(verdict: Verdict, subject: Any) -> None:
 
 
 def _full_card(verdict: Verdict, before: float | None) -> dict[str, str]:
-    # No solution in a grader's kernel: the submission's notebook would contain it.
+    # In a grader's kernel no solution is shown, because the executed submission would contain it.
     solution = solution_of(verdict.exercise) if verdict.passed and is_live() else None
     return bundle.mimebundle(verdict, before=before, solution=solution)
 
 
 def is_live() -> bool:
-    """Return True if a student may be looking: this is a notebook's kernel, not a grader's or Validate's."""
+    """Return True if a student may be looking: the kernel is a notebook's own, not a grader's or Validate's."""
     return notebook_shell() is not None and not os.environ.get(SOCKET_VARIABLE) and not is_validating()
 
 
@@ -226,7 +226,7 @@ def _remember(shell: Any, exercise: str, subject: Any, shown: _Shown) -> None:
 
 
 def _dim_what_is_out_of_date(_: Any = None) -> None:
-    """After each cell, dim each card whose class or function is no longer the one that was checked."""
+    """After each cell, dim the cards whose class or function is no longer the one that was checked."""
     names = getattr(_watching[0], "user_ns", {})
     for shown in _shown.values():
         if shown.dated or not shown.name or shown.name not in names:
@@ -245,7 +245,7 @@ def display_card(card: dict[str, str]) -> Any:
 
 
 def update_card(handle: Any, card: dict[str, str]) -> None:
-    """Replace a shown card by another one."""
+    """Replace a card that is already on the page."""
     # A kernel that is shutting down has closed its streams.
     if not sys.is_finalizing():
         handle.update(card, raw=True)
@@ -264,5 +264,5 @@ def solution_of(exercise: str) -> Solution | None:
                     said = json.loads(file.with_suffix(course.SOLUTION).read_text(encoding="utf-8"))
                     return Solution(tuple(said["code"]), said["why"], said["other_way"], said["other_code"])
     except (OSError, ValueError, KeyError, TypeError, course.NoCourse, course.BrokenChapter):
-        pass  # the solution is an extra: an error here must not break the check
+        pass  # The solution is only an addition, so an error here must not break the check.
     return None

@@ -1,4 +1,4 @@
-"""The check cell: runs the subject as the judge asks, shows the card, notes the result, and returns the score."""
+"""The check cell: runs the subject when the judge asks, shows the card, records the result, returns the score."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 
 
 class Score(float):
-    """Points. In a notebook the card has said them, so that no bare number is shown below it.
+    """The points of a check. A notebook shows no bare number below the cell, because the card already says it.
 
-    Stock nbgrader takes the points from the plain text of the cell's value, which is the number.
+    Stock nbgrader takes the points from the cell's value as plain text, and this is the number.
     """
 
     def _repr_html_(self) -> str:
@@ -41,17 +41,17 @@ class Score(float):
 
 
 class CardPlace(Protocol):
-    """The place of a check's card."""
+    """What shows a check's card and its progress."""
 
     def doing(self, what: str) -> None:
-        """Say what goes on, in a few words."""
+        """Show the current step, in a few words."""
 
     def know(self, so_far: str) -> None:
-        """Say what the judge knows already, in a sentence."""
+        """Show what the judge knows so far, in a sentence."""
 
 
 LINE = 70
-"""Characters of a line of output that are shown while a check goes on."""
+"""The maximum number of characters shown of a line of output while a check goes on."""
 
 
 _after_a_check: list[Callable[[Verdict, Any], None]] = []
@@ -71,11 +71,13 @@ def check(exercise: str, subject: Any) -> float:
             an exercise about files, the path of the workspace or of the launch file.
 
     Returns:
-        The points earned; 0 in the box of a submission, which shows no card: the judge tells its grader alone.
+        The points earned. In a submission's box it returns 0 and shows no card, because the judge reports only to its
+        grader.
 
     Raises:
         TypeError: The subject is neither a class nor a function nor a path; the message says what to write instead.
-        StaleCodeError: The cell that redefines the subject ended with an error, and a grader would judge the old one.
+        StaleCodeError: The cell that redefines the subject ended with an error, so the check would judge the old
+            code.
     """
     if not (inspect.isclass(subject) or callable(subject) or is_path(subject)):
         raise TypeError(what_to_pass(exercise, subject))
@@ -97,7 +99,7 @@ def check(exercise: str, subject: Any) -> float:
 
 @contextlib.contextmanager
 def _plainly_interrupted() -> Iterator[None]:
-    """Let IPython show an interrupt in one line: the check's own frames tell a student nothing."""
+    """Make IPython show an interrupt in one line, because the frames of the check tell a student nothing."""
     try:
         yield
     except KeyboardInterrupt as interrupt:
@@ -124,18 +126,18 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: CardPlace) -> V
     Args:
         link: The connection to the judge.
         exercise: The exercise's id.
-        subject: What is checked.
-        card: Is told what goes on.
+        subject: The class, function or path to check.
+        card: Shows the progress.
 
     Raises:
-        JudgeUnreachable: The judge is gone, or the link was closed.
+        JudgeUnreachable: The judge has ended, or the link was closed.
     """
     link.say(messages.Check(exercise, kind=_kind(subject)))
     if is_live():
-        bundle.prepare()  # while the judge makes its node
+        bundle.prepare()  # meanwhile the judge makes its node
     first = link.hear()
     if isinstance(first, messages.Collect):
-        # A grader builds and runs what a path leads to by itself.
+        # A grader builds and runs workspaces and launch files itself, so only their sources are sent.
         send_sources(link.say, subject)
         return _last_words(exercise, link.hear())
     if not isinstance(first, messages.Begin):
@@ -159,7 +161,9 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: CardPlace) -> V
                         place.ensure(fresh=order.fresh)
                         link.say(messages.Met(place.sees(order.there, order.gone, order.within)))
                     case messages.Start():
-                        if not is_path(subject):  # else what is started has a participant of its own
+                        if not is_path(
+                            subject
+                        ):  # for a path, the started process has a participant of its own
                             place.ensure(fresh=order.fresh)
                         number = order.run
                         card.doing(f"run {number} of your code")
@@ -178,7 +182,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: CardPlace) -> V
                         link.say(messages.Stacks(number, captured.stacks()))
                     case messages.Stop() if run is not None:
                         if not run.stop():
-                            place.renew()  # a run that does not end keeps the old context, and the judge ignores it
+                            place.renew()  # a run that did not end keeps the old context, which the judge ignores
                         link.say(messages.Stopped(number))
                         card.doing(f"the judge looks at run {number}")
                         run = None
@@ -192,9 +196,10 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: CardPlace) -> V
 
 
 def keep(verdict: Verdict) -> None:
-    """Note a check in the journal; if it was the last one of a chapter, show the certificate.
+    """Record a check in the journal. If it completes a chapter, show the certificate.
 
-    A grader's kernel has no journal. Nothing here can break a check: unreadable or unwritable files are skipped.
+    A grader's kernel has no journal. Nothing here can break a check: files that cannot be read or written are
+    skipped.
     """
     if notebook_shell() is None or os.environ.get(messages.SOCKET_VARIABLE):
         return
@@ -207,7 +212,7 @@ def keep(verdict: Verdict) -> None:
 
 
 def _chapter_ended_by(verdict: Verdict) -> tuple[str, float, float] | None:
-    """Title, points and time of the chapter that had all its points with this check and not before."""
+    """Return title, points and completion time of the chapter that this check completed; None if it completed none."""
     place = journal.own_place()
     before = journal.best(journal.entries(place))
     journal.note_check(verdict, place)
@@ -244,7 +249,7 @@ def _last_words(exercise: str, words: messages.FromJudge) -> Verdict | None:
 
 
 def _retold(tell: Tell, card: CardPlace) -> Tell:
-    """Return a function that tells the judge what a program says and shows its last line on the card."""
+    """Return ``tell``, extended to show the last line that a program printed on the card."""
 
     def told(message: Message) -> None:
         if isinstance(message, messages.Output) and message.text.strip() and not message.text.startswith("@"):
@@ -255,7 +260,7 @@ def _retold(tell: Tell, card: CardPlace) -> Tell:
 
 
 def what_to_pass(exercise: str, subject: Any, call: str = "check") -> str:
-    """Return the advice for an object that cannot be a subject."""
+    """Return the message for an object that cannot be checked."""
     kind = type(subject).__name__
     names = getattr(notebook_shell(), "user_ns", {})
     if names.get(kind) is subject:

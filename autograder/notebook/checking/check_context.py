@@ -1,7 +1,8 @@
-"""Provide a new ROS context for each check: on the judge's domain, and rclpy's default while the check runs.
+"""A new ROS context for each check: on the judge's domain, and rclpy's default context while the check runs.
 
-A student's class calls ``super().__init__("talker_node")``, which uses the default context. While a check runs, that is
-this one, so that nodes of the notebook's demonstrations neither disturb the check nor are disturbed.
+A student's class calls ``super().__init__("talker_node")``, which uses the default context. While a check runs, the
+default is the check's own context. So nodes of the notebook's demonstrations do not disturb the check, and are not
+disturbed by it.
 """
 
 from __future__ import annotations
@@ -24,14 +25,14 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     Endpoint = Sequence[str]
-    """A topic of the middleware and the identifier of a reader or writer on it, as the judge names them."""
+    """An endpoint as the judge names it: its topic in the middleware, and the identifier of its reader or writer."""
 
 _GLOBAL_EXECUTOR = "__executor"
-"""The name in ``rclpy/__init__.py``."""
+"""The name of the global executor in ``rclpy/__init__.py``."""
 MEETING = 0.5
-"""Seconds of wall time that a run waits until the judge is discovered. Otherwise it is discovered later."""
+"""Seconds of wall time for which a run waits for its participant to discover the judge. After that it begins anyway."""
 MEETING_POLL = 0.002
-"""Seconds between two tests whether the judge is discovered."""
+"""Seconds between two tests whether the judge has been discovered."""
 
 
 class CheckContext:
@@ -39,7 +40,7 @@ class CheckContext:
 
     Args:
         domain_id: The judge's domain.
-        keeper: The name, known to the judge, of the node that keeps the check's participant alive. It begins with an
+        keeper: The name of the node that keeps the check's participant alive; the judge knows it. It begins with an
             underscore, so that ``ros2 node list`` hides it.
     """
 
@@ -53,7 +54,7 @@ class CheckContext:
     def __enter__(self) -> Self:
         with rclpy.utilities.g_context_lock:
             self._usual = rclpy.utilities.g_default_context
-        # rclpy.spin and similar functions share one executor, which stays with its first context.
+        # rclpy.spin and similar functions share one executor, which belongs to the context that was first used.
         self._usual_executor = getattr(rclpy, _GLOBAL_EXECUTOR, None)
         setattr(rclpy, _GLOBAL_EXECUTOR, None)
         # Processes that the subject starts, such as the ros2 command, must be on the judge's domain, too.
@@ -71,7 +72,7 @@ class CheckContext:
             os.environ[DOMAIN_VARIABLE] = self._usual_domain
 
     def ensure(self, *, fresh: bool) -> None:
-        """Make a new context if asked to, or if the student's code has shut down the last one."""
+        """Make a new context if ``fresh`` is true, or if the student's code has shut down the last one."""
         if fresh or not self.context.ok():
             self.renew()
         else:
@@ -80,9 +81,9 @@ class CheckContext:
     def renew(self) -> None:
         """Start a new participant, and let it discover the judge.
 
-        A participant lives as long as it has a node (rmw_fastrtps). Two participants need a fifth of a second to
+        A participant exists as long as it has a node (rmw_fastrtps). Two participants need a fifth of a second to
         discover each other's existing endpoints, but hardly a millisecond for later ones. So a node that does nothing
-        exists before the subject, and during all of its runs.
+        is made before the subject, and kept during all runs.
         """
         self._end()
         self.context = Context()
@@ -108,12 +109,12 @@ class CheckContext:
     def sees(self, there: Sequence[Endpoint], gone: Sequence[Endpoint], within: float) -> bool:
         """Wait until this participant sees all endpoints of ``there`` and none of ``gone``. Return True if it does.
 
-        An endpoint and its node are announced separately: for endpoints of ``there``, both must be known.
+        An endpoint and its node are announced separately. For endpoints of ``there``, both must be known.
 
         Args:
             there: Endpoints that are on the graph.
             gone: Endpoints that have been removed.
-            within: Limit in seconds of wall time.
+            within: The limit in seconds of wall time.
         """
         deadline = time.monotonic() + within
         while True:
@@ -137,9 +138,9 @@ class CheckContext:
         }
 
     def _end(self) -> None:
-        """Destroy the nodes on the context, then the context.
+        """Destroy the nodes of the context, then the context.
 
-        A node that outlives its context would keep the logger of its name: a later node of that name would log
+        A node that outlives its context would keep the logger of its name. A later node with that name would then log
         to a destroyed publisher ("Failed to publish log message to rosout").
         """
         keeper, self._keeper = self._keeper, None

@@ -1,7 +1,7 @@
-"""Connect a notebook to the judge, and start a judge process if the grader has not started one.
+"""Connects a notebook to the judge, and starts a judge process if no grader has started one.
 
-The messages are in :mod:`autograder.messages.checks`. On purpose, the notebook shares no other code with the judge:
-a student can change what runs here.
+The messages are defined in :mod:`autograder.messages.checks`. Apart from them, the notebook deliberately shares no
+code with the judge, because a student can change what runs in the notebook.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from autograder.messages.lines import Message
 
 MAX_TEXT = 4_000
-"""Limit of one text of the subject, in characters; a longer message would end the connection."""
+"""The maximum length of a text from the subject, in characters. A longer message would end the connection."""
 START_LIMIT = 60.0
-"""Seconds of wall time in which the kernel's own judge must start."""
+"""Time limit in seconds of wall time for the kernel's own judge to start."""
 
 
 class JudgeUnreachable(ConnectionError):
@@ -39,7 +39,7 @@ class JudgeLink:
         """Connect to the judge; start one if there is none.
 
         Raises:
-            JudgeUnreachable: No judge runs, and none could be started.
+            JudgeUnreachable: No judge is running, and none could be started.
         """
         path = os.environ.get(SOCKET_VARIABLE) or own_judge().path()
         try:
@@ -48,7 +48,7 @@ class JudgeLink:
             raise JudgeUnreachable(f"the judge cannot be reached ({error})") from error
 
     def say(self, message: Message) -> None:
-        """Send a message. If the judge has ended, do nothing: :meth:`hear` raises then."""
+        """Send a message. If the judge has ended, do nothing; :meth:`hear` raises an error then."""
         with contextlib.suppress(Hangup):
             self._lines.say(message)
 
@@ -70,7 +70,7 @@ class JudgeLink:
 
 
 class OwnJudge:
-    """The judge process of this kernel; it ends with the kernel, which owns its standard input."""
+    """The judge process of this kernel. It ends with the kernel, because the kernel holds its standard input open."""
 
     def __init__(self) -> None:
         self._folder = HeldFolder("autograder-judge-")
@@ -81,7 +81,7 @@ class OwnJudge:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            # Interrupting the kernel must not end the judge.
+            # Interrupting the kernel must not interrupt the judge.
             start_new_session=True,
         )
         self._pid = os.getpid()
@@ -104,7 +104,7 @@ class OwnJudge:
 
     @property
     def alive(self) -> bool:
-        """Return True if the process runs and belongs to this kernel, not to the parent of a fork."""
+        """Return True if the process runs and was started by this process, not by the parent of a fork."""
         return self._pid == os.getpid() and self._process.poll() is None
 
     def stop(self) -> None:
@@ -122,7 +122,7 @@ _own: OwnJudge | None = None
 
 
 def own_judge() -> OwnJudge:
-    """Return this kernel's own judge. The first call starts it, and so does a call after it has died."""
+    """Return this kernel's own judge. The first call starts it; a later call restarts a judge that has died."""
     global _own
     if _own is None or not _own.alive:
         _own = OwnJudge()

@@ -1,4 +1,4 @@
-"""One run of a path as a subject: its workspace is built, or its launch file launched, in a separate process."""
+"""One run of a path as a subject: a separate process builds the workspace, or launches the launch file."""
 
 from __future__ import annotations
 
@@ -38,28 +38,28 @@ class PathRun:
         self._reader: threading.Thread | None = None
 
     def start(self, arguments: Sequence[Any], options: Mapping[str, Any]) -> None:
-        """Start the process.
+        """Start the process for one run.
 
         Args:
-            arguments: If an exercise has several programs: the name of one, and its arguments.
-            options: None for a path.
+            arguments: The name of a program and its arguments, if the exercise has several programs; else nothing.
+            options: Empty for a path.
         """
         del options
-        # Interrupting the kernel must not end it halfway: the judge says when it ends.
+        # Interrupting the kernel must not end the process: the judge decides when it ends.
         self._program = OwnSession([*self._command, *map(str, arguments)], _environment(self._domain))
         self._reader = threading.Thread(target=self._follow, args=(self._program,), daemon=True)
         self._reader.start()
 
     def release(self) -> None:
-        """A process runs from its start."""
+        """Do nothing: a process runs from its start."""
 
     def interrupt(self) -> None:
-        """Ctrl-C, as in a terminal."""
+        """Send Ctrl-C to the process, as in a terminal."""
         if self._program is not None:
             self._program.interrupt()
 
     def stop(self) -> bool:
-        """End the process with all that it started."""
+        """End the process with everything that it started."""
         if self._program is not None:
             self._program.end(POLITE)
         if self._reader is not None:
@@ -74,16 +74,16 @@ class PathRun:
 
 
 def is_path(subject: object) -> bool:
-    """True if a subject is a path: a text or a ``pathlib.Path``."""
+    """Return True if a subject is a path: a string or a ``pathlib.Path``."""
     return isinstance(subject, (str, Path))
 
 
 def send_sources(tell: Tell, subject: object) -> None:
-    """Tell a grader's judge what it asks for: everything that a check of this path may need.
+    """Send a grader's judge the sources that it asks for: everything that a check of this path may need.
 
     Args:
         tell: Sends a message to the judge.
-        subject: The argument of the check cell; anything but a path has no sources.
+        subject: The argument of the check cell. Only a path has sources.
     """
     path, sent, trouble = "nothing", list[Source](), ""
     try:

@@ -1,4 +1,4 @@
-"""One run of a subject in the kernel: a node class is made and spun, a function is called, each in a thread."""
+"""One run of a subject in the kernel, in a thread of its own: a node class is made and spun, a function is called."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from autograder.messages.lines import Message
 
 Tell = Callable[["Message"], None]
-"""Sends a message to the judge."""
+"""A function that sends a message to the judge."""
 
 END_LIMIT = 1.5
-"""Seconds of wall time in which a stopped subject must have left its thread."""
+"""Time limit in seconds of wall time for a stopped subject to leave its thread."""
 
 
 class SubjectRun:
@@ -47,22 +47,22 @@ class SubjectRun:
         self._options: Mapping[str, Any] = {}
 
     def start(self, arguments: Sequence[Any], options: Mapping[str, Any]) -> None:
-        """Begin.
+        """Begin the run.
 
         Args:
             arguments: The arguments of the class or function.
-            options: Passed on if a function has parameters of these names; for a class, ``threads`` is the number of
-                threads that spin it.
+            options: Passed to a function, as far as it has parameters with these names. For a class, ``threads`` is
+                the number of threads that spin it.
         """
         self._arguments, self._options = arguments, options
         self._thread.start()
 
     def release(self) -> None:
-        """Let a made node spin."""
+        """Let the node spin, once it is made."""
         self._released.set()
 
     def stop(self) -> bool:
-        """End the run; whether its thread is gone."""
+        """End the run. Return True if its thread has ended."""
         self._stopping.set()
         self._released.set()
         self._thread.join(timeout=END_LIMIT if self._spinning else END_LIMIT / 5)
@@ -81,7 +81,7 @@ class SubjectRun:
             self._tell(Started(self._number, sorted(accepted)))
             value = self._subject(*self._arguments, **accepted)
             if isinstance(value, Node) and not self._arguments and _is_alive(value):
-                self._spin(value, others)  # a function in place of a class
+                self._spin(value, others)  # the subject is a function that was given instead of a class
             else:
                 self._tell(Returned(self._number, None if value is None else repr(value)[:MAX_TEXT]))
         except ExternalShutdownException:
@@ -116,7 +116,7 @@ class SubjectRun:
         threads.stop(grace=END_LIMIT / 3)
 
     def _callback_raised(self, failure: Failure) -> None:
-        # In a program, rclpy.spin ends with the first exception of a callback; so does the subject here.
+        # In a program, rclpy.spin ends at the first exception in a callback, so the subject ends here, too.
         if not self._stopping.is_set():
             self._tell(Raised(self._number, formatted(failure.error)))
 
@@ -130,9 +130,9 @@ def _is_alive(node: Node) -> bool:
 
 
 def formatted(error: BaseException) -> str:
-    """The traceback with the student's own lines, as a terminal shows it.
+    """Return the traceback with only the student's own lines, as a terminal shows it.
 
-    An error that collects those of callbacks is replaced by the first of them.
+    An error that collects the errors of several callbacks is replaced by the first of these.
     """
     collected = getattr(error, "errors", ())
     if collected and isinstance(getattr(collected[0], "error", None), BaseException):
@@ -140,12 +140,12 @@ def formatted(error: BaseException) -> str:
     trace = student_frames(error.__traceback__)
     shown = traceback.format_exception(type(error), error, trace)
     text = "".join(shown).strip() + meant_name(error, trace)
-    # The beginning shows where the error began, the end shows which one it was.
+    # Keep both ends: the beginning shows where the error began, the end shows which error it was.
     return text if len(text) <= MAX_TEXT else f"{text[: MAX_TEXT // 2]}\n{text[-MAX_TEXT // 2 + 1 :]}"
 
 
 def _mark(node: Node, number: int) -> str:
-    """Put a last endpoint of each kind on the graph: to see it is to have seen all earlier ones of the subject."""
+    """Make one last endpoint of each kind, a marker: a process that sees it has seen all earlier endpoints."""
     name = f"/_ready_{number}"
     try:
         Node.create_publisher(node, Empty, name, 1)

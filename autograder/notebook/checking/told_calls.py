@@ -1,7 +1,7 @@
 """Tells the judge when a subject looks for a server, calls a service or sends a goal.
 
-The judge cannot see from outside that a subject looks at the graph. A request that is sent before its server exists is
-lost, so the judge cannot see that request either.
+From outside, the judge cannot see that a subject looks at the graph. Nor can it see a request that was sent before
+its server existed, because such a request is lost.
 """
 
 from __future__ import annotations
@@ -26,28 +26,30 @@ TOLD: tuple[tuple[Any, str, type[Looked | Called]], ...] = (
     (Client, "call_async", Called),
     (ActionClient, "send_goal_async", Called),
 )
-"""The methods that are told of, and the message that tells of each. rclpy's own waits for a server and blocking calls
-use these methods, too."""
+"""The methods whose calls are reported, each with the message that reports it. rclpy's own waits for servers and its
+blocking calls use these methods, too.
+"""
 LOOKS_TOLD = 10
-"""Looks that are told of in one run; a loop without a pause makes thousands in a second."""
+"""The maximum number of looks reported in one run, because a loop without a pause looks thousands of times in a second.
+"""
 
 
 class ToldCalls:
-    """Tells the judge of the subject's calls of :data:`TOLD` within a ``with`` block."""
+    """Reports the subject's calls of the methods in :data:`TOLD` to the judge, within a ``with`` block."""
 
     def __init__(self, is_subject: Callable[[], bool], tell: Callable[..., None]) -> None:
-        """Prepare.
+        """Set up reporting; it begins with the ``with`` block.
 
         Args:
-            is_subject: Whether the thread that calls is one of the subject's.
-            tell: Tells the judge a kind of message of this run.
+            is_subject: Returns True if the calling thread is one of the subject's.
+            tell: Sends the judge a message about this run, given its class and fields.
         """
         self._is_subject = is_subject
         self._tell = tell
         self._looks = 0
 
     def begin_run(self) -> None:
-        """Count the looks of the next run from zero."""
+        """Begin the next run: count its looks from zero."""
         self._looks = 0
 
     def __enter__(self) -> Self:

@@ -1,8 +1,8 @@
-"""Show the result of a check when nbgrader's Validate runs the notebook.
+"""How a check shows its result when nbgrader's Validate runs the notebook.
 
-Validate shows, for each check without full marks, the error of its cell. A cell without an error
-is called "Partial credit; passed some but not all", even if it has no points at all. So during Validate such a
-check ends with an error that has the text of the card.
+For each check without full marks, Validate shows the error of the cell. For a cell without an error it says "Partial
+credit; passed some but not all", even if the cell has no points at all. So during Validate, such a check ends with an
+error that contains the text of the card.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 WIDTH = 76
-"""Length of a line in characters: nbgrader cuts longer ones."""
+"""The maximum length of a line in characters, because nbgrader cuts longer ones."""
 
 
 class NotFullMarksError(Exception):
-    """A check without full marks, with the message for Validate."""
+    """A check did not earn full marks. Contains the message for Validate."""
 
     def __init__(self, verdicts: list[Verdict]) -> None:
         super().__init__("\n".join(_lines(verdicts)))
 
     def _render_traceback_(self) -> list[str]:
-        """Return the message only; a traceback would not help. IPython calls this."""
+        """Return only the message, because a traceback would not help. IPython calls this."""
         return str(self).splitlines()
 
 

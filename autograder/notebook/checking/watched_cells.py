@@ -1,11 +1,11 @@
-"""Watch mode: check a class again each time that its cell redefines it.
+"""Watch mode: checks a class again each time its cell redefines it.
 
 Watching begins automatically after a check that did not earn all points, or on the student's request.
 
-The cell ends as fast as before, and the check runs while the kernel is idle. A check replaces rclpy's
-default context and captures all output, so it cannot run at the same time as a cell: it stops for the next cell,
-and starts again after that. Only the kernel's memory knows what is watched, so a restart ends it. While a class
-is graded, nothing is watched.
+The cell ends as fast as before, because the check runs while the kernel is idle. A check replaces rclpy's default
+context and captures all output, so it cannot run at the same time as a cell: it stops for the next cell and starts
+again afterwards. What is watched is kept only in the kernel's memory, so a restart ends it. While a class is graded,
+nothing is watched.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ if TYPE_CHECKING:
 
 @dataclass
 class Watch:
-    """One exercise that is watched. Made by ``watch``.
+    """An exercise that is watched. ``watch`` makes it.
 
     Attributes:
         exercise: The exercise's id.
         name: The name of the class or function in the notebook.
-        subject: The newest class or function of that name.
-        due: True if it is still to be checked.
+        subject: The newest class or function with that name.
+        due: True if this subject still has to be checked.
     """
 
     exercise: str
@@ -62,57 +62,57 @@ class Watch:
         return subject is not self.subject and (inspect.isclass(subject) or inspect.isfunction(subject))
 
     def begin(self, subject: Any) -> None:
-        """Show a card below the running cell, which has just defined this subject, and make it due."""
+        """Show a card below the running cell, which has just defined this subject, and plan the check."""
         if self._handle is not None:
-            # If the same cell was run again, its earlier card is already gone.
+            # If the same cell was run again, its earlier card has already disappeared.
             self._say(f"Another cell has defined {self.name} since.", over=True)
         self.subject, self.due = subject, True
-        self._here = contextvars.copy_context()  # it contains the cell to which output belongs
+        self._here = contextvars.copy_context()  # This context contains the cell to which output belongs.
         self._handle = display_card(self._card("Is checked as soon as this cell has ended."))
 
     def get_ready(self) -> None:
-        """Show that the check begins."""
+        """Show on the card that the check begins."""
         self._progress = Progress()
         self.tell()
 
     def tell(self) -> None:
-        """Show the progress."""
+        """Update the progress on the card."""
         self._say(self._progress.words())
 
     def doing(self, what: str) -> None:
-        """Show the present step, in a few words."""
+        """Show the current step, in a few words."""
         self._progress.doing = what
         self.tell()
 
     def know(self, so_far: str) -> None:
-        """Show what the judge already knows, once the check has taken long."""
+        """Show what the judge knows so far, once the check has taken long."""
         self._progress.known = so_far
 
     def give_way(self) -> None:
-        """Show that another cell runs first."""
+        """Show on the card that another cell runs first."""
         self._say("Is checked as soon as the cell that runs now has ended.")
 
     def show(self, verdict: Verdict) -> None:
-        """Show the result of this check, here and on the card of the check cell."""
+        """Show the result of this check on this card and on the card of the check cell."""
         self.settle(verdict)
         self._here.run(renew_card, verdict, self.subject)
         self._here.run(keep, verdict)
 
     def settle(self, verdict: Verdict) -> None:
-        """Show a result on the card; the subject is no longer due."""
+        """Show a result on the card. The subject needs no further check."""
         before = self._verdict.score if self._verdict else None
         self._verdict, self.due = verdict, False
         self._here.run(update_card, self._handle, bundle.mimebundle(verdict, before=before, short=True))
 
     def _say(self, words: str, *, over: bool = False) -> None:
-        # In a copy: the thread that repeats the progress may be inside the context.
+        # Run in a copy of the context, because the thread that shows the progress may be inside the context itself.
         self._here.copy().run(update_card, self._handle, self._card(words, over=over))
 
     def _card(self, words: str, *, over: bool = False) -> dict[str, str]:
         return bundle.waiting_bundle(f"{self.exercise}, {self.name}", words, over=over)
 
     def __repr__(self) -> str:
-        """One line for the end of a cell."""
+        """Return one line, shown if this is the last expression of a cell."""
         if _watches is None or _watches.all.get(self.exercise) is not self:
             return f"{self.name} is not watched."
         return f"{self.name} is checked again whenever its cell is run. unwatch() ends it."
@@ -132,13 +132,13 @@ class Watches:
         self._link: JudgeLink | None = None
         self._giving_way = False
         self._lock = threading.Lock()
-        # Before everything else that follows a cell, and around each execution, even the silent ones of front ends.
+        # Run before everything else that follows a cell, and around each execution, even silent ones of front ends.
         shell.events.register("pre_execute", self._give_way)
         shell.events.register("post_execute", self._go_on)
         atexit.register(self._give_way)  # before ROS is shut down
 
     def _go_on(self) -> None:
-        """After a cell, check what it has redefined, and continue the checks that it interrupted."""
+        """After a cell, check what it has redefined, and restart the checks that it stopped."""
         for watch in self.all.values():
             subject = self._names.get(watch.name)
             if watch.is_defined_anew(subject):
@@ -149,7 +149,7 @@ class Watches:
             self._thread.start()
 
     def _give_way(self) -> None:
-        """Before a cell, stop the running check, which starts again afterwards."""
+        """Before a cell runs, stop the running check. It starts again afterwards."""
         if self._thread is None:
             return
         with self._lock:
@@ -211,7 +211,8 @@ def watch(exercise: str, subject: Callable[..., Any]) -> Watch:
     begun = Watch(exercise, subject.__name__, subject)
     if is_live():
         _watches = _watches or Watches(notebook_shell())
-        # A call in the class's own cell happens in each run, and must not take the new class for a checked one.
+        # If the call is in the class's own cell, it runs each time, and must not take the new class for one already
+        # checked.
         earlier = _watches.all.get(exercise)
         if earlier is not None and earlier.name == begun.name:
             return earlier
@@ -220,7 +221,7 @@ def watch(exercise: str, subject: Callable[..., Any]) -> Watch:
 
 
 def unwatch() -> None:
-    """Watch nothing any more, not even after a failed check. The cards stay."""
+    """Stop watching everything, and do not watch after a failed check either. The cards stay."""
     global _ended_by_the_student
     _ended_by_the_student = True
     if _watches is not None:
@@ -228,14 +229,14 @@ def unwatch() -> None:
 
 
 def switch(exercise: str, subject: Callable[..., Any]) -> str:
-    """Watch a class or function, or stop watching it: the button *Watch*.
+    """Begin or stop watching a class or function. The button *Watch* calls this.
 
     Args:
         exercise: The exercise's id.
         subject: The class or function.
 
     Returns:
-        What is watched from now on, in words.
+        A sentence that says what is watched from now on.
     """
     if _watches is not None and exercise in _watches.all:
         unwatch()
@@ -244,7 +245,7 @@ def switch(exercise: str, subject: Callable[..., Any]) -> str:
 
 
 def watch_after(verdict: Verdict, subject: Any) -> None:
-    """After a check by hand, watch the subject if it did not pass; its result need not be found again.
+    """After a check that a student ran, watch the subject if it did not pass. It is checked again once it changes.
 
     After ``unwatch()``, nothing is watched until the student asks for it.
     """

@@ -1,1 +1,1 @@
-"""Run students' nodes: start ROS in the kernel, spin nodes in the background, and end them."""
+"""How students' nodes run: ROS is started in the kernel, nodes spin in the background, and are ended."""

@@ -1,4 +1,4 @@
-"""Spin nodes in the background of a notebook, and end them when their cell is run again.
+"""Spins nodes in the background of a notebook, and ends them when their cell is run again.
 
 ``with spinning(TalkerNode(), ListenerNode()): …`` spins nodes while the cell's body runs;
 ``spin_in_background(TalkerNode())`` spins them until they are stopped or the cell is run again.
@@ -28,13 +28,15 @@ if TYPE_CHECKING:
     from autograder.notebook.nodes.lending_executors import Taken
 
 _GRACE_AT_EXIT = 0.5
-"""Seconds; a kernel that takes more than five to end is killed (``KernelManager.shutdown_wait_time``)."""
+"""Seconds to wait for callbacks when the kernel ends. A kernel that takes more than five seconds to end is killed
+(``KernelManager.shutdown_wait_time``).
+"""
 
 
 def spinning(*nodes: Node, threads: int = 1) -> Spinning:
     """Spin nodes in the background while a ``with`` block runs.
 
-    ``as`` gives the node, or a tuple if there are several nodes::
+    ``as`` gives the node or, if there are several, a tuple of the nodes::
 
         with spinning(TalkerNode(), ListenerNode()) as (talker, listener):
             time.sleep(3)
@@ -44,14 +46,16 @@ def spinning(*nodes: Node, threads: int = 1) -> Spinning:
 
     Args:
         nodes: At least one node.
-        threads: How many callbacks may run at a time. From 2 on the executor is a MultiThreadedExecutor.
+        threads: The number of callbacks that may run at the same time. With 2 or more, the executor is a
+            MultiThreadedExecutor.
 
     Raises:
-        NotANodeError: One of the arguments is not a node.
+        NotANodeError: An argument is not a node.
         UnusableNodeError: A node has ended.
         NodeBusyError: A node spins already.
-        SettingError: ``threads`` is not a number of threads.
-        CallbackFailedError: At the end of the block, if a callback raised and the block itself did not.
+        SettingError: ``threads`` is not a valid number of threads.
+        CallbackFailedError: A callback raised an exception and the block itself did not. Raised at the end of the
+            block.
     """
     check_nodes("spinning", nodes)
     check_threads(threads)
@@ -61,20 +65,21 @@ def spinning(*nodes: Node, threads: int = 1) -> Spinning:
 def spin_in_background(node: Node, *more: Node, name: str | None = None, threads: int = 1) -> Background:
     """Spin nodes in the background until ``.stop()``, or until this cell is run again.
 
-    Running the cell again first stops the nodes of its earlier run and destroys them. A background with a
-    ``name`` goes on: only another background of the same name replaces it.
+    When the cell is run again, the nodes of its earlier run are first stopped and destroyed. A background with a
+    ``name`` keeps running; only another background with this name replaces it.
 
     Args:
         node: A node.
-        more: More nodes for the same executor.
+        more: Further nodes for the same executor.
         name: Distinguishes this background from others that the same cell starts.
-        threads: How many callbacks may run at a time. From 2 on the executor is a MultiThreadedExecutor.
+        threads: The number of callbacks that may run at the same time. With 2 or more, the executor is a
+            MultiThreadedExecutor.
 
     Raises:
-        NotANodeError: One of the arguments is not a node.
+        NotANodeError: An argument is not a node.
         UnusableNodeError: A node has ended.
         NodeBusyError: A node spins already.
-        SettingError: ``threads`` is not a number of threads, or ``name`` is not a string.
+        SettingError: ``threads`` is not a valid number of threads, or ``name`` is not a string.
     """
     nodes = (node, *more)
     check_threads(threads)
@@ -89,10 +94,10 @@ def spin_in_background(node: Node, *more: Node, name: str | None = None, threads
 
 
 def stop_all(grace: float = GRACE) -> None:
-    """Stop everything that spins in the background and destroy every node made in this notebook.
+    """Stop everything that spins in the background, and destroy every node that was made in this notebook.
 
     Args:
-        grace: Seconds that each running callback has to return by itself.
+        grace: Seconds for each running callback to return by itself.
     """
     for background in running_backgrounds():
         background.end(grace=grace)
@@ -101,12 +106,12 @@ def stop_all(grace: float = GRACE) -> None:
 
 
 class Background:
-    """Nodes that spin while the notebook goes on. Made by ``spin_in_background``.
+    """Nodes that spin while the notebook goes on. ``spin_in_background`` makes this.
 
     Args:
-        nodes: At least one; they have been checked.
-        threads: How many callbacks may run at a time.
-        name: The student's name for it, or None.
+        nodes: At least one node. They have already been checked.
+        threads: The number of callbacks that may run at the same time.
+        name: The name that the student gave; None if there is none.
     """
 
     def __init__(self, nodes: Sequence[Node], *, threads: int = 1, name: str | None = None) -> None:
@@ -132,7 +137,7 @@ class Background:
 
     @property
     def errors(self) -> tuple[CallbackError, ...]:
-        """The errors of callbacks so far, each error once with its count."""
+        """The errors of callbacks so far. Each error is listed once, with a count."""
         return self._errors.all
 
     def start(self) -> None:
@@ -142,7 +147,7 @@ class Background:
         self._threads.start()
 
     def stop(self) -> None:
-        """Stop spinning and destroy the nodes. Calling it again does no harm."""
+        """Stop spinning and destroy the nodes. A second call does nothing."""
         was_running = self.running
         self.end()
         if was_running:
@@ -153,7 +158,7 @@ class Background:
 
         Args:
             keep: The nodes to leave alive.
-            grace: Seconds that a running callback has to return by itself.
+            grace: Seconds for a running callback to return by itself.
         """
         for node in self.nodes:
             if any(node is kept for kept in keep):
@@ -161,13 +166,13 @@ class Background:
         try:
             self._threads.stop(grace)
         except KeyboardInterrupt:
-            # An impatient second interrupt must not leave threads behind.
+            # A second, impatient interrupt must not leave threads behind.
             self._threads.stop(grace=0.0)
             raise
         let_log_lines_arrive()
 
     def drop(self, node: Node) -> None:
-        """Remove one node for good. The background ends with its last node."""
+        """Remove one node for good. If it is the last node, the background ends."""
         self._threads.let_go(node)
         destroy_node(node)
         if not self.nodes:
@@ -180,7 +185,7 @@ class Background:
         self.stop()
 
     def __repr__(self) -> str:
-        """One line for the end of a cell."""
+        """Return one line, shown if this is the last expression of a cell."""
         name = f"{self.name}: " if self.name else ""
         if not self.running:
             return f"{name}{self._label} stopped."
@@ -219,14 +224,14 @@ class Background:
 
 
 class Interrupted(KeyboardInterrupt):
-    """The kernel was interrupted inside ``with spinning(...)``; shown as one line instead of a traceback."""
+    """The kernel was interrupted inside ``with spinning(...)``. It is shown as one line and not as a traceback."""
 
     def _render_traceback_(self) -> list[str]:
         return [str(self)]
 
 
 class Spinning:
-    """The result of ``spinning(...)``, for a ``with`` statement."""
+    """The object that ``spinning(...)`` returns, for use in a ``with`` statement."""
 
     def __init__(self, nodes: tuple[Node, ...], threads: int) -> None:
         self._label = ", ".join(map(node_label, nodes))
@@ -234,7 +239,7 @@ class Spinning:
         self._background = Background(nodes, threads=threads)
 
     def __enter__(self) -> Any:
-        """Start spinning. Return the node, or a tuple if there are several."""
+        """Start spinning. Return the node or, if there are several, a tuple of the nodes."""
         check_nodes("spinning", self._nodes)
         self._background.start()
         return self._nodes[0] if len(self._nodes) == 1 else self._nodes
@@ -242,7 +247,7 @@ class Spinning:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End the nodes."""
+        """Stop spinning and destroy the nodes."""
         self._background.end()
         if kind is KeyboardInterrupt:
             raise Interrupted(f"Interrupted: {self._label} stopped.") from None
@@ -250,7 +255,7 @@ class Spinning:
             raise CallbackFailedError(self._background.errors) from self._background.errors[0].error
 
     def __repr__(self) -> str:
-        """Return one line for a cell that ends with ``spinning(...)`` without ``with``."""
+        """Return one line, for a cell that ends with ``spinning(...)`` but has no ``with``."""
         return (
             f"{self._label} not spinning: write `with spinning(...):` and indent what is to happen meanwhile."
         )
@@ -264,7 +269,7 @@ def replace_named(name: str, keep: Collection[Node]) -> None:
 
 
 def running_backgrounds() -> list[Background]:
-    """All backgrounds, oldest first."""
+    """Return all backgrounds, the oldest first."""
     with _lock:
         return list(_running)
 
@@ -274,10 +279,10 @@ def _background_of(node: Node) -> Background | None:
 
 
 def _undo_earlier_run(run: WatchedRun) -> None:
-    """Before a cell is run again, end the nodes of its earlier run: their messages would mix with the new run's.
+    """Before a cell is run again, end the nodes of its earlier run, whose messages would mix with the new ones.
 
-    A node that another cell made only stops spinning, because its variable may be used again. A background
-    with a name goes on.
+    A node that another cell made is only stopped and not destroyed, because its variable may be used again. A
+    background with a name keeps running.
     """
     left_behind = [
         made.node for made in _made.alive() if run.is_later_run_of(made.run) and not _is_named(made.node)
@@ -290,10 +295,11 @@ def _undo_earlier_run(run: WatchedRun) -> None:
 
 
 def _make_room(newcomer: NodeIdentity) -> None:
-    """Before a node is made, end one with the same name from another cell's run: every message would come twice.
+    """Before a node is made, end a node with the same name from another cell, or every message would come twice.
 
-    This must happen before: otherwise rcl warns, and ends the logs of both nodes when one is destroyed. Two nodes
-    of one name from the same run are intended: the course shows what two servers of one name do.
+    This must happen first: otherwise rcl warns, and when one of the two nodes is destroyed, the logs of both end. Two
+    nodes with the same name from the same run are intended, because the course shows what two servers with one name
+    do.
     """
     for made in _made.alive():
         if made.identity == newcomer and made.run != _cells.current:
@@ -337,5 +343,5 @@ _made.watch()
 _cells.before_each_run(_undo_earlier_run)
 prepare_environment()
 point_at_raising_lines()
-# The threads must end before the interpreter does: see spin_threads.
+# The threads must end before the interpreter does; spin_threads.py says why.
 atexit.register(stop_all, grace=_GRACE_AT_EXIT)

@@ -32,13 +32,13 @@ _HUNG_CALL = (
 
 @dataclass(frozen=True)
 class CallbackError:
-    """One error in a callback, however often it happened.
+    """One error in a callback, with the number of times it happened.
 
     Attributes:
         node: The node's name.
-        where: The owner of the callback, such as ``"its timer (every 0.5 s)"``.
-        error: The first exception, with its traceback.
-        count: How often the error happened.
+        where: What owns the callback, such as ``"its timer (every 0.5 s)"``.
+        error: The first of the exceptions, with its traceback.
+        count: The number of times that the error happened.
     """
 
     node: str
@@ -47,16 +47,16 @@ class CallbackError:
     count: int = 1
 
     def __str__(self) -> str:
-        """Return one line: where, what and how often."""
+        """Return one line that says where and how often the error happened, and what it was."""
         times = "" if self.count == 1 else f", {self.count} times"
         return f"{self.node}, in the callback of {self.where}{times}: {_last_line(self.error)}"
 
 
 class CallbackFailedError(PlainlyShownError, RuntimeError):
-    """Raised at the end of ``with spinning(...)`` if a callback raised; the traceback is already shown.
+    """A callback raised an exception. Raised at the end of ``with spinning(...)``; the traceback is already shown.
 
     Attributes:
-        errors: The errors of callbacks, in the order in which they first happened.
+        errors: The errors of callbacks, sorted by when they first happened.
     """
 
     def __init__(self, errors: Sequence[CallbackError]) -> None:
@@ -91,7 +91,7 @@ class CallbackErrors:
 
     @property
     def all(self) -> tuple[CallbackError, ...]:
-        """Return the errors so far, in the order in which they first happened."""
+        """Return the errors so far, sorted by when they first happened."""
         with self._lock:
             return tuple(self._errors.values())
 
@@ -116,7 +116,7 @@ def _report(seen: CallbackError, failure: Failure) -> str:
 
 
 def _hints(failure: Failure) -> list[str]:
-    """Return advice on an error that rclpy itself raised after, or instead of, the student's callback."""
+    """Return advice if rclpy itself raised the error, after the student's callback or instead of it."""
     if isinstance(failure.entity, Timer) and failure.entity.callback is None:
         return [
             "The timer has None for a callback: the method was called when the timer was made, and what it "
@@ -129,13 +129,13 @@ def _hints(failure: Failure) -> list[str]:
 
 
 def _likely_callback(node: Node | None) -> str:
-    """Return the only method of the student's class, or a general word if there are several."""
+    """Return the name of the only method of the student's class, or a general word if it has several."""
     own = [name for name, value in vars(type(node)).items() if callable(value) and not name.startswith("__")]
     return own[0] if len(own) == 1 else "your_method"
 
 
 def describe(entity: Any) -> str:
-    """Return the owner of the callback in words."""
+    """Return in words what owns the callback."""
     if isinstance(entity, Timer):
         return f"its timer (every {entity.timer_period_ns / 1e9:g} s)"
     if isinstance(entity, Subscription):

@@ -1,8 +1,7 @@
-"""Keep a list of the nodes in this kernel, and destroy them so that nothing of them stays on the graph.
+"""A list of the nodes in this kernel, kept so that they can be destroyed and leave nothing on the graph.
 
 rclpy keeps no list of its nodes, and a forgotten node lives until Python collects it: a service from an earlier run
-of the cell would go on answering requests. So this module records each new node, with the run of the cell that
-made it.
+of a cell would go on answering requests. So this module records each new node with the run of the cell that made it.
 """
 
 from __future__ import annotations
@@ -32,7 +31,7 @@ _STOPPED = "was stopped while this call was waiting for its answer"
 
 @dataclass(frozen=True)
 class NodeIdentity:
-    """The full name of a node and its context.
+    """The full name of a node, and its context.
 
     Attributes:
         name: The node's name with its namespace, such as ``"/robot/talker_node"``.
@@ -50,7 +49,7 @@ class MadeNode:
     Attributes:
         node: The node.
         identity: The full name of the node and its context.
-        run: The run of the cell; None outside a notebook.
+        run: The run of the cell that made the node; None outside a notebook.
     """
 
     node: Node
@@ -63,7 +62,7 @@ class MadeNodes:
 
     Args:
         current_run: Returns the current run of a cell; None outside a notebook.
-        before_making: Called with the identity of each node that is about to be made.
+        before_making: Called with the identity of each node just before the node is made.
     """
 
     def __init__(
@@ -108,7 +107,7 @@ class MadeNodes:
         ]
 
     def on(self, context: Context) -> list[Node]:
-        """Return the nodes of a context that are in memory, including destroyed and failed ones."""
+        """Return the nodes of a context that are in memory, even destroyed ones and those whose ``__init__`` failed."""
         with self._lock:
             entries = [(reference(), identity) for reference, identity, _ in self._made]
         return [node for node, identity in entries if node is not None and identity.context is context]
@@ -136,34 +135,34 @@ class NodeEndedError(RuntimeError):
 
 
 def destroy_node(node: Node) -> None:
-    """Destroy a node with its action servers and clients; harmless if it is already destroyed.
+    """Destroy a node with its action servers and clients. If it is already destroyed, do nothing.
 
-    ``Node.destroy_node`` does not destroy action servers and clients, and as long as one of them lives, the node
-    stays on the graph: clients would still send it goals. Code that waits for an answer through this node
-    gets a ``NodeEndedError``, because the answer can no longer come.
+    ``Node.destroy_node`` does not destroy action servers and clients. As long as one of these lives, the node stays
+    on the graph, and clients would still send it goals. Code that waits for an answer through this node gets a
+    ``NodeEndedError``, because the answer can no longer come.
     """
     release_waiting_calls(node)
     for waitable in _parts(node, "waitables"):
         if hasattr(waitable, "destroy"):
             with suppress(InvalidHandle):
                 waitable.destroy()
-    # A node whose __init__ failed lacks some of its parts.
+    # A node whose __init__ failed lacks some of its attributes.
     with suppress(InvalidHandle, AttributeError):
         node.destroy_node()
 
 
 def node_label(node: Any) -> str:
-    """Return the node's name, or its class if the node is destroyed."""
+    """Return the node's name or, if the node is destroyed, the name of its class."""
     if node is None:
         return "a node"
     try:
         return str(node.get_name())
-    except (InvalidHandle, AttributeError):  # destroyed, or super().__init__() was never called
+    except (InvalidHandle, AttributeError):  # the node is destroyed, or super().__init__() was never called
         return type(node).__name__
 
 
 def is_destroyed(node: Node) -> bool:
-    """True if the node was destroyed."""
+    """Return True if the node was destroyed."""
     try:
         with node.handle:
             return False
@@ -172,16 +171,15 @@ def is_destroyed(node: Node) -> bool:
 
 
 def release_waiting_calls(node: Node) -> None:
-    """End each wait for a service's or an action's answer through this node."""
+    """End each wait for an answer to a service call or goal of this node."""
     error = NodeEndedError(f"{node_label(node)} {_STOPPED}")
     for future in list(_pending_answers(node)):
         if not future.done():
             with warnings.catch_warnings():
-                # A callback that reads the answer gets this error, as intended. rclpy would warn of it.
+                # A callback that reads the answer gets this error, as intended. rclpy would print a warning about it.
                 warnings.filterwarnings("ignore", f".* {_STOPPED}", UserWarning)
                 future.set_exception(error)
-            # Mark the exception as read: otherwise it is written to stderr when the future is
-            # collected.
+            # Mark the exception as read. Otherwise it is written to stderr when the future is collected.
             future.exception()
 
 

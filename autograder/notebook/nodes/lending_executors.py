@@ -1,9 +1,9 @@
-"""Extend rclpy's two executors: they take back nodes that rclpy moves away, and report goals that fail.
+"""rclpy's two executors, extended: they take back nodes that rclpy moves away, and report goals that fail.
 
-A node is in one executor at a time. ``rclpy.spin_once(node)`` and ``rclpy.spin_until_future_complete(node,
-…)`` move it into rclpy's global executor and afterwards leave it in none: a node that spun in the background no
-longer receives anything (``rclpy/__init__.py``, ``rclpy/node.py``). These executors lend the node instead, and
-take it back.
+A node is in one executor at a time. ``rclpy.spin_once(node)`` and ``rclpy.spin_until_future_complete(node, …)`` move
+the node into rclpy's global executor, and afterwards leave it in none. A node that spun in the background would then
+no longer receive anything (``rclpy/__init__.py``, ``rclpy/node.py``). The executors of this module lend the node
+instead, and take it back.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ if TYPE_CHECKING:
 
 
 def report_goal_errors(task: Any, arguments: tuple[Any, ...], report: GoalErrorReport) -> tuple[Any, ...]:
-    """Return the arguments for a task of an executor, changed if the task executes a goal of an action server.
+    """Return the arguments for a task of an executor. If the task executes a goal, errors in it will be reported.
 
-    rclpy catches an error of the execute callback itself and prints the traceback on standard error, among lines of
-    its own (``ActionServer._execute_goal`` in ``rclpy/action/server.py``). Here it is reported like all other
-    callbacks' errors, and the goal still ends as in rclpy: aborted, with an empty result.
+    rclpy itself catches an error in the execute callback and prints the traceback on standard error, among lines of
+    its own (``ActionServer._execute_goal`` in ``rclpy/action/server.py``). Here such an error is reported like that
+    of any other callback. The goal still ends as in rclpy: aborted, with an empty result.
 
     Args:
         task: The function that the executor is to run.
         arguments: The arguments of the task.
-        report: Called with an error of the execute callback and the server.
+        report: Called with the error of an execute callback and the action server.
     """
     server = getattr(task, "__self__", None)
     if not isinstance(server, ActionServer) or getattr(task, "__name__", "") != "_execute_goal":
@@ -73,12 +73,12 @@ _LOANS = "_nodes_to_return"
 
 @dataclass(frozen=True)
 class Taken:
-    """A node was moved out of its executor.
+    """A record that a node was moved out of its executor.
 
     Attributes:
         node: The node.
         caller: The rclpy function that took the node, such as ``"spin_once"``; None if another executor's
-            ``add_node`` took it.
+            ``add_node`` did.
         comes_back: True if the node returns when that function ends.
     """
 
@@ -88,12 +88,12 @@ class Taken:
 
 
 class LendingExecutor(Executor):
-    """The additions of this module's executors to rclpy's."""
+    """The code that this module's executors add to rclpy's."""
 
     on_taken: Callable[[Taken], None] | None = None
-    """Called in the thread that takes a node, before it takes it."""
+    """Called just before a node is taken, in the thread that takes it."""
     on_goal_error: GoalErrorReport | None = None
-    """Called with an error of an action server's execute callback."""
+    """Called with the error of an action server's execute callback."""
 
     def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task:
         """Schedule a task; rclpy's action servers execute goals this way."""
@@ -102,7 +102,7 @@ class LendingExecutor(Executor):
         return super().create_task(callback, *args, **kwargs)
 
     def release(self, node: Node) -> None:
-        """Remove a node for good, without reporting it."""
+        """Remove a node for good. This is not reported as taken."""
         on_taken, self.on_taken = self.on_taken, None
         try:
             super().remove_node(node)
@@ -110,7 +110,7 @@ class LendingExecutor(Executor):
             self.on_taken = on_taken
 
     def remove_node(self, node: Node) -> None:
-        """Lend the node; rclpy calls this when another executor takes it."""
+        """Lend the node. rclpy calls this when another executor takes it."""
         had_it = node in self.get_nodes()
         super().remove_node(node)
         if not had_it or self.on_taken is None:
@@ -127,11 +127,11 @@ class LendingExecutor(Executor):
 
 
 class LendingSingleThreadedExecutor(LendingExecutor, SingleThreadedExecutor):
-    """rclpy's single-threaded executor, lending its nodes."""
+    """rclpy's single-threaded executor, extended to lend its nodes."""
 
 
 class LendingMultiThreadedExecutor(LendingExecutor, MultiThreadedExecutor):
-    """rclpy's multi-threaded executor, lending its nodes."""
+    """rclpy's multi-threaded executor, extended to lend its nodes."""
 
 
 def make_executor(threads: int, context: Context) -> LendingExecutor:
@@ -142,26 +142,26 @@ def make_executor(threads: int, context: Context) -> LendingExecutor:
 
 
 def wake_global_executor() -> None:
-    """Wake a callback that waits inside ``rclpy.spin_once()``, so that it runs Python for a moment."""
+    """Wake a callback that waits inside ``rclpy.spin_once()``, so that its thread executes Python code for a moment."""
     executor = _global_executor()
     if executor is not None:
         executor.wake()
 
 
 def _global_executor() -> Executor | None:
-    """Return the executor of ``rclpy.spin`` if there is one; rclpy's own function would create one."""
+    """Return the executor of ``rclpy.spin`` if it exists; rclpy's own function would create it."""
     executor: Executor | None = getattr(rclpy, "__executor", None)
     return executor
 
 
 def _global_executor_holding(node: Node) -> Executor | None:
-    """Return the global executor if it is the one that has just added the node."""
+    """Return the global executor if it has just added the node, else None."""
     executor = _global_executor()
     return executor if executor is not None and node in executor.get_nodes() else None
 
 
 def _return_afterwards(borrower: Executor, node: Node, owner: LendingExecutor) -> None:
-    """Make the borrower return the node when it removes it."""
+    """Make the borrower return the node when it removes the node."""
     loans: dict[int, LendingExecutor] | None = borrower.__dict__.get(_LOANS)
     if loans is None:
         loans = {}
@@ -183,7 +183,7 @@ def _hook_remove_node(borrower: Any, loans: dict[int, LendingExecutor]) -> None:
 
 
 def _spinning_function(frame: FrameType | None) -> str | None:
-    """Return the rclpy function, called by the student, that is taking the node."""
+    """Return the name of the rclpy function with which the student's code takes the node; None if there is none."""
     while frame is not None:
         if frame.f_globals.get("__name__") == "rclpy" and frame.f_code.co_name in _RCLPY_SPINS:
             return frame.f_code.co_name

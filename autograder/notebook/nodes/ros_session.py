@@ -1,4 +1,4 @@
-"""Start ROS in a notebook's kernel, once, on a domain of its own, and shut it down when the kernel ends."""
+"""Starts ROS in a notebook's kernel, once, on a domain of its own, and shuts it down when the kernel ends."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from autograder.ros_domain import (
 _CHECK_FIELDS = "ROS_PYTHON_CHECK_FIELDS"
 
 _DEFAULTS = {
-    # If a log line is on stderr, stock nbgrader gives a right answer no points.
+    # Log lines must not go to stderr, because stock nbgrader would then give a right answer no points.
     "RCUTILS_LOGGING_USE_STDOUT": "1",
     "RCUTILS_COLORIZED_OUTPUT": "0",
-    # Write each line at once. If a kernel's output does not go to a terminal (a batch, a hub), the C library keeps
-    # log lines back until there are 4 KB, and they would appear below another cell or never.
+    # Write each line at once. If a kernel's output does not go to a terminal (in a batch, or on a hub), the C library
+    # holds log lines back until there are 4 KB, and they would appear below another cell or never.
     "RCUTILS_LOGGING_BUFFERED_STREAM": "1",
     # Report a field of the wrong type at once, instead of sending garbage.
     _CHECK_FIELDS: "1",
@@ -36,7 +36,7 @@ _DISCOVERY_VARIABLES = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
 
 @dataclass(frozen=True, repr=False)
 class RosSession:
-    """The state of ROS in this kernel after its start.
+    """How ROS was started in this kernel.
 
     Attributes:
         domain: The ROS domain of the kernel's nodes.
@@ -47,7 +47,7 @@ class RosSession:
     picked: bool
 
     def __repr__(self) -> str:
-        """One line for the end of a cell."""
+        """Return one line, shown if this is the last expression of a cell."""
         line = f"ROS 2 is up on domain {self.domain}."
         if self.picked:
             line += f" To join it from a terminal: export {DOMAIN_VARIABLE}={self.domain}"
@@ -61,8 +61,8 @@ _claim: DomainClaim | None = None
 def prepare_environment() -> None:
     """Set the environment variables that ROS needs in a notebook, unless the user has set them.
 
-    Logs go to standard output without color codes, message fields are type-checked, and discovery stays on
-    this host. Processes that a cell starts inherit the settings.
+    With these settings logs go to standard output without color codes, message fields are type-checked, and discovery
+    stays on this computer. Processes that a cell starts inherit the settings.
     """
     for name, value in _DEFAULTS.items():
         os.environ.setdefault(name, value)
@@ -73,9 +73,9 @@ def prepare_environment() -> None:
 
 
 def _check_fields_of_imported_messages() -> None:
-    """Switch on type checks in generated modules that were imported before the variable was set.
+    """Switch on type checks in generated message modules that were imported before the variable was set.
 
-    Each of them reads the variable once, at import, into a global that its messages' constructors look up
+    Each module reads the variable once, at import, into a global that the constructors of its messages look up
     (``rosidl_generator_py/resource/_msg.py.em``).
     """
     for module in list(sys.modules.values()):
@@ -85,22 +85,23 @@ def _check_fields_of_imported_messages() -> None:
 
 
 def start_ros() -> RosSession:
-    """Start ROS in this kernel; if it already runs, only report that.
+    """Start ROS in this kernel. If it already runs, only report that.
 
-    The domain is the one in ``ROS_DOMAIN_ID``. If that is not set, a free domain is chosen, held until the kernel
-    ends, and exported, so that processes started from the notebook use it. ROS installs no signal handlers:
-    interrupting the kernel stops the cell and leaves the nodes alone. After ``rclpy.shutdown()`` it starts ROS again.
+    The domain is the one in ``ROS_DOMAIN_ID``. If that is not set, a free domain is chosen, reserved until the kernel
+    ends, and exported, so that processes started from the notebook use it. ROS installs no signal handlers here:
+    interrupting the kernel stops the cell and does not end the nodes. After ``rclpy.shutdown()``, this function
+    starts ROS again.
 
     Raises:
-        ValueError: ``ROS_DOMAIN_ID`` is not the number of a domain.
-        NoFreeDomainError: Every domain on this host is in use.
+        ValueError: ``ROS_DOMAIN_ID`` is not a valid domain number.
+        NoFreeDomainError: Every domain on this computer is in use.
     """
     with _lock:
         prepare_environment()
         if ok():
             _drop_signal_handlers()
         else:
-            # Drop a default context that was shut down, so that a new one replaces it.
+            # Drop a default context that was shut down, so that rclpy makes a new one.
             try_shutdown()
             rclpy.init(args=[], domain_id=_session_domain(), signal_handler_options=SignalHandlerOptions.NO)
         domain = get_default_context().get_domain_id()
@@ -109,7 +110,7 @@ def start_ros() -> RosSession:
 
 
 def _drop_signal_handlers() -> None:
-    """Remove the handlers of an earlier ``rclpy.init()``, which would end ROS when the kernel is interrupted."""
+    """Remove the signal handlers of an earlier ``rclpy.init()``: they would end ROS when the kernel is interrupted."""
     if get_current_signal_handlers_options() != SignalHandlerOptions.NO:
         uninstall_signal_handlers()
 
@@ -124,5 +125,5 @@ def _session_domain() -> int:
     return domain
 
 
-# Registered before the executors' own exit handler, so it runs after that: nodes end first, then ROS.
+# Registered before the executors' exit handler, and therefore run after it: nodes end first, then ROS.
 atexit.register(try_shutdown)

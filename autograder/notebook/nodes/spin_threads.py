@@ -1,14 +1,14 @@
-"""Spin nodes in background threads, and end these threads.
+"""Spins nodes in background threads, and ends these threads.
 
 Three properties of rclpy shape this file (``rclpy/executors.py`` of Jazzy):
 
-* an exception in a callback leaves ``spin``, so the thread would end and all of its nodes would stop;
+* an exception in a callback leaves ``spin``, so the thread would end and all its nodes would stop;
 * ``Executor.shutdown`` destroys the executor even if another thread still waits in it, so the thread must leave
   first;
-* nodes hold their executor by a weak reference only, so it is kept here.
+* nodes reference their executor only weakly, so this module keeps a reference to it.
 
-And one property of Python: a thread that still runs rclpy when the interpreter ends aborts the whole process. So
-every thread is joined, and a callback that does not return is interrupted by an exception.
+A property of Python matters as well: a thread that still runs rclpy code when the interpreter ends aborts the whole
+process. So every thread is joined, and a callback that does not return is interrupted by an exception.
 """
 
 from __future__ import annotations
@@ -38,14 +38,14 @@ if TYPE_CHECKING:
     from rclpy.task import Task
 
 GRACE = 2.0
-"""Seconds that a running callback has to return by itself after a stop was asked for."""
+"""Seconds for a running callback to return by itself after a stop was requested."""
 _RELEASE_EVERY = 0.05
 """Seconds between two searches for calls that wait for an answer."""
 _LAST_GRACE = 1.0
-"""Seconds that an interrupted callback has to end."""
+"""Seconds for a callback to end after it was interrupted."""
 _ATTEMPTS = 3
 _LONG_WAIT = 1.0
-"""Seconds; a call that had waited longer than this when its node was stopped counts as hung."""
+"""Seconds. If a call had waited longer than this for its answer when its node was stopped, it counts as hung."""
 _MAX_FAILED_WAITS = 10
 
 
@@ -67,13 +67,13 @@ class Ending(Enum):
 
 @dataclass(frozen=True)
 class Failure:
-    """An exception of a callback.
+    """An exception that a callback raised.
 
     Attributes:
         error: The exception, with its traceback.
-        entity: The owner of the callback, such as a timer, subscription or service; None for a task.
-        node: The node of the owner; None for a task.
-        goes_on: True if the nodes go on spinning.
+        entity: What owns the callback, such as a timer, subscription or service; None for a task.
+        node: The node to which the entity belongs; None for a task.
+        goes_on: True if the nodes keep spinning.
     """
 
     error: BaseException
@@ -99,10 +99,11 @@ class SpinThreads:
     """Spins nodes in separate threads until stopped, then destroys them.
 
     Args:
-        nodes: At least one, all of one context.
-        threads: How many callbacks may run at a time; more than one needs a multi-threaded executor.
-        on_failure: Called for each callback that raised, in the thread that ran it.
-        on_end: Called once after the end, in the thread that finished it.
+        nodes: At least one node; all of the same context.
+        threads: The number of callbacks that may run at the same time. With 2 or more, the executor is
+            multi-threaded.
+        on_failure: Called for each callback that raised an exception, in the thread that ran the callback.
+        on_end: Called once, after the end, in the thread that cleaned up.
     """
 
     def __init__(
@@ -133,8 +134,8 @@ class SpinThreads:
         self._alive = len(self._threads)
 
     def _make_thread(self, job: Callable[[], None]) -> threading.Thread:
-        # A daemon thread: Python joins all other threads before it runs exit handlers, so that one stuck callback
-        # would keep the kernel from ever ending.
+        # This must be a daemon thread: Python joins all other threads before it runs exit handlers, so one stuck
+        # callback would keep the kernel from ever ending.
         return threading.Thread(target=self._thread, args=(job,), name="ros-spin", daemon=True)
 
     @property
@@ -144,11 +145,11 @@ class SpinThreads:
 
     @property
     def running(self) -> bool:
-        """True if the nodes spin and no stop was asked for."""
+        """True if the nodes spin and no stop was requested."""
         return self._threads[0].is_alive() and not self._stop.is_set()
 
     def is_own_thread(self) -> bool:
-        """Return True if the caller is one of the callbacks."""
+        """Return True if the caller runs in one of these threads, that is, in a callback."""
         return threading.current_thread() in self._threads
 
     def start(self) -> None:
@@ -166,11 +167,11 @@ class SpinThreads:
     def stop(self, grace: float = GRACE) -> None:
         """Stop spinning, wait for the callbacks that are running, and destroy the nodes.
 
-        A callback that does not return is interrupted and reported as a failure. Called from inside a
-        callback, this only asks for the stop: it happens after that callback.
+        A callback that does not return is interrupted and reported as a failure. If a callback itself calls this, the
+        stop is only requested, and happens after the callback.
 
         Args:
-            grace: Seconds that a running callback has to return by itself.
+            grace: Seconds for a running callback to return by itself.
         """
         self._ask_to_stop(Ending.STOPPED)
         if self.is_own_thread():
@@ -183,8 +184,8 @@ class SpinThreads:
         """Wait for the callbacks that are running. Return True if they have returned."""
         deadline = time.monotonic() + grace
         while True:
-            # Answers are no longer received: a callback that waits for one would wait forever. It may
-            # call only now.
+            # Answers are no longer received, so a callback that waits for one would wait forever. It may have begun
+            # to wait only now.
             for node in self._nodes:
                 release_waiting_calls(node)
             left = deadline - time.monotonic()
@@ -210,21 +211,23 @@ class SpinThreads:
         return not any(thread.is_alive() for thread in self._threads)
 
     def _break_off(self) -> None:
-        for _ in range(_ATTEMPTS):  # A bare `except:` in a loop survives the first.
+        for _ in range(
+            _ATTEMPTS
+        ):  # A bare `except:` in a loop survives the first interruption, so it is repeated.
             for ident in list(self._running):
                 raise_in_thread(ident, CallbackBrokenOff)
             wake_global_executor()
             if self._join(_LAST_GRACE / _ATTEMPTS):
                 return
-        # The callback is stuck outside Python, or catches everything. Leave the thread: it runs no rclpy, so
-        # it does no harm when the interpreter ends.
+        # The callback is stuck outside Python, or catches everything. Leave its thread alone: it runs no rclpy code,
+        # so it does no harm when the interpreter ends.
         frames = sys._current_frames()
         for ident, running in list(self._running.items()):
             error = CallbackBrokenOff().with_traceback(_traceback_of(frames.get(ident)))
             self._on_failure(Failure(error, running.work.entity, running.work.node, goes_on=False))
 
     def _finish(self) -> None:
-        """Destroy nodes and executor; the first thread that calls this does it."""
+        """Destroy the nodes and the executor. The first thread that calls this does it."""
         with self._finish_lock:
             if self._finished:
                 return
@@ -238,7 +241,7 @@ class SpinThreads:
         self._on_end(self._ending)
 
     def _close_unfinished_tasks(self) -> None:
-        """Close coroutines that will not run any more: Python would warn of them on stderr."""
+        """Close coroutines that will not run any more, because Python would warn about them on stderr."""
         for task, *_ in list(getattr(self.executor, "_tasks", ())):
             if not task.executing():
                 with suppress(Exception):
@@ -250,7 +253,7 @@ class SpinThreads:
         try:
             job()
         except CallbackBrokenOff:
-            pass  # The interruption came after the callback had returned.
+            pass  # The interruption came after the callback had already returned.
         finally:
             with self._lock:
                 self._alive -= 1
@@ -265,7 +268,9 @@ class SpinThreads:
             while not self._stop.is_set():
                 try:
                     work = self._next_work()
-                except Exception as error:  # such as InvalidHandle if a node is just being destroyed
+                except (
+                    Exception
+                ) as error:  # for example InvalidHandle, if a node is being destroyed right now
                     failed_waits += 1
                     if failed_waits == _MAX_FAILED_WAITS:
                         self._on_failure(Failure(error, goes_on=False))
@@ -279,7 +284,7 @@ class SpinThreads:
                 self._to_workers.put(None)
 
     def _next_work(self) -> _Work | None:
-        """Return the next callback that is ready; None to look again."""
+        """Return the next callback that is ready; None if there is none at the moment."""
         try:
             if not self._context.ok():
                 raise ExternalShutdownException
@@ -299,7 +304,7 @@ class SpinThreads:
 
     def _run_queued_work(self) -> None:
         while (work := self._to_workers.get()) is not None:
-            # Before it runs, because rclpy offers the task of a callback that awaits something again and again.
+            # Before the task runs, because rclpy offers the task of a callback that awaits something again and again.
             self._queued.discard(work.task)
             if not self._stop.is_set():
                 self._run(work)
@@ -324,13 +329,13 @@ class SpinThreads:
         self._on_failure(Failure(error, entity, node, goes_on=not self._stop.is_set()))
 
     def _is_of_the_end(self, error: BaseException, running: _Running) -> bool:
-        """Return True if a callback failed only because its node was stopped during a healthy call."""
+        """Return True if a callback failed only because its node was stopped while a call was waiting normally."""
         waited = time.monotonic() - running.since
         return self._stop.is_set() and isinstance(error, NodeEndedError) and waited < _LONG_WAIT
 
 
 def raise_in_thread(ident: int, error: type[BaseException]) -> None:
-    """Raise in another thread, at the next line of Python that it runs.
+    """Raise an exception in another thread, at the next line of Python that the thread runs.
 
     Args:
         ident: The id of the thread.

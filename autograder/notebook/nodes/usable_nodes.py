@@ -1,4 +1,4 @@
-"""Check what a student wants to spin, and name the mistake if it cannot be spun."""
+"""Checks what a student wants to spin, and names the mistake if it cannot be spun."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class NotANodeError(PlainlyShownError, TypeError):
 
 
 class UnusableNodeError(PlainlyShownError, NodeEndedError):
-    """The node has ended, or its ``__init__`` did not finish."""
+    """The node was destroyed or ROS was shut down, or the node's ``__init__`` did not finish."""
 
 
 class NodeBusyError(PlainlyShownError, RuntimeError):
@@ -32,12 +32,12 @@ def check_nodes(caller: str, nodes: tuple[Any, ...]) -> None:
     """Check that all nodes can be spun together.
 
     Args:
-        caller: The function that was called, for the messages.
+        caller: The name of the function that the student called, for the messages.
         nodes: The arguments of that call.
 
     Raises:
         NotANodeError: An argument is not a node, or there is none.
-        UnusableNodeError: A node was destroyed, its ROS was shut down, or its ``__init__`` was skipped.
+        UnusableNodeError: A node was destroyed, ROS was shut down after it was made, or its ``__init__`` was skipped.
         NodeBusyError: A node spins already, or is given twice.
     """
     if not nodes:
@@ -59,7 +59,7 @@ def check_threads(threads: Any) -> None:
     """Check that a number of threads is valid.
 
     Raises:
-        SettingError: The number is not a whole number from 1 on.
+        SettingError: The number is not a whole number of at least 1.
     """
     if not isinstance(threads, int) or isinstance(threads, bool) or threads < 1:
         raise SettingError(f"threads must be a whole number from 1 on, not {threads!r}")

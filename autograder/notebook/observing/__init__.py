@@ -1,1 +1,1 @@
-"""Show students the running graph: live pictures, plots and recordings."""
+"""How students see the running graph: live pictures, plots and recordings."""

@@ -1,8 +1,8 @@
-"""Lay out a graph's boxes and arrows in columns, from publisher to subscriber.
+"""Lays out a graph's boxes and arrows in columns, from publishers to subscribers.
 
-igraph decides which arrows close a cycle, which box is in which column, in which order, and how a long arrow
-passes the columns between (Sugiyama's layered drawing). This module computes pixels: each arrow has its own point on
-the edge of a box, so that an arrow that closes a cycle never begins where another one ends.
+igraph decides which arrows close a cycle, in which column and order the boxes are, and how a long arrow passes the
+columns in between (Sugiyama's layered drawing). This module computes pixels. Each arrow has its own point on the edge
+of a box, so that an arrow that closes a cycle never begins where another one ends.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 Point = tuple[float, float]
-"""Pixels along the main direction of the arrows, and across it."""
+"""A position or size in pixels: along the main direction of the arrows, and across it."""
 
 SWEEPS = 100
-"""The number of passes in which igraph reduces crossings of arrows."""
+"""The number of passes in which igraph reduces the crossings of arrows."""
 GAP_BESIDE = 24
-"""Pixels between two boxes of a column."""
+"""Pixels between two boxes in the same column."""
 _PORTS = 0.72
-"""The part of a box's edge, from 0 to 1, on which arrows begin and end."""
+"""The fraction of a box's edge, from 0 to 1, on which arrows begin and end."""
 
 
 @dataclass(frozen=True)
 class Arrow:
-    """A line from box to box: its corners in pixels, the first on the edge of ``start``, the last on ``end``'s."""
+    """A line between two boxes, as corners in pixels: the first on the edge of ``start``, the last on ``end``'s."""
 
     start: str
     end: str
@@ -36,11 +36,11 @@ class Arrow:
 
 @dataclass(frozen=True)
 class GraphLayout:
-    """Boxes and arrows in pixels.
+    """The positions of boxes and arrows, in pixels.
 
     Attributes:
-        centres: The middle of each box.
-        arrows: The arrows, in the order of the input.
+        centres: The center of each box.
+        arrows: The arrows, in the same order as the input.
         extent: The size of the whole layout, along and across.
     """
 
@@ -50,14 +50,14 @@ class GraphLayout:
 
 
 def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: float) -> GraphLayout:
-    """Place boxes and arrows, from 0 on.
+    """Place boxes and arrows, with coordinates from 0.
 
     Args:
         sizes: The size of each box, along and across.
         arrows: Pairs of boxes, from and to. Arrows from a box to itself are left out.
         gap: Pixels between two columns.
     """
-    import igraph  # at the first picture, so that a notebook without a picture need not wait for it
+    import igraph  # imported for the first picture, so that a notebook without a picture need not wait for it
 
     boxes = list(sizes)
     drawn = [(a, b) for a, b in dict.fromkeys(arrows) if a != b]
@@ -65,7 +65,7 @@ def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: 
         return GraphLayout({}, (), (0.0, 0.0))
     number = {box: index for index, box in enumerate(boxes)}
     edges = [(number[a], number[b]) for a, b in drawn]
-    # Reverse these arrows first: igraph 1.0 returns wrong routes for arrows that it reverses itself.
+    # Reverse these arrows first, because igraph 1.0 returns wrong routes for arrows that it reverses itself.
     back = set(igraph.Graph(n=len(boxes), edges=edges, directed=True).feedback_arc_set(method="eades"))
     onward = [(b, a) if index in back else (a, b) for index, (a, b) in enumerate(edges)]
     graph = igraph.Graph(n=len(boxes), edges=onward, directed=True)
@@ -95,7 +95,7 @@ def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: 
 
 
 def _push_apart(places: Sequence[list[float]]) -> None:
-    """Keep boxes of a column at least one unit apart: igraph does not always keep its gap."""
+    """Move boxes in a column at least one unit apart, because igraph does not always keep its gap."""
     last: dict[int, float] = {}
     for place in sorted(places):
         column = round(place[1])
@@ -104,7 +104,7 @@ def _push_apart(places: Sequence[list[float]]) -> None:
 
 
 def _columns(columns: Sequence[int], widths: Sequence[float], gap: float) -> list[float]:
-    """Return the middle of each column, which is as wide as its widest box."""
+    """Return the center of each column, which is as wide as its widest box."""
     middles = []
     edge = 0.0
     for column in range(max(columns) + 1):
@@ -117,7 +117,7 @@ def _columns(columns: Sequence[int], widths: Sequence[float], gap: float) -> lis
 def _with_ports(
     drawn: Sequence[tuple[str, str]], ways: Sequence[list[Point]], sizes: Mapping[str, Point]
 ) -> tuple[Arrow, ...]:
-    """Return the arrows with their ends spread on the edges of boxes, in the order of their directions."""
+    """Return the arrows with their ends spread along the edges of the boxes, sorted by direction."""
     ends: dict[tuple[str, bool], list[tuple[float, int, bool]]] = {}
     for index, ((a, b), way) in enumerate(zip(drawn, ways, strict=True)):
         onward = way[-1][0] > way[0][0]

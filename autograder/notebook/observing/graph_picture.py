@@ -1,7 +1,7 @@
-"""Draw the running graph, once or live: nodes, and the topics, services and actions between them.
+"""Draws the running graph, once or live: nodes, and the topics, services and actions between them.
 
 The picture is SVG, with the same content in words for readers who cannot see it. JupyterLab's theme does not apply
-inside it, so the dark form is the light one with inverted brightness.
+inside the picture, so the dark form is the light one with inverted brightness.
 """
 
 from __future__ import annotations
@@ -23,12 +23,13 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 PERIOD = 1.0
-"""Seconds between two looks at the graph."""
+"""Seconds between two queries of the graph."""
 AGAIN = 10.0
 """Seconds after which a picture with traffic is shown again. The animation of its lines lasts only a little longer, so
-that it stops if the kernel has ended."""
+it stops soon after the kernel has ended.
+"""
 _DARK = '<style>[data-jp-theme-light="false"] .ros-graph { filter: invert(0.93) hue-rotate(180deg); }</style>'
-"""Inverts the brightness and keeps the hues."""
+"""A style that inverts the brightness and keeps the hues."""
 
 # Pixels.
 _LETTER = 7.3
@@ -38,7 +39,8 @@ _GAP_ALONG = 52
 _GAP_ALONG_DOWN = 34
 _MARGIN = 12
 _PAGE = 860
-"""The width of a notebook's column; a wider picture is drawn from top to bottom if that is narrower."""
+"""The width of a notebook's column in pixels. A wider picture is drawn from top to bottom, if it then becomes narrower.
+"""
 
 _STYLE = """
 .ground { fill: #fff; }
@@ -58,10 +60,10 @@ path.flows { stroke: #0b5cad; stroke-dasharray: 7 5; animation: flow 0.8s linear
 
 
 def draw_graph() -> GraphPicture:
-    """Return a picture of the present graph, to be shown at the end of a cell.
+    """Return a picture of the current graph, to be shown at the end of a cell.
 
-    It shows every node of this kernel's ROS domain, including those of other programs. The endpoints of every node
-    (for its log and parameters) are left out.
+    It shows every node of this kernel's ROS domain, including nodes of other programs. It leaves out the endpoints
+    that every node has (for its log and parameters).
     """
     return GraphPicture(read_graph())
 
@@ -70,12 +72,12 @@ def watch_graph(minutes: float = 10.0) -> LivePicture:
     """Show the running graph below this cell, and draw it again as nodes come and go.
 
     Lines with traffic move, and each topic shows its rate. The watch ends by itself after a while, when the cell is
-    run again, when another watch begins, when everything is stopped or ROS is shut down; its last picture stays. To
-    count messages, a hidden node subscribes to the topics, so ``ros2 topic info`` counts one more subscription
-    meanwhile.
+    run again, when another watch begins, when everything is stopped, or when ROS is shut down. The last picture
+    stays. To count messages, a hidden node subscribes to the topics, so meanwhile ``ros2 topic info`` counts one more
+    subscription.
 
     Args:
-        minutes: Limit in minutes.
+        minutes: The number of minutes after which the watch ends.
 
     Raises:
         ValueError: ``minutes`` is not a positive number.
@@ -87,11 +89,11 @@ def watch_graph(minutes: float = 10.0) -> LivePicture:
 
 @dataclass(frozen=True, repr=False)
 class GraphPicture:
-    """A graph that JupyterLab shows as a picture and that reads as text anywhere else.
+    """A picture of the graph. JupyterLab shows it as an image; elsewhere it reads as text.
 
     Attributes:
         graph: The nodes and their connections.
-        rates: Messages per second of each topic, if known.
+        rates: The messages per second of each topic, as far as known.
     """
 
     graph: RosGraph
@@ -164,7 +166,7 @@ class _Label:
 
     @property
     def small_print(self) -> str:
-        """The line below the name."""
+        """The small second line of text in a box."""
         return self.type if self.shape in (ChannelKind.TOPIC, "node") else f"{self.shape}: {self.type}"
 
     @property
@@ -182,7 +184,10 @@ def _channel_key(channel: GraphChannel) -> str:
 
 
 def _arrows(graph: RosGraph) -> list[tuple[str, str]]:
-    """Return the arrows from publishers and clients to channels, and from there to subscribers and servers."""
+    """Return the arrows, in the direction in which messages, requests and goals go.
+
+    An arrow leads from a publisher or client to a topic, service or action, or from there to a subscriber or server.
+    """
     return [
         (_node_key(end.node), _channel_key(end.channel))
         if end.gives
@@ -194,8 +199,8 @@ def _arrows(graph: RosGraph) -> list[tuple[str, str]]:
 class _Drawing:
     """Turns a layout into SVG.
 
-    *Along* is the direction of the arrows, *beside* is across it. Along is to the right, or down if the
-    picture would be too wide.
+    *Along* means the direction of the arrows, *beside* the direction across it. Along is to the right, or downward if
+    the picture would be too wide.
     """
 
     def __init__(
@@ -215,7 +220,7 @@ class _Drawing:
         if self._layout.extent[0] + 2 * _MARGIN > _PAGE:
             sizes = {key: (float(_HEIGHT), label.width) for key, label in labels.items()}
             down = lay_out(sizes, arrows, _GAP_ALONG_DOWN)
-            # A page shrinks a picture that is too wide, and its text with it.
+            # A page shrinks a picture that is too wide, and the text in it as well.
             if down.extent[1] < self._layout.extent[0]:
                 self._down, self._layout = True, down
 

@@ -1,4 +1,4 @@
-"""Keep a picture below a cell up to date, by a thread and a hidden node of its own."""
+"""Keeps a picture below a cell up to date, with a thread and a hidden node of its own."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 GONE = (InvalidHandle, RCLError, NotInitializedException, ExternalShutdownException)
-"""The errors of a node's methods if the node was destroyed or ROS was shut down meanwhile."""
+"""The errors that a node's methods raise if the node was destroyed or ROS was shut down."""
 
 
 def svg_page(width: float, height: float, head: str, style: str, body: str) -> str:
     """Return an SVG picture with its own background, so that it is readable even without its style.
 
     Args:
-        width: Pixels.
-        height: Pixels.
-        head: The elements for its title and, if any, its description.
-        style: CSS.
-        body: The elements in front of the background.
+        width: The width in pixels.
+        height: The height in pixels.
+        head: The SVG elements for the title and, if there is one, the description.
+        style: The CSS of the picture.
+        body: The SVG elements in front of the background.
     """
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" role="img" width="{width:.0f}" height="{height:.0f}" '
@@ -43,12 +43,12 @@ def svg_page(width: float, height: float, head: str, style: str, body: str) -> s
 
 
 def as_image(svg: str, words: str, attributes: str = "") -> str:
-    """Return a picture as an ``img`` with a data URL: JupyterLab removes SVG elements from untrusted output.
+    """Return a picture as an ``img`` with a data URL, because JupyterLab removes SVG elements from untrusted output.
 
     Args:
-        svg: The picture.
+        svg: The picture as SVG.
         words: The picture in words, for readers who cannot see it.
-        attributes: More attributes of the element.
+        attributes: More attributes for the element.
     """
     data = base64.b64encode(svg.encode()).decode()
     more = f" {attributes}" if attributes else ""
@@ -56,12 +56,12 @@ def as_image(svg: str, words: str, attributes: str = "") -> str:
 
 
 class Pictures(Protocol):
-    """The pictures to be shown."""
+    """A source of pictures: a first one, later ones, and a last one."""
 
     name: str
     """The name of the observing node; ROS hides names that begin with an underscore."""
     period: float
-    """Seconds between two looks."""
+    """Seconds between two updates."""
 
     def first(self) -> Any:
         """Return the first picture."""
@@ -70,18 +70,18 @@ class Pictures(Protocol):
         """Return the next picture; None if nothing has changed."""
 
     def last(self) -> Any:
-        """Return the picture that stays at the end; None to keep the shown one."""
+        """Return the picture that stays at the end; None to keep the one that is shown."""
 
 
 class LivePicture:
     """A picture that is kept up to date in the background.
 
-    It ends by itself after a while, when its cell is run again, when another of its kind begins, when everything is
-    stopped or ROS is shut down. The last picture stays.
+    It ends by itself after a while, when its cell is run again, when another picture of its kind begins, when
+    everything is stopped, or when ROS is shut down. The last picture stays.
 
     Args:
         pictures: The pictures to show.
-        minutes: Limit in minutes.
+        minutes: The number of minutes after which updating ends.
 
     Raises:
         ValueError: ``minutes`` is not a positive number.
@@ -104,7 +104,7 @@ class LivePicture:
         return self._thread is not None and self._thread.is_alive()
 
     def start(self) -> None:
-        """Show the first picture and keep it up to date, but not while a class is graded."""
+        """Show the first picture and keep it up to date. While a class is graded, only show it."""
         from IPython.display import display
 
         picture = self._pictures.first()
@@ -122,7 +122,7 @@ class LivePicture:
             self._thread.start()
 
     def stop(self) -> None:
-        """Stop updating; the last picture stays."""
+        """Stop updating. The last picture stays."""
         self._over.set()
         if self._thread is not None:
             self._thread.join()
@@ -140,7 +140,7 @@ class LivePicture:
             self._handle.update(picture)
 
     def __repr__(self) -> str:
-        """The line that a notebook shows if the picture is the last expression of a cell."""
+        """Return the line that a notebook shows if this is the last expression of a cell."""
         if self.running:
             return f"The picture is kept up to date for {self._minutes:g} minutes. .stop() ends it."
         return "The picture is no longer kept up to date: run the cell again."

@@ -1,4 +1,4 @@
-"""Plot a field of a topic's messages over time."""
+"""Plots a field of a topic's messages over time."""
 
 from __future__ import annotations
 
@@ -23,13 +23,15 @@ if TYPE_CHECKING:
     from rclpy.subscription import Subscription
 
 PERIOD = 0.5
-"""Seconds between two pictures if messages have arrived."""
+"""Seconds between two pictures while messages arrive."""
 WINDOW = 30.0
-"""Length of the time axis, in seconds."""
+"""The length of the time axis, in seconds."""
 _LARGEST = 1e300
-"""Larger values, infinity and NaN are not drawn: a laser scan has ``inf`` in directions without an obstacle."""
+"""Larger values, infinity and NaN are not drawn. A laser scan, for example, has ``inf`` in directions without an
+obstacle.
+"""
 _MOST = 3_000
-"""Limit of the points in a plot."""
+"""The maximum number of points in a plot."""
 _WIDTH, _HEIGHT, _LEFT, _FOOT, _HEAD = 720, 220, 70, 24, 26
 
 _STYLE = """
@@ -43,17 +45,17 @@ circle { fill: #0b5cad; }
 
 
 def plot(topic: str, field: str, minutes: float = 10.0) -> LivePicture:
-    """Draw a number of each message of a topic over time, below this cell, as messages arrive.
+    """Draw one number of each message on a topic over time, below this cell, while messages arrive.
 
-    Like ``watch_graph``, it ends by itself; the last picture stays.
+    Like ``watch_graph``, the plot ends by itself, and the last picture stays.
 
     Args:
         topic: The name of the topic, such as ``"/odom"``.
         field: The path of the number in a message, such as ``"data"``, ``"pose.pose.position.x"`` or ``"ranges[0]"``.
-        minutes: Limit in minutes.
+        minutes: The number of minutes after which the plot ends.
 
     Raises:
-        ValueError: ``minutes`` is not a positive number, or ``field`` is not written like a field.
+        ValueError: ``minutes`` is not a positive number, or ``field`` is not a valid path.
     """
     if not _FIELD.fullmatch(field):
         raise ValueError(
@@ -72,7 +74,7 @@ def number_in(message: Any, field: str) -> float:
     """Return the number in a field of a message.
 
     Raises:
-        LookupError: The field does not exist or is not a number; the error lists what exists.
+        LookupError: The field does not exist or is not a number. The message lists the fields that exist.
     """
     value, way = message, list[str]()
     for name, index in _STEP.findall(field):
@@ -102,7 +104,7 @@ def number_in(message: Any, field: str) -> float:
 
 
 def _fields(value: Any) -> Mapping[str, str]:
-    """Return the fields of a message and their types; none if the value is not a message."""
+    """Return the fields of a message with their types; none if the value is not a message."""
     found: Mapping[str, str] = getattr(value, "get_fields_and_field_types", dict)()
     return found
 
@@ -113,8 +115,8 @@ class PlotPicture:
 
     Attributes:
         title: The name of the plotted field.
-        points: Pairs of time and value, in order; times are negative seconds before now.
-        note: Why nothing can be drawn; otherwise empty.
+        points: Pairs of time and value, sorted by time. Times are in seconds before now, as negative numbers.
+        note: The reason why nothing can be drawn; empty if a curve is drawn.
     """
 
     title: str
@@ -146,7 +148,7 @@ class PlotPicture:
         return [(t, value) for t, value in self.points if abs(value) <= _LARGEST]
 
     def _words(self) -> str:
-        """Return the text to show instead of a curve; otherwise empty."""
+        """Return the text to show instead of a curve; empty if there is a curve."""
         if not self.points:
             return self.note or "nothing has arrived yet"
         return self.note or (
@@ -189,7 +191,7 @@ class PlotPicture:
 
 class _Plots:
     def __init__(self, topic: str, field: str) -> None:
-        # A different name for each curve: a new background ends an earlier one of the same name.
+        # Each curve has a name of its own, because a new background ends an earlier one with the same name.
         self.name = f"_plot_{zlib.crc32(f'{topic} {field}'.encode()):x}"
         self.period = PERIOD
         self._topic = topic

@@ -1,6 +1,6 @@
-"""Record messages as MCAP, the format that ``ros2 bag``, Foxglove and Python programs open.
+"""Records messages as MCAP, the format that ``ros2 bag``, Foxglove and Python programs can open.
 
-Messages are written as received, in CDR, with the definition of their type, so any type can be recorded.
+Messages are written as received, in CDR, with the definition of their type. So any type can be recorded.
 """
 
 from __future__ import annotations
@@ -28,21 +28,21 @@ if TYPE_CHECKING:
     from rclpy.subscription import Subscription
 
 LOOK_AGAIN = 0.05
-"""Seconds between two looks for new messages and new topics."""
+"""Seconds between two checks for new messages and new topics."""
 DEPTH = 1000
-"""Messages of a topic that may arrive between two looks."""
+"""The number of messages on a topic that may arrive between two checks without any being lost."""
 _EVERY_NODE = ("/rosout", "/parameter_events")
 
 
 @dataclass(frozen=True)
 class Recorded:
-    """One message of a recording.
+    """A message of a recording.
 
     Attributes:
-        t: Unix time at which the message was sent, in seconds.
+        t: The Unix time in seconds at which the message was sent.
         topic: The name of the topic.
-        type: The type of the message, such as ``"std_msgs/msg/String"``.
-        message: The message; its attributes are the fields.
+        type: The name of the message type, such as ``"std_msgs/msg/String"``.
+        message: The message. Its attributes are the fields.
     """
 
     t: float
@@ -59,12 +59,12 @@ def recording(path: str | os.PathLike[str], topics: Collection[str] = ()) -> Rec
         with recording("hello.mcap"), spinning(TalkerNode()):
             time.sleep(3)
 
-    A topic is recorded once its publisher is discovered, a few hundredths of a second after the publisher was made.
-    The file is complete at the end of the block, however that ends.
+    A topic is recorded from the moment its publisher is discovered, a few hundredths of a second after the publisher
+    was made. When the block ends, for whatever reason, the file is complete.
 
     Args:
-        path: The file; an existing one is overwritten.
-        topics: The topics to record; by default all except those of every node (for its log and parameters).
+        path: The file to write. An existing file is overwritten.
+        topics: The topics to record; by default all except those that every node has (for its log and parameters).
 
     Raises:
         ValueError: ``path`` does not end in ``.mcap``.
@@ -77,10 +77,10 @@ def recording(path: str | os.PathLike[str], topics: Collection[str] = ()) -> Rec
 
 
 class Recording:
-    """A recording, to be used in a ``with`` statement. Made by ``recording``.
+    """A recording, for use in a ``with`` statement. ``recording`` makes it.
 
     Attributes:
-        counts: How many messages of each topic were recorded.
+        counts: The number of recorded messages of each topic.
     """
 
     def __init__(self, path: Path, topics: Collection[str]) -> None:
@@ -95,7 +95,7 @@ class Recording:
         """Start recording."""
         self._node = hidden_node(
             "_recorder"
-        )  # first, so that without ROS no existing recording is overwritten
+        )  # done first, so that without ROS no existing recording is overwritten
         try:
             self._file: IO[bytes] = self._path.open("wb")
         except OSError:
@@ -108,19 +108,21 @@ class Recording:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """End the recording; the file is complete."""
+        """End the recording. The file is then complete."""
         self._over.set()
         self._thread.join()
         self._messages.close()
         self._file.close()
 
     def __repr__(self) -> str:
-        """Return the recording in one line."""
+        """Return one line that describes the recording."""
         listed = ", ".join(f"{count} on {topic}" for topic, count in sorted(self.counts.items()))
         return f"{self._path}: {listed or 'no messages'}"
 
     def _record(self) -> None:
-        with contextlib.suppress(*GONE):  # ROS was shut down, or everything was stopped: the recording stays
+        with contextlib.suppress(
+            *GONE
+        ):  # ROS was shut down, or everything was stopped: the recording so far stays
             while not self._over.wait(LOOK_AGAIN):
                 self._take()
                 self._look_for_topics()
@@ -128,7 +130,7 @@ class Recording:
             self._node.destroy_node()
 
     def _take(self) -> None:
-        """Write the messages that have arrived since the last time."""
+        """Write the messages that have arrived since the last check."""
         for channel, subscription in self._subscriptions.items():
             with subscription.handle:
                 while (taken := subscription.handle.take_message(subscription.msg_type, True)) is not None:
@@ -151,7 +153,7 @@ class Recording:
         try:
             kind, text = message_class(type_name), definition(type_name)
         except LookupError:
-            return  # this environment does not have the package of the type
+            return  # the package that defines the type is not installed here
         channel = self._messages.channel(topic, type_name, text, about={"offered_qos_profiles": ""})
         self.counts[topic] = 0
         self._subscriptions[channel] = self._node.create_subscription(

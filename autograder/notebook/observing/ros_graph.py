@@ -1,4 +1,4 @@
-"""Read the running graph as plain data: its nodes, and what connects them."""
+"""Reads the running graph as plain data: its nodes, and what connects them."""
 
 from __future__ import annotations
 
@@ -21,14 +21,16 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 READER = "_graph_reader"
-"""The name of the observing node; ROS hides names that begin with an underscore."""
+"""The name of the observing node. ROS hides names that begin with an underscore."""
 
 PATIENCE = 2.0
-"""Seconds to wait for two looks that agree; after that the last one counts."""
+"""Seconds to wait for two successive readings that are equal; after that, the last reading is used."""
 SETTLING = 0.05
-"""Seconds between two looks that must agree: a node's endpoints are announced one after the other."""
+"""Seconds between two readings that must be equal. Waiting is needed because a node's endpoints are announced one by
+one.
+"""
 
-# Every node has these, whatever it does (rclpy/node.py, parameter_service.py).
+# Every node has these endpoints, whatever it does (rclpy/node.py, parameter_service.py).
 _EVERY_TOPIC = {"/rosout", "/parameter_events"}
 _EVERY_SERVICE = {
     "describe_parameters",
@@ -51,7 +53,7 @@ class ChannelKind(StrEnum):
 
 @dataclass(frozen=True, order=True)
 class GraphChannel:
-    """A topic, a service or an action."""
+    """A topic, service or action, with its type."""
 
     kind: ChannelKind
     name: str
@@ -60,11 +62,11 @@ class GraphChannel:
 
 @dataclass(frozen=True, order=True)
 class End:
-    """A node's endpoint of a channel.
+    """A node's end of a channel, such as a publisher.
 
     Attributes:
-        node: The node's full name, such as ``/talker``.
-        channel: The channel of the endpoint.
+        node: The full name of the node, such as ``/talker``.
+        channel: The topic, service or action.
         gives: True if the node is the publisher or client; False if it is the subscriber or server.
     """
 
@@ -75,14 +77,14 @@ class End:
 
 @dataclass(frozen=True)
 class RosGraph:
-    """The graph at one moment, each part sorted by name."""
+    """The graph at one moment. Each part is sorted by name."""
 
     nodes: tuple[str, ...]
     ends: tuple[End, ...]
 
     @property
     def channels(self) -> tuple[GraphChannel, ...]:
-        """The topics, services and actions that have an endpoint."""
+        """The topics, services and actions that have at least one endpoint."""
         return tuple(sorted({end.channel for end in self.ends}))
 
     def sentences(self) -> list[str]:
@@ -109,7 +111,7 @@ _VERBS = {
 
 
 def read_graph() -> RosGraph:
-    """Read the graph of this kernel's ROS domain until two looks agree, or for at most :data:`PATIENCE` seconds."""
+    """Read the graph of this kernel's ROS domain, until two readings are equal or :data:`PATIENCE` seconds are over."""
     deadline = time.monotonic() + PATIENCE
     with _reader() as node:
         seen = look(node)
@@ -135,7 +137,7 @@ def hidden_node(name: str) -> Node:
 
 
 def look(node: Node) -> RosGraph:
-    """Return the graph as one node knows it now, without hidden nodes."""
+    """Return the graph as this node knows it now, without hidden nodes."""
     pairs = [
         (name, space) for name, space in node.get_node_names_and_namespaces() if not name.startswith("_")
     ]
@@ -150,13 +152,13 @@ def _full(name: str, space: str) -> str:
 
 
 def _topic_ends(node: Node) -> Iterator[End]:
-    """Yield the publishers and subscribers of all topics.
+    """The query is by topic, because a query by node finds only one of two nodes that have the same name.
 
     They are asked for by topic: if two nodes have the same name, asking by the node's name returns only one of
     them only.
     """
     for topic, types in node.get_topic_names_and_types():
-        # A topic of every node, or of an action, is not shown.
+        # Topics that every node has, and an action's own topics, are not shown.
         if not list(_channels(ChannelKind.TOPIC, [(topic, types)])):
             continue
         for gives, infos in (
@@ -193,7 +195,7 @@ def _channels(kind: ChannelKind, names_and_types: Iterable[tuple[str, list[str]]
             if kind is ChannelKind.TOPIC
             else kind is ChannelKind.SERVICE and last in _EVERY_SERVICE
         )
-        # An action's own topics and services have names that begin with <action>/_action.
+        # The names of an action's own topics and services begin with <action>/_action.
         hidden = any(part.startswith("_") for part in name.split("/"))
         if not common and not hidden:
             yield from (GraphChannel(kind, name, type_name) for type_name in types)

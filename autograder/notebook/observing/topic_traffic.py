@@ -1,4 +1,4 @@
-"""The traffic of topics, counted without waking up for each of them."""
+"""The traffic on topics, counted without waking up for each message."""
 
 from __future__ import annotations
 
@@ -18,11 +18,13 @@ if TYPE_CHECKING:
     from rclpy.subscription import Subscription
 
 MOST = 200
-"""Messages of a topic that are kept until the next look; of a faster topic it is known that it is at least as fast."""
+"""The maximum number of messages on a topic that are kept until the next look. For a faster topic the rate is only a
+lower bound.
+"""
 ANY = QoSProfile(
     depth=MOST,
     history=HistoryPolicy.KEEP_LAST,
-    # The least demanding settings match every publisher.
+    # The least demanding QoS matches every publisher.
     reliability=ReliabilityPolicy.BEST_EFFORT,
     durability=DurabilityPolicy.VOLATILE,
 )
@@ -35,14 +37,14 @@ class _Counted:
 
 
 class TopicTraffic:
-    """Counts on a node that is not spun: what has arrived waits in the middleware until the next look."""
+    """Counts messages with a node that is not spun: messages wait in the middleware until the next look."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
         self._counted: dict[GraphChannel, _Counted | None] = {}
 
     def look(self, channels: Iterable[GraphChannel]) -> dict[GraphChannel, float]:
-        """Messages in a second on each of these topics since the last look; those that are new are left out."""
+        """Return the messages per second on each of these topics since the last look. New topics are left out."""
         wanted = {channel for channel in channels if channel.kind is ChannelKind.TOPIC}
         for channel in self._counted.keys() - wanted:
             self._forget(channel)
@@ -71,10 +73,10 @@ class TopicTraffic:
 
 
 def message_class(type_name: str) -> Any:
-    """The class of messages of a type such as ``"std_msgs/msg/String"``.
+    """Return the class of a message type such as ``"std_msgs/msg/String"``.
 
     Raises:
-        LookupError: This environment has no such type.
+        LookupError: This environment does not have the type.
     """
     try:
         package, kind, name = type_name.split("/")
@@ -84,7 +86,7 @@ def message_class(type_name: str) -> Any:
 
 
 def _taken(subscription: Subscription) -> int:
-    """The number of messages that had arrived."""
+    """Take the messages that have arrived, and return their number."""
     count = 0
     with subscription.handle:
         while count < MOST and subscription.handle.take_message(subscription.msg_type, True) is not None:
@@ -93,5 +95,5 @@ def _taken(subscription: Subscription) -> int:
 
 
 def _rounded(rate: float) -> float:
-    """To what the eye reads: a steady rate stays the same from look to look."""
+    """Return the rate, rounded so much that a steady rate looks the same each time."""
     return round(rate) if rate >= 5 else round(rate * 2) / 2

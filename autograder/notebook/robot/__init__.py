@@ -9,11 +9,11 @@ if TYPE_CHECKING:
 
 
 def start_robot() -> LiveRobot:
-    """Start a small robot and show it, alive, below this cell.
+    """Start a small robot, and show it live below this cell.
 
-    It is a node, ``/robot``, that subscribes to ``/cmd_vel``, publishes on ``/odom`` and ``/scan``, and offers the
-    services ``/reset`` and ``/lamp`` and the action ``/walk_to``. It stops if no command arrives for a second. A
-    second run of the cell starts it again; it ends with ``.stop()`` or with the kernel. Its picture is kept up to date
+    The robot is a node, ``/robot``, that subscribes to ``/cmd_vel``, publishes on ``/odom`` and ``/scan``, and offers
+    the services ``/reset`` and ``/lamp`` and the action ``/walk_to``. It stops if no command arrives for a second.
+    Running the cell again restarts it; it ends with ``.stop()`` or with the kernel. Its picture is kept up to date
     for half an hour; ``.show()`` shows it again.
     """
     # Imported only by notebooks that start the robot, because it needs many message types.

@@ -1,4 +1,4 @@
-"""Drive the robot by keyboard: JupyterLab sends arrow keys here, and a node publishes them as commands."""
+"""Drives the robot by keyboard: JupyterLab sends the arrow keys here, and a node publishes them as commands."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 NAME = "keyboard"
 """The name of the node; ``draw_graph`` shows it next to the robot."""
 _DISCOVERY = 1.0
-"""Seconds after which a listening robot would have been discovered."""
+"""Seconds after which a robot that listens would have been discovered."""
 
 
 @dataclass(frozen=True)
@@ -43,11 +43,11 @@ def drive(forward: float, turn: float) -> str:
     """Publish one command on ``/cmd_vel``.
 
     Args:
-        forward: Meters per second.
-        turn: Radians per second, to the left.
+        forward: Speed in meters per second.
+        turn: Turning speed in radians per second, to the left.
 
     Returns:
-        What to tell the student if no robot can be driven; otherwise empty.
+        A message for the student if no robot can be driven; otherwise empty.
     """
     global _keyboard
     if not rclpy.ok():

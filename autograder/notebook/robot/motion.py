@@ -1,4 +1,4 @@
-"""Compute the motion of the robot in its two rooms: it turns, rolls forward, and stops at a wall."""
+"""The motion of the robot in its two rooms: it turns, rolls forward, and stops at a wall."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import math
 from dataclasses import dataclass, replace
 
 Point = tuple[float, float]
-"""Meters: x to the right, y up; (0, 0) is the lower left corner."""
+"""A position in meters, x to the right and y up. (0, 0) is the lower left corner."""
 TICK = 0.1
-"""Seconds between two steps, and between two messages on ``/odom``."""
+"""Seconds between two simulation steps, and between two messages on ``/odom``."""
 RADIUS = 0.2
-"""Metres."""
+"""The radius of the robot in meters."""
 FASTEST = 1.0
-"""Limit of the speed, in meters per second."""
+"""The maximum speed in meters per second."""
 FASTEST_TURN = 2.0
-"""Radians per second."""
+"""The maximum turning speed in radians per second."""
 _STEP = 0.05
-"""Distance between two tests for a wall, in meters."""
+"""The distance in meters between two tests for a wall."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Wall:
     end: Point
 
     def distance_to(self, point: Point) -> float:
-        """Return the meters from a point to the nearest point of this wall."""
+        """Return the distance in meters from a point to the nearest point of this wall."""
         (x1, y1), (x2, y2) = self.start, self.end
         along = ((point[0] - x1) * (x2 - x1) + (point[1] - y1) * (y2 - y1)) / math.dist(
             self.start, self.end
@@ -36,7 +36,7 @@ class Wall:
         return math.dist(point, (x1 + nearest * (x2 - x1), y1 + nearest * (y2 - y1)))
 
     def distance_along(self, origin: Point, direction: Point) -> float:
-        """Return the meters from a point in a direction (of length 1) to this wall; infinity if the ray misses it."""
+        """Return the distance in meters from a point to this wall in a direction of length 1; infinity for a miss."""
         wall_x, wall_y = self.end[0] - self.start[0], self.end[1] - self.start[1]
         across = direction[0] * wall_y - direction[1] * wall_x
         if abs(across) < 1e-12:
@@ -52,10 +52,10 @@ class Walls:
     """The walls around the robot.
 
     Attributes:
-        width: Metres.
-        height: Metres.
-        walls: The outer walls and those inside.
-        door: The middle of the doorway.
+        width: The width in meters.
+        height: The height in meters.
+        walls: The outer and the inner walls.
+        door: The center of the doorway.
     """
 
     width: float
@@ -64,11 +64,11 @@ class Walls:
     door: Point
 
     def clearance(self, point: Point) -> float:
-        """Return the meters from a point to the nearest wall."""
+        """Return the distance in meters from a point to the nearest wall."""
         return min(wall.distance_to(point) for wall in self.walls)
 
     def ranges(self, origin: Point, angles: tuple[float, ...]) -> list[float]:
-        """Return the meters from a point to the first wall at each angle, in radians; 0 is the x direction."""
+        """Return the distance in meters from a point to the first wall at each angle (in radians from the x axis)."""
         rays = [(math.cos(angle), math.sin(angle)) for angle in angles]
         return [min(wall.distance_along(origin, ray) for wall in self.walls) for ray in rays]
 
@@ -81,12 +81,12 @@ def _two_rooms() -> Walls:
 
 
 ROOM = _two_rooms()
-"""Six by four meters, with a wall at x = 4 m and a doorway of 1.2 m in its middle."""
+"""The robot's two rooms: six by four meters, with a wall at x = 4 m that has a doorway of 1.2 m in its middle."""
 
 
 @dataclass(frozen=True)
 class Pose:
-    """Position of the robot in meters, and heading in radians to the left of the x axis."""
+    """The position of the robot in meters, and its heading in radians to the left of the x axis."""
 
     x: float
     y: float
@@ -99,7 +99,7 @@ class Pose:
 
 
 START = Pose(1.0, 2.0, 0.0)
-"""The robot faces the door."""
+"""The pose at the start, in which the robot faces the door."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ class Velocity:
     turn: float = 0.0
 
     def within_limits(self) -> Velocity:
-        """Return the command within the motors' limits; no movement if a value is not a number."""
+        """Return the command within the limits of the motors; zero if a value is not a number."""
         return Velocity(_limited(self.forward, FASTEST), _limited(self.turn, FASTEST_TURN))
 
 
@@ -123,11 +123,11 @@ def _limited(value: float, limit: float) -> float:
 
 @dataclass(frozen=True)
 class Moved:
-    """One step of a movement.
+    """The result of one step of movement.
 
     Attributes:
-        pose: The new pose.
-        velocity: The real velocity: zero forward if a wall is in the way.
+        pose: The pose after the step.
+        velocity: The actual velocity: zero forward if a wall is in the way.
         bumped: True if a wall is in the way.
     """
 
@@ -137,13 +137,13 @@ class Moved:
 
 
 def move(pose: Pose, velocity: Velocity, seconds: float, room: Walls) -> Moved:
-    """Return the result of turning and rolling for some seconds, at most to the first wall."""
+    """Return where the robot is after turning and rolling for some seconds, at most up to the first wall."""
     speed = velocity.within_limits()
     pieces = max(1, math.ceil(abs(speed.forward) * seconds / _STEP))
     here = pose
     for _ in range(pieces):
         turned = here.heading + speed.turn * seconds / pieces
-        # Half of the turn before, half of it after: a circle stays a circle.
+        # Use the heading halfway between before and after the turn, so that a circle stays a circle.
         way, heading = speed.forward * seconds / pieces, (here.heading + turned) / 2
         there = Pose(here.x + way * math.cos(heading), here.y + way * math.sin(heading), _wrapped(turned))
         clearance = room.clearance(there.point)
@@ -154,7 +154,7 @@ def move(pose: Pose, velocity: Velocity, seconds: float, room: Walls) -> Moved:
 
 
 def towards(pose: Pose, goal: tuple[float, float]) -> Velocity:
-    """Return the next command on the way to a point: turn first, then roll."""
+    """Return the next command on the way to a point: first turn, then roll."""
     off = _wrapped(math.atan2(goal[1] - pose.y, goal[0] - pose.x) - pose.heading)
     if abs(off) > 0.3:
         return Velocity(0.0, math.copysign(1.2, off))

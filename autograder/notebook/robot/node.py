@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from autograder.notebook.robot.scenes import Scene
 
 SCAN_EVERY = 5
-"""Steps between two messages on ``/scan``."""
+"""The number of steps between two messages on ``/scan``."""
 OBEYS_FOR = 1.0
-"""Seconds for which a command is valid: the robot stops if it is not repeated."""
+"""Seconds for which a command is valid; if no other comes by then, the robot stops."""
 RAYS = 36
-"""Distances in a scan, all around the robot."""
+"""The number of distances in a scan, all around the robot."""
 FARTHEST = 10.0
-"""Range of the laser, in meters."""
+"""The range of the laser, in meters."""
 
 
 @dataclass(frozen=True)
@@ -36,11 +36,11 @@ class RobotState:
 
     Attributes:
         pose: The pose of the robot.
-        velocity: The velocity of the robot.
+        velocity: The current velocity of the robot.
         bumped: True if a wall is in its way.
         lamp: True if its lamp is on.
-        ranges: Meters to the walls all around, from straight ahead to the left.
-        says: The text of its speech bubble; empty for none.
+        ranges: The distances to the walls in meters, all around, from straight ahead to the left.
+        says: The text of the speech bubble; empty if it has none.
     """
 
     pose: Pose = START
@@ -73,11 +73,11 @@ class RobotNode(Node):
 
     @property
     def state(self) -> RobotState:
-        """The present state; safe from any thread."""
+        """The current state. Any thread may read it."""
         return self._state
 
     def play(self, scene: Scene) -> None:
-        """Let a scene drive the robot until another command arrives; it replaces the earlier scene."""
+        """Let a scene drive the robot, in place of an earlier scene, until another command arrives."""
         self._scene = scene
 
     @property

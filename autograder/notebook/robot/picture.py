@@ -1,4 +1,4 @@
-"""Draw the robot in its two rooms: SVG in an ``img``, as all live pictures, with the same in words."""
+"""Draws the robot in its two rooms, as SVG in an ``img`` like all live pictures, and describes it in words."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SCALE = 75
 _MARGIN = 14
 _FOOT = 26
 _LETTER, _PADDING, _BUBBLE = 7.85, 10, 24
-"""Pixels: width of a letter, space beside the text, height of the bubble."""
+"""Sizes in pixels: the width of a letter, the space beside the text, the height of the bubble."""
 
 _STYLE = """
 .ground { fill: #fff; }
@@ -45,10 +45,10 @@ class RobotPicture:
 
     Attributes:
         state: The state of the robot.
-        trail: Its earlier positions, oldest first.
-        before: Its pose in the picture before, from which it glides; None if it stands still.
-        glide: Seconds of that animation.
-        robots: The number of robots of this name on the ROS domain.
+        trail: The earlier positions, the oldest first.
+        before: The pose in the previous picture, from which the robot glides; None if it stands still.
+        glide: The duration of that animation in seconds.
+        robots: The number of robots with this name on the ROS domain.
     """
 
     state: RobotState
@@ -73,7 +73,7 @@ class RobotPicture:
         )
 
     def _others(self) -> str:
-        """A warning if other robots have the same name; empty otherwise."""
+        """Return a warning if other robots have the same name; otherwise an empty text."""
         if self.robots < 2:
             return ""
         return (
@@ -83,7 +83,7 @@ class RobotPicture:
 
     def _repr_html_(self) -> str:
         width, height = _page()
-        # Decoded before it is shown: the picture before it stays until then, so nothing flickers.
+        # The new picture is decoded before it is shown. Until then the old one stays, so nothing flickers.
         attributes = (
             f'width="{width}" height="{height}" decoding="sync" style="max-width: 100%; height: auto"'
         )
@@ -136,7 +136,7 @@ class RobotPicture:
         )
 
     def _bubble(self) -> str:
-        """Return its speech bubble, above it or, if there is no space, below it."""
+        """Return the speech bubble, above the robot or, if there is no space, below it."""
         if not self.state.says:
             return ""
         x, y = _at(self.state.pose.point)
@@ -183,12 +183,12 @@ def _line(kind: str, start: Point, end: Point) -> str:
 
 
 def _placed(pose: Pose, length: str, angle: str = "") -> str:
-    """Return a transform; an SVG attribute has no units, CSS has."""
+    """Return a transform that places the robot. An SVG attribute has no units; for CSS, pass them."""
     x, y = _at(pose.point)
     return f"translate({x}{length}, {y}{length}) rotate({-math.degrees(pose.heading):.1f}{angle})"
 
 
 def _unwound(before: Pose, state: RobotState) -> Pose:
-    """Return the earlier pose with a heading at most half a turn from the new one: the robot turns the short way."""
+    """Return the earlier pose with its heading changed by full turns, so that the robot turns the short way."""
     turned = math.remainder(state.pose.heading - before.heading, math.tau)
     return replace(state.pose, heading=before.heading + turned)

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from autograder.notebook.robot.motion import Pose
 
 SAYS_EVERY = 5
-"""Steps between two messages about its position."""
+"""The number of steps between two messages about the position."""
 METRES = 0.1
-"""Radius of the arc for the number 1."""
+"""The radius in meters of the arc for the number 1."""
 _TOUR = ((2.5, 2.4), (3.6, 2.0))
-"""To the door."""
+"""The points, in meters, on the way to the door."""
 _QUARTER = math.pi / 2
 
 
@@ -30,7 +30,7 @@ class Tour:
 
     Args:
         node: The robot.
-        topic: Has the type ``std_msgs/msg/String``.
+        topic: The topic for the reports, of type ``std_msgs/msg/String``.
     """
 
     def __init__(self, node: Node, topic: str) -> None:
@@ -41,7 +41,7 @@ class Tour:
 
     @property
     def is_over(self) -> bool:
-        """True if the robot has arrived, or a wall was in the way."""
+        """True if the robot has arrived, or a wall stopped it."""
         return not self._way
 
     def next(self, pose: Pose, bumped: bool) -> Velocity | None:
@@ -61,14 +61,14 @@ class Tour:
 
 
 class Spiral:
-    """The robot walks a quarter of a circle for each number that an action's feedback brings.
+    """The robot walks a quarter of a circle for each number in an action's feedback.
 
-    For the Fibonacci sequence that is the Fibonacci spiral: each radius is the sum of the two before.
+    For the Fibonacci sequence this is the Fibonacci spiral: each radius is the sum of the two before.
 
     Args:
         node: The robot.
-        action_type: Has a list of numbers as the first field of its feedback.
-        name: Of the action.
+        action_type: The type of the action. The first field of its feedback must be a list of numbers.
+        name: The name of the action.
 
     Raises:
         TypeError: The feedback does not begin with a list.
@@ -85,7 +85,7 @@ class Spiral:
         self._left: deque[int] = deque()
         self._arc, self._steps = STILL, 0
         self.says = ""
-        # The topic and its type are those of design.ros2.org/articles/actions.html ("Feedback Topic").
+        # The name and type of the topic are defined in design.ros2.org/articles/actions.html ("Feedback Topic").
         node.create_subscription(
             action_type.Impl.FeedbackMessage,
             f"{name}/_action/feedback",
@@ -122,7 +122,7 @@ class Spiral:
 
 
 def _quarter_circle(radius: float) -> tuple[Velocity, int]:
-    """Return the velocity on a quarter circle to the left, within the motors' limits, and its number of steps."""
+    """Return the velocity for a quarter circle to the left, within the motors' limits, and the number of steps."""
     if radius <= 0:
         return STILL, 0
     speed = min(FASTEST, FASTEST_TURN * radius)
@@ -132,4 +132,4 @@ def _quarter_circle(radius: float) -> tuple[Velocity, int]:
 
 
 Scene = Tour | Spiral
-"""Drives the robot, step by step, until it is over."""
+"""A scene: drives the robot step by step until the scene is over."""

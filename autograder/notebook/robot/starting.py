@@ -1,4 +1,4 @@
-"""Start and stop the robot and its picture."""
+"""Starts and stops the robot and its picture."""
 
 from __future__ import annotations
 
@@ -30,23 +30,24 @@ MINUTES = 30.0
 PERIOD = 0.2
 """Seconds between two pictures if the robot has moved."""
 _TRAIL = 150
-"""Limit of the positions in the trail."""
+"""The maximum number of positions in the trail."""
 _TRAIL_STEP = 0.08
-"""Distance of two positions in the trail, in meters."""
+"""The distance between two positions in the trail, in meters."""
 _BUTTON = (
     '<button type="button" class="ros2-course-drive" hidden="hidden" data-commandlinker-command="ros2-course:drive" '
     'data-commandlinker-args="{}">Drive with the arrow keys</button>'
 )
-"""Shown if JupyterLab has the command."""
+"""The button's HTML; the button is visible only if JupyterLab has the command."""
 LONGEST_WAIT = 20.0
-"""Seconds that a cell waits for the end of a scene."""
+"""The maximum time in seconds for which a cell waits until a scene has ended."""
 _LOOK_EVERY = 0.05
 _TELEPORT = 0.5
-"""Meters that the robot cannot roll between two pictures: after such a jump it was reset to the start."""
+"""Meters: if the robot moved farther than this between two pictures, it cannot have rolled but was reset to the start.
+"""
 
 
 class LiveRobot:
-    """A robot that runs in the background. Made by ``start_robot``."""
+    """A robot that runs in the background. ``start_robot`` makes it."""
 
     def __init__(self) -> None:
         start_ros()
@@ -66,21 +67,21 @@ class LiveRobot:
         return self._node.state
 
     def show(self) -> None:
-        """Show the robot below this cell. An earlier picture stops and stays as it is."""
+        """Show the robot below this cell. An earlier picture is no longer updated, but stays."""
         if self._picture is not None:
             self._picture.stop()
         self._picture = LivePicture(_RobotPictures(self._node), MINUTES)
         self._picture.start()
         if self._picture.running:
-            # Below the picture and not part of it, so that it is not drawn again while it is clicked.
+            # The button is below the picture and not part of it, so that it is not redrawn while a student clicks it.
             display({"text/html": _BUTTON, "text/plain": ""}, raw=True)  # type: ignore[no-untyped-call]
 
     def talk(self, topic: str) -> None:
-        """Roll to the door, and report the position twice a second on a topic of strings."""
+        """Make the robot roll to the door, and report its position twice a second on a topic of strings."""
         self._node.play(Tour(self._node, topic))
 
     def walk_numbers(self, action_type: Any, name: str) -> None:
-        """Walk a quarter of a circle for each number that an action's feedback brings from now on."""
+        """Make the robot walk a quarter of a circle for each number in an action's feedback from now on."""
         self._node.play(Spiral(self._node, action_type, name))
 
     def wait(self) -> None:
@@ -90,13 +91,13 @@ class LiveRobot:
             time.sleep(_LOOK_EVERY)
 
     def stop(self) -> None:
-        """End the robot and its picture. Calling it again does no harm."""
+        """End the robot and its picture. A second call does nothing."""
         self._background.stop()
         if self._picture is not None:
             self._picture.stop()
 
     def __repr__(self) -> str:
-        """One line for the end of a cell."""
+        """Return one line, shown if this is the last expression of a cell."""
         if self.running:
             return "The robot runs in the background: it listens to /cmd_vel. .stop() ends it."
         return "The robot has stopped: run the cell again that started it."
@@ -131,7 +132,7 @@ class _RobotPictures:
         return RobotPicture(self._shown, tuple(self._trail))
 
     def _follow(self) -> bool:
-        """Record the present position. Return True if it is too far from the last one to have rolled there."""
+        """Record the current position. Return True if the robot cannot have rolled there from the last one."""
         state, before = self._robot.state, self._shown
         far = math.dist(state.pose.point, before.pose.point) > _TELEPORT
         if far:

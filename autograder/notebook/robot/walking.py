@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from autograder.notebook.robot.motion import Pose, Velocity
 
 NEAR_ENOUGH = 0.1
-"""Distance to the goal, in meters, at which the robot has arrived."""
+"""The distance to the goal, in meters, at which the robot counts as arrived."""
 TRIES = 5
-"""Steps with a wall in the way after which the robot gives up."""
+"""The number of steps with a wall in the way after which the robot gives up."""
 FEEDBACK_EVERY = 5
-"""Steps between two feedback messages."""
+"""The number of steps between two feedback messages."""
 
 
 class _Ending(Enum):
@@ -42,7 +42,7 @@ class _Walk:
 
 
 class Walking:
-    """Serves the action. There is one walk at a time: a new goal replaces the earlier one.
+    """Serves the action. Only one walk happens at a time: a new goal replaces the earlier one.
 
     Args:
         node: The robot.
@@ -62,11 +62,11 @@ class Walking:
         )
 
     def next(self, pose: Pose, bumped: bool) -> Velocity | None:
-        """Return the command for the next step; None if there is no walk.
+        """Return the command for the next step; None if no walk is in progress.
 
         Args:
             pose: The pose of the robot.
-            bumped: True if a wall was in its way in the last step.
+            bumped: True if a wall was in the way in the last step.
         """
         self._pose, walk = pose, self._walk
         if walk is None:
@@ -99,7 +99,7 @@ class Walking:
         self.give_up()
         ended = Future(executor=self._node.executor)
         self._walk = _Walk(goal, (goal.request.x, goal.request.y), ended)
-        # Await instead of sleeping, so that the robot goes on and cancel requests are received.
+        # Await instead of sleeping, so that the robot keeps moving and cancel requests are received.
         ending = await ended
         getattr(goal, ending.value)()
         x, y = self._pose.point if self._pose is not None else (math.nan, math.nan)
