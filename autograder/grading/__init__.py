@@ -1,1 +1,1 @@
-"""Grading a class: an nbgrader course directory whose notebooks are judged on the wire."""
+"""Grading a class, that is, an nbgrader course directory whose notebooks are judged on the wire."""

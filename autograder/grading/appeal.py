@@ -1,4 +1,4 @@
-"""Writes an appeal file from a class: what was handed in, what the judge saw of it, and what it decided."""
+"""Writes an appeal file from a class: what the student handed in, what the judge saw, and what it decided."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from autograder.grading.class_records import Entered, RunCell
 
 FOLDER = "appeals"
-"""The folder of a class for appeal files."""
+"""The name of the folder, in a class, for appeal files."""
 
 
 def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = None) -> Path:
@@ -31,11 +31,11 @@ def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = N
     Args:
         path: The class directory.
         student: The student's id.
-        exercise_id: Such as ``"lab_1_2.talker"``.
-        to: The file; one in the class by default.
+        exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
+        to: The file to write; by default a file in the class.
 
     Raises:
-        GradingError: The check does not exist, or no evidence of it is kept; the message says what to do.
+        GradingError: The check does not exist, or its evidence was not kept. The message says what to do.
     """
     directory = ClassDirectory(path)
     try:
@@ -82,7 +82,7 @@ def _appeal(
 
 
 def _before(cells: list[RunCell], exercise_id: str) -> Iterator[AppealedCell]:
-    """Yield the student's cells above the check: all of them ran in the same kernel before it."""
+    """Yield the student's cells above the check, which all ran in the same kernel before the check."""
     for cell in cells:
         if cell.checks == exercise_id:
             return

@@ -1,8 +1,8 @@
 """Grades a class: rebuilds notebooks, executes them in parallel, and writes the results one after the other.
 
-The order makes it fail closed. First, grades that may be wrong are taken back in the gradebook; then each result goes
-into the store of the class and from there, by one writer, into the gradebook. A killed run leaves zeros and results,
-never a wrong grade, and the next run continues from there.
+The order of the steps makes it fail closed. First, grades that may be wrong are set to zero in the gradebook. Then
+each result goes into the store of the class, and from there, by a single writer, into the gradebook. So a run that is
+killed leaves zeros and finished results, never a wrong grade, and the next run continues from there.
 
 A submission is kept in memory only until it is written, so a class may have any size.
 """
@@ -46,7 +46,7 @@ from autograder.grading.table.true_rows import true_rows
 from autograder.grading.table.what_counts import read_what_counts
 from environment.installation import COMMAND
 
-# Modules that only grading needs are imported inside functions: importing nbgrader takes a second.
+# Modules that only grading needs are imported inside functions, because importing nbgrader takes a second.
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -77,27 +77,29 @@ def grade(
     scheduler: str | None = None,
     dry_run: bool = False,
 ) -> GradeReport:
-    """Grade what was submitted in a class.
+    """Grade the work that was handed in to a class.
 
     Args:
         path: The class directory.
-        assignments: The assignments to grade; all by default.
-        students: The students to grade; all by default.
-        sections: Grade the students of these sections, and those in ``students``.
-        jobs: The number of notebooks at once; as many as processors and memory allow by default.
-        again: Execute every notebook again, even if it has not changed.
-        feedback: Make the pages for the students.
-        console: The console for progress; standard error by default.
-        judge: The class that makes a judge, as ``module:class``; the real one by default.
-        scheduler: The address of a Dask scheduler whose workers execute the notebooks; this machine by default.
-        dry_run: Enter nothing: execute what is new, and report who would get different points. The results are kept
-            for the run that enters them.
+        assignments: The assignments to grade; by default all.
+        students: The students to grade; by default all.
+        sections: The sections whose students are graded, in addition to those in ``students``.
+        jobs: The number of notebooks to execute at the same time; by default as many as processors and memory allow.
+        again: True to execute every notebook again, even if it has not changed.
+        feedback: True to make the feedback pages for students.
+        console: The console for the progress; by default standard error.
+        judge: The class that makes a judge, as ``module:class``; by default the real one.
+        scheduler: The address of a Dask scheduler whose workers execute the notebooks; by default this machine
+            executes them.
+        dry_run: True to enter nothing in the gradebook: new work is executed, and the report lists the students whose
+            points would change. The results are kept for the run that enters them.
 
     Returns:
-        The report. Submissions that could not be graded are in it, with zero points and the reason.
+        The report. A submission that could not be graded is in the report with zero points and the reason.
 
     Raises:
-        GradingError: The class cannot be graded: not a class, busy, disk full, or no worker can execute it.
+        GradingError: The class cannot be graded: it is not a class, another run holds it, the disk is full, or no
+            worker can execute it.
     """
     began = time.monotonic()
     console = console or Console(stderr=True)
@@ -121,7 +123,7 @@ def grade(
         batch = _Batch(directory, store, console, roster, asked, feedback=feedback, dry_run=dry_run)
         batch.collect()
         batch.plan(again)
-        # Before any result is withdrawn: if no worker can execute notebooks, the class stays unchanged.
+        # This comes before any grade is withdrawn: if no worker can execute notebooks, the class stays unchanged.
         execute = stack.enter_context(backend) if batch.unsettled else None
         if not dry_run:
             batch.take_back()
@@ -174,11 +176,11 @@ class _Batch:
         return Writer(self._directory, self._store)
 
     def collect(self) -> None:
-        """Find the submissions.
+        """Find the submissions of the class.
 
         Raises:
-            ClassIncomplete: The gradebook does not know an assignment that was asked for.
-            GradingError: A name that was asked for is not an assignment or a student.
+            ClassIncomplete: The gradebook does not contain an assignment that was chosen.
+            GradingError: A chosen name is not an assignment or a student.
         """
         assignments = self._asked.assignments
         asked = {name: found for name, found in self._cells.items() if not assignments or name in assignments}
@@ -202,7 +204,7 @@ class _Batch:
         )
 
     def plan(self, again: bool) -> None:
-        """Find the submissions whose grades are in the gradebook already; the others remain to be graded."""
+        """Find the submissions whose grades are already in the gradebook. The others remain to be graded."""
         self._entries = read_entries(self._directory.gradebook_url)
         self._entered = self._store.entered()
         for work in self._others:
@@ -224,16 +226,16 @@ class _Batch:
 
     @property
     def unsettled(self) -> list[Submission]:
-        """The submissions whose grades are not in the gradebook."""
+        """The submissions whose grades are not in the gradebook yet."""
         return [work.submission for work in self._works if not work.written]
 
     def take_back(self) -> None:
-        """Take back the grades of every submission that is not settled."""
+        """Set the grades of every submission that is not settled to zero."""
         if self.unsettled:
             self._writer.take_back(self.unsettled)
 
     def run(self, execute: Execute | None) -> None:
-        """Execute the tasks that must run, and write each submission as soon as it is complete.
+        """Execute the tasks that need it, and write each submission as soon as it is complete.
 
         Args:
             execute: Executes tasks; None if everything is settled.
@@ -261,14 +263,16 @@ class _Batch:
                     progress.finished(done.task.label, failed=bool(done.execution.trouble))
         for work in waiting:
             if work.rows is None and work.complete:
-                self._write(work)  # no notebook of it could be executed, or that was known last
+                self._write(
+                    work
+                )  # it has no notebook to execute, or its last missing result was known already
 
     def report(self, seconds: float) -> GradeReport:
-        """The report on the chosen part of the class. Also writes ``grades.csv``, which has the whole class."""
+        """Return the report on the chosen part of the class. Also write ``grades.csv``, with the whole class."""
         url = self._directory.gradebook_url
         works = {work.key: work for work in (*self._works, *self._others)}
         entries = read_entries(url)
-        # A submission that this run did not grade keeps the judge's words from the run that entered the points.
+        # For a submission that this run did not grade, keep the judge's texts from the run that entered its points.
         judged = {key: one.rows for key, one in self._entered.items()}
         judged |= {key: work.rows for key, work in works.items() if work.rows is not None}
         for student, assignment in sorted((entries.keys() & self._entered.keys()) - works.keys()):
@@ -309,7 +313,7 @@ class _Batch:
         )
 
     def _due_dates(self, url: str) -> dict[str, datetime]:
-        """Return the due dates of the assignments that were asked for, in the time zone of the class."""
+        """Return the due dates of the chosen assignments, in the time zone of the class."""
         zone, asked = self._directory.time_zone, self._asked.assignments or self._cells
         return {
             name: due.replace(tzinfo=UTC).astimezone(zone)
@@ -327,9 +331,10 @@ class _Batch:
         try:
             handed_in_at(work.submission.folder, believed=entry.handed_in)
         except ValueError:
-            return  # the writer refuses it, with the reason
+            return  # the writer rejects the submission, with the reason
         if entered.fingerprint != work.fingerprint:
-            # Other bytes, but perhaps the same work: saved again, or the course was changed elsewhere.
+            # The bytes differ, but perhaps the work does not: the file was saved again, or an unrelated part of the
+            # course changed.
             if entered.tasks != {task.notebook: task.key() for task in self._tasks_of(work.submission)}:
                 return
             self._store.note_fingerprint(work.submission, work.fingerprint)
@@ -338,7 +343,7 @@ class _Batch:
         work.written = True
 
     def _take_known(self, work: Work) -> None:
-        """Take the results that an earlier run has kept; enter the submission if it is complete with them."""
+        """Use the results that an earlier run has kept. If they make the submission complete, enter it."""
         known = self._store.results(*work.key)
         for task in self._tasks_of(work.submission) if known else ():
             if (key := task.key()) in known:
@@ -348,7 +353,7 @@ class _Batch:
             self._write(work)
 
     def _tasks(self, works: Sequence[Work]) -> Iterator[Task]:
-        """Yield the tasks to execute; each is built only when the caller asks for it."""
+        """Yield the tasks to execute. Each is built only when the caller asks for it."""
         for work in works:
             for task in self._tasks_of(work.submission):
                 if task.problem:
@@ -363,7 +368,7 @@ class _Batch:
             return tasks_of(self._directory, submission)
 
     def _take(self, work: Work, task: Task, execution: Execution) -> None:
-        """Keep a result, and enter its submission if that makes it complete."""
+        """Keep a result. If it makes the submission complete, enter the submission."""
         self._executed += 1
         self._timings.count(task.cells, execution)
         execution = self._store.keep(task, execution)
@@ -384,7 +389,8 @@ class _Batch:
         try:
             with self._timings.measure("gradebook"):
                 if self._fingerprints.of(work.submission) != work.fingerprint:
-                    # The tasks may have been built from bytes that differ from those this record describes.
+                    # The tasks may have been built from bytes other than those that the submission's fingerprint
+                    # describes.
                     name = f"{work.submission.student}/{work.submission.assignment}"
                     raise NotWritten(f"{name} was changed while it was graded: grade it again")
                 self._writer.write(work.submission, work.fingerprint, work.pairs, rows)
@@ -401,7 +407,7 @@ class _Batch:
         work.results.clear()
 
     def _keep_time(self, work: Work) -> SubmissionEntry:
-        """Enter a changed time of handing in or due date, and the late penalty that follows."""
+        """Enter a changed time of handing in or due date, and the late penalty that follows from it."""
         entry = self._entries.get(work.key, SubmissionEntry())
         at = handed_in_at(work.submission.folder, believed=entry.handed_in)
         moved = at is not None and at != entry.handed_in
@@ -412,7 +418,7 @@ class _Batch:
         return read_entry(self._directory.gradebook_url, *work.key)
 
     def _make_pages(self, work: Work, entry: SubmissionEntry) -> None:
-        """Make the pages of a submission that has none, or whose pages are older than its points in the gradebook."""
+        """Make the pages of a submission if it has none, or if they are older than its points in the gradebook."""
         submission = work.submission
         if not self._feedback:
             return

@@ -1,4 +1,4 @@
-"""The work of a batch: what to grade, the state of each submission, and what a dry run reports."""
+"""The work of a batch: what to grade, the state of each submission, and the changes that a dry run reports."""
 
 from __future__ import annotations
 
@@ -31,24 +31,24 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class AskedFor:
-    """The choice of what a run grades.
+    """The assignments and students that a run was asked to grade.
 
     Attributes:
-        assignments: Only these assignments; all if empty.
-        students: Only these students; all if empty.
+        assignments: The chosen assignments; all if empty.
+        students: The chosen students; all if empty.
     """
 
     assignments: Sequence[str]
     students: Sequence[str]
 
     def has(self, student: str, assignment: str) -> bool:
-        """True if a student's work for an assignment is chosen."""
+        """Return True if this student and this assignment are chosen."""
         return (not self.assignments or assignment in self.assignments) and (
             not self.students or student in self.students
         )
 
     def tells_of(self, refused: RefusedFile, class_folder: Path) -> bool:
-        """True if a refused file belongs to the chosen students and assignments."""
+        """Return True if a refused file belongs to the chosen students and assignments."""
         submitted = class_folder / "submitted"
         if submitted not in refused.path.parents:
             return True
@@ -60,16 +60,17 @@ class AskedFor:
 
 @dataclass
 class Work:
-    """The state of a submission in the batch.
+    """The state of a submission during the batch.
 
     Attributes:
         submission: The submission.
-        fingerprint: A hash of its sources, as they were at the start.
+        fingerprint: A hash of its files, as they were at the start.
         notebooks: The names of its notebooks.
-        results: The results that are not entered yet, by notebook.
-        rows: The judge's results, or the reason why there are none; None if nothing is known yet.
-        written: True if the gradebook holds exactly these results.
-        shown: A hash of the gradebook's entries behind its pages; empty if these results have no pages.
+        results: The results that are not yet entered in the gradebook, by notebook.
+        rows: The judge's results as rows of the report, or rows with the reason why there are none; None if nothing
+            is known yet.
+        written: True if the gradebook contains exactly these results.
+        shown: A hash of the gradebook's entries from which its pages were made; empty if these results have no pages.
     """
 
     submission: Submission
@@ -82,29 +83,29 @@ class Work:
 
     @property
     def key(self) -> tuple[str, str]:
-        """Student and assignment, by which the gradebook knows the submission."""
+        """The student and the assignment, which together identify the submission in the gradebook."""
         return self.submission.student, self.submission.assignment
 
     @property
     def complete(self) -> bool:
-        """True if all of its notebooks have a result."""
+        """True if each of its notebooks has a result."""
         return len(self.results) == len(self.notebooks)
 
     @property
     def pairs(self) -> list[tuple[Task, Execution]]:
-        """Tasks and results, in the order of the notebooks."""
+        """Return the tasks with their results, in the order of the notebooks."""
         return [self.results[notebook] for notebook in self.notebooks]
 
 
 @dataclass(frozen=True)
 class FoundWork:
-    """The work that was found.
+    """The submissions found in a class, and what else was found.
 
     Attributes:
         works: The chosen submissions.
         others: The other submissions of the class.
-        refused: Files and folders that cannot be graded under their path, with the reason.
-        notices: Remarks for the instructor, each a sentence.
+        refused: Files and folders that cannot be graded where they are, with the reason.
+        notices: Sentences that the instructor should read.
     """
 
     works: list[Work]
@@ -121,18 +122,18 @@ def find_work(
     fingerprints: Fingerprints,
     beside: Iterable[RefusedFile],
 ) -> FoundWork:
-    """Find the submissions of a class, and those that are chosen.
+    """Find the submissions of a class, and choose those to grade.
 
     Args:
         directory: The class.
-        asked: The choice of what is graded.
-        released: The cells with points of the class.
+        asked: The chosen students and assignments.
+        released: The cells with points in the notebooks of the class.
         roster: The students of the class.
-        fingerprints: The fingerprints of the class in its present state.
-        beside: Files in ``submitted`` that are in the wrong folder.
+        fingerprints: Computes the fingerprints of submissions in the current state of the class.
+        beside: Files in ``submitted`` that lie in a wrong folder.
 
     Raises:
-        MasterUnusable: An assignment that was asked for by name cannot be graded.
+        MasterUnusable: An assignment that was chosen by name cannot be graded.
         GradingError: A chosen name is not an assignment or a student.
     """
     submissions, refused = directory.submissions()
@@ -141,7 +142,7 @@ def find_work(
     submissions = [one for one in submissions if one.assignment in released.cells]
     check_known(asked.assignments, directory.assignments(), "assignment")
     there = {submission.student for submission in submissions}
-    # A refused folder also counts as known: its line in the report gives the reason.
+    # The name of a refused folder also counts as known, because its line in the report gives the reason.
     there |= {one.path.name for one in refused if one.path.parent == directory.path / "submitted"}
     check_known(asked.students, sorted(there | roster.students.keys()), "student")
     names = {assignment: directory.notebooks(assignment) for assignment in released.cells}
@@ -159,7 +160,7 @@ def find_work(
 
 
 def _unusable(directory: ClassDirectory, asked: AskedFor, released: Released) -> Iterator[RefusedFile]:
-    """Yield the assignments that cannot be graded; they do not stop the others.
+    """Yield the assignments that cannot be graded. They do not keep the others from being graded.
 
     Raises:
         MasterUnusable: Such an assignment was chosen by name.
@@ -172,7 +173,7 @@ def _unusable(directory: ClassDirectory, asked: AskedFor, released: Released) ->
 
 
 def _unplaced(directory: ClassDirectory, asked: AskedFor) -> Iterator[RefusedFile]:
-    """Yield collected files without a place; the instructor is told of them until they have one."""
+    """Yield collected files that could not be placed. The instructor is told about them until they are placed."""
     table = Table(directory)
     for one in table.waiting():
         if asked.has(one.student, one.assignment) or not (one.student and one.assignment):
@@ -188,7 +189,7 @@ def would_change(
     entries: Entries,
     cells: Mapping[str, Sequence[GradedCell]],
 ) -> list[Difference]:
-    """Return the students whose points would change, by the judge or by a late penalty.
+    """Return the students whose points would change, through the judge or through a late penalty.
 
     Args:
         directory: The class.
@@ -212,7 +213,7 @@ def would_change(
         if then.is_late or entry.penalty:
             from autograder.grading.table.late_policy import (
                 penalties,
-            )  # imported late, because it loads nbgrader
+            )  # imported late because this module loads nbgrader
 
             costs = penalties(directory.config, work.submission.student, then)
             then = replace(then, penalties={name: cost or 0.0 for name, cost in costs.items()})
@@ -227,19 +228,19 @@ def would_change(
 def _foreseen(
     work: Work, entry: SubmissionEntry, by_exercise: Mapping[str, GradedCell], due: datetime | None
 ) -> SubmissionEntry:
-    """Return the entry that a submission would have after a run, with the earlier penalty."""
+    """Return the gradebook entry that a submission would have after a run, with the late penalty it has now."""
     cells = {notebook: dict(of_notebook) for notebook, of_notebook in entry.cells.items()}
     for row in () if work.written else work.rows or ():
         cell = by_exercise[row.exercise]
         of_notebook = cells.setdefault(cell.notebook, {})
         of_notebook[cell.name] = replace(of_notebook.get(cell.name, CellEntry(cell.worth)), judged=row.score)
     at = entry.handed_in
-    with contextlib.suppress(ValueError):  # the run itself refuses such a time
+    with contextlib.suppress(ValueError):  # the run itself rejects such a time
         at = handed_in_at(work.submission.folder, believed=at) or at
     return replace(entry, handed_in=at, due=entry.due or due, cells=cells)
 
 
 def without_grade(row: Row) -> Row:
-    """Return the row of a result that could not be entered."""
+    """Return the row of a result that could not be entered into the gradebook: with zero points."""
     reason = "The result could not be entered into the gradebook; it has zero points there."
     return replace(row, score=0.0, state="not_checked", diagnosis="not_written_down", reason=reason)

@@ -1,4 +1,4 @@
-"""The records in the store of a class (:mod:`autograder.grading.class_store`), as plain data."""
+"""The records in a class's store (:mod:`autograder.grading.class_store`), as plain data."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Attempt:
-    """One grading of a submission, whose results were entered into the gradebook.
+    """One grading of a submission whose results were entered into the gradebook.
 
     Attributes:
-        at: The time in UTC.
+        at: The time of the grading, in UTC.
         assignment: The assignment's name.
-        work: A hash of the submission and of everything it was graded with; the same as long as both are unchanged.
-        course: The version of the course.
-        rows: The judge's results.
+        work: A hash of the submission and of everything used to grade it. It is unchanged as long as both are.
+        course: The version of the course that was used.
+        rows: The judge's results, as rows of the report.
     """
 
     at: datetime
@@ -37,7 +37,7 @@ class Attempt:
     rows: tuple[Row, ...]
 
     def line(self) -> str:
-        """The attempt as one line of text."""
+        """Return the attempt as a line of text."""
         score, most = sum(row.score for row in self.rows), sum(row.max_score for row in self.rows)
         words = [
             f"{row.exercise} {row.score:g}" + (f" ({row.diagnosis})" if row.diagnosis else "")
@@ -51,13 +51,13 @@ class Attempt:
 
 @dataclass(frozen=True)
 class Entered:
-    """The last entry of a submission in the gradebook; the next run uses it to find grades that are still right.
+    """The last entry of a submission in the gradebook. The next run uses it to find grades that are still right.
 
     Attributes:
-        fingerprint: A hash of everything that the grades were made from.
+        fingerprint: A hash of everything from which the grades were made.
         tasks: The hash of each notebook's task, from :meth:`autograder.grading.task.Task.key`.
         scores: The points of each check cell, by notebook and grade_id.
-        rows: The same as rows of the report, with the mistakes.
+        rows: The results as rows of the report, with the recognized mistakes.
         course: The version of the course with which it was graded.
         shown: A hash of the gradebook's entries from which the feedback pages were made; empty if there are no pages.
     """
@@ -70,7 +70,7 @@ class Entered:
     shown: str = ""
 
     def is_in(self, entry: SubmissionEntry) -> bool:
-        """True if the gradebook, which has this entry, still holds the points that were entered."""
+        """Return True if this gradebook entry still contains the points that were entered."""
         return all(
             entry.judged(notebook, name) == score
             for notebook, entered in self.scores.items()
@@ -83,9 +83,9 @@ class Origin:
     """The master from which a source notebook of a class was made.
 
     Attributes:
-        master: The master's file; a path relative to the course if it is inside the course.
-        text: A hash of its whole text.
-        work: A hash of the cells that are graded or that students write.
+        master: The file of the master. If it is inside the course, the path is relative to the course.
+        text: A hash of the master's whole text.
+        work: A hash of only those cells that are graded or that students write.
     """
 
     master: str
@@ -94,12 +94,12 @@ class Origin:
 
 
 class RunCell(msgspec.Struct, frozen=True, array_like=True):
-    """A cell that was run: one that a student wrote, or a check cell.
+    """A cell that was run: a cell that a student wrote, or a check cell.
 
     Attributes:
-        name: The grade_id; empty for a cell that the student added.
+        name: The grade_id of the cell; empty for a cell that the student added.
         text: The student's text; empty for a check cell.
-        checks: The exercise that it checks; empty for any other cell.
+        checks: The id of the exercise that it checks; empty if it is not a check cell.
     """
 
     name: str
@@ -109,7 +109,7 @@ class RunCell(msgspec.Struct, frozen=True, array_like=True):
 
 @dataclass(frozen=True)
 class KeptEvidence:
-    """The evidence of a student's notebook, with the cells that were run. It decides no grade.
+    """The evidence about a student's notebook, with the cells that were run. It has no influence on a grade.
 
     Attributes:
         assignment: The assignment's name.
@@ -117,7 +117,7 @@ class KeptEvidence:
         task: The hash of the executed task, from :meth:`autograder.grading.task.Task.key`.
         course: The version of the course.
         checks: The evidence by exercise, as packed by the judge (:mod:`autograder.judge.verdicts.keeping`).
-        cells: The cells that show what was judged, in order: a compressed list of :class:`RunCell`.
+        cells: The cells that show what was judged, in order: a list of :class:`RunCell`, compressed.
     """
 
     assignment: str
@@ -129,7 +129,7 @@ class KeptEvidence:
 
     @classmethod
     def of(cls, task: Task, execution: Execution) -> Self:
-        """Return the evidence of an executed task."""
+        """Return the evidence of an executed task as it will be stored."""
         run = [
             RunCell(cell.name, "" if cell.check else cell.source, cell.check.exercise if cell.check else "")
             for cell in task.cells
@@ -139,10 +139,10 @@ class KeptEvidence:
         return cls(task.assignment, task.notebook, task.key(), task.course, execution.evidence, packed)
 
     def run_cells(self) -> list[RunCell]:
-        """The cells that were judged.
+        """Return the cells that were judged.
 
         Raises:
-            ValueError: They are damaged.
+            ValueError: The stored cells are damaged.
         """
         try:
             return msgspec.msgpack.decode(zlib.decompress(self.cells), type=list[RunCell])

@@ -1,11 +1,11 @@
-"""The store of a class: everything that the grader itself records about it, in one SQLite file next to the gradebook.
+"""The store of a class: everything that the grader itself records about the class, in one SQLite file.
 
-Each step is one transaction: whenever a run is killed or the power fails, the step is either on the disk or not done
-at all. The file uses a rollback journal, not a write-ahead log, because that log needs memory that machines of a
-network cannot share, and write access to the folder even for readers. Readers may read while a batch runs, which
-locks the file for milliseconds in each step. A lock file (:mod:`autograder.grading.classes.class_lock`) ensures that
-there is one batch at a time: the system frees it however a process ends, and holding a lock on this file during a
-whole batch would keep readers out.
+The file lies next to the gradebook. Each step is one transaction: whenever a run is killed or the power fails, the
+step is either on the disk or not done at all. The file uses a rollback journal and not a write-ahead log, because
+such a log needs memory that the machines of a network cannot share, and write access to the folder even for readers.
+Readers may read during a batch, which locks the file for milliseconds in each step. A separate lock file
+(:mod:`autograder.grading.classes.class_lock`) ensures that only one batch runs at a time. The system releases that
+lock however the process ends, while a lock on this file for a whole batch would keep readers out.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 NAME = "class.db"
 _FORM = 2
-"""Increased with each change of the tables; a file with another version is refused."""
+"""The version of the tables, increased with each change. A file with another version is rejected."""
 _TABLES = """
 -- What came of each notebook when it was executed last. Its task is the hash of all that the result depends on.
 CREATE TABLE IF NOT EXISTS result (
@@ -73,22 +73,22 @@ _NOT_ENTERED = (
     "task NOT IN (SELECT value FROM entered AS e, json_each(CAST(e.tasks AS TEXT))"
     " WHERE e.student = evidence.student AND e.assignment = evidence.assignment)"
 )
-"""True for evidence that no entry in the gradebook is based on."""
+"""SQL condition: no entry in the gradebook is based on this evidence."""
 _RUNS = 50
-"""The number of runs whose tables are kept."""
+"""The number of runs whose result tables are kept."""
 _PATIENCE = 30.0
-"""Seconds that a step waits for another program's step."""
+"""Time limit in seconds for a step to wait until another program's step ends."""
 _Decoded = TypeVar("_Decoded")
 
 
 class ClassStore:
-    """The store of one class. A context manager, which closes the file.
+    """The store of one class. It is a context manager, which closes the file.
 
-    The first write makes the file. Without a file every answer is empty, as for an unknown student. A damaged entry
-    that can be made again is treated as missing.
+    The first write makes the file. Without a file, every method returns the same as for an unknown student. A damaged
+    entry that can be made again is treated as missing.
 
     Every method raises :class:`DiskFull` if the disk is full, and :class:`StoreTrouble` if the file is damaged,
-    locked, read-only or of another version; earlier content stays.
+    locked, read-only or of another version. Earlier content stays in each case.
 
     Args:
         directory: The class.
@@ -115,13 +115,14 @@ class ClassStore:
     # -- results of tasks
 
     def keep(self, task: Task, execution: Execution) -> Execution:
-        """Store a result and its evidence, replacing the last ones of this notebook.
+        """Store a result and its evidence in place of the last ones of this notebook.
 
-        Return the result without evidence.
+        It returns the result without the evidence.
 
-        The evidence behind grades in the gradebook stays: a run that enters nothing must leave it for appeals.
+        Evidence for grades that are in the gradebook stays, because a run that enters nothing must leave it for
+        appeals.
 
-        If the grader itself failed, nothing is stored or replaced: the next run tries again.
+        If the grader itself failed, nothing is stored or replaced, and the next run tries again.
         """
         result = replace(execution, evidence={})
         if execution.trouble:
@@ -144,7 +145,10 @@ class ClassStore:
         return result
 
     def results(self, student: str, assignment: str) -> dict[str, Execution]:
-        """Return the last results of a submission by task, in the order of notebooks; it may have changed since."""
+        """Return the last results of a submission by task, in the order of the notebooks.
+
+        The submission may have changed since those results were made.
+        """
         rows = self._rows(
             "SELECT task, execution FROM result WHERE (student, assignment) = (?, ?) ORDER BY notebook",
             student,
@@ -154,13 +158,13 @@ class ClassStore:
         return {task: execution for task, execution in found.items() if execution is not None}
 
     def forget_results(self, submissions: Iterable[Submission]) -> None:
-        """Drop the results of submissions, so that they run again. Their evidence stays until a new run replaces it."""
+        """Delete the results of submissions, so that they are executed again. Evidence stays until it is replaced."""
         with self._step() as book:
             names = ((one.student, one.assignment) for one in submissions)
             book.executemany("DELETE FROM result WHERE (student, assignment) = (?, ?)", names)
 
     def evidence(self, student: str, exercise: str) -> KeptEvidence | None:
-        """Return the evidence behind a check's grade in the gradebook, else the newest; None if none is kept."""
+        """Return the evidence for a check's grade in the gradebook, or else the newest; None if there is none."""
         for assignment, notebook, task, course, checks, cells in self._rows(
             "SELECT assignment, notebook, task, course, checks, cells FROM evidence WHERE student = ?"
             f" ORDER BY assignment, notebook, {_NOT_ENTERED}",
@@ -174,7 +178,7 @@ class ClassStore:
     # -- what stands in the gradebook
 
     def enter(self, submission: Submission, attempt: Attempt, entered: Entered | None) -> None:
-        """Record an attempt, and the new entry in the gradebook; None as entry if the next run should try again."""
+        """Record an attempt and the new gradebook entry; ``entered`` is None if the next run should try again."""
         names = (submission.student, submission.assignment)
         with self._step() as book:
             book.execute(
@@ -204,21 +208,21 @@ class ClassStore:
                 )
 
     def note_fingerprint(self, submission: Submission, fingerprint: str) -> None:
-        """Record that the entry of a submission is also right for other bytes."""
+        """Record that the entry of a submission is also right for files with another fingerprint."""
         self._note(submission, "fingerprint", fingerprint)
 
     def note_shown(self, submission: Submission, shown: str) -> None:
-        """Record the gradebook's state from which the pages of a submission were made."""
+        """Record from which state of the gradebook the pages of a submission were made."""
         self._note(submission, "shown", shown)
 
     def forget_entered(self, submissions: Iterable[Submission]) -> None:
-        """Delete the entries of submissions, before their grades are taken back."""
+        """Delete the entries of submissions. Called before their grades are set to zero."""
         with self._step() as book:
             names = ((one.student, one.assignment) for one in submissions)
             book.executemany("DELETE FROM entered WHERE (student, assignment) = (?, ?)", names)
 
     def entered(self) -> dict[tuple[str, str], Entered]:
-        """Return the last entries in the gradebook, by student and assignment."""
+        """Return the last entry of each submission in the gradebook, by student and assignment."""
         found = {}
         for student, assignment, fingerprint, *blobs, course, shown in self._rows("SELECT * FROM entered"):
             tasks = _decoded(blobs[0], dict[str, str])
@@ -229,7 +233,7 @@ class ClassStore:
         return found
 
     def attempts(self, student: str) -> list[Attempt]:
-        """Return all attempts of a student, the first one first."""
+        """Return all attempts of a student, oldest first."""
         found = []
         for at, assignment, work, course, report in self._rows(
             "SELECT at, assignment, work, course, report FROM attempt WHERE student = ? ORDER BY number",
@@ -243,7 +247,7 @@ class ClassStore:
     # -- runs
 
     def keep_run(self, course: str, rows: Sequence[Row]) -> None:
-        """Keep the table of a run if it differs from the last one; the oldest tables are dropped."""
+        """Keep the result table of a run if it differs from the last one. The oldest tables are deleted."""
         report = msgspec.json.encode(rows)
         if self._rows("SELECT course, report FROM run ORDER BY name DESC LIMIT 1") == [(course, report)]:
             return
@@ -256,11 +260,11 @@ class ClassStore:
             )
 
     def runs(self) -> list[str]:
-        """Return the names of the runs, the oldest first."""
+        """Return the names of the runs, oldest first."""
         return [name for (name,) in self._rows("SELECT name FROM run ORDER BY name")]
 
     def run(self, name: str) -> tuple[Row, ...] | None:
-        """Return the table of a run, or None if no run has this name."""
+        """Return the result table of a run; None if there is no run with this name."""
         rows = self._rows("SELECT report FROM run WHERE name = ?", name)
         return _decoded(rows[0][0], tuple[Row, ...]) if rows else None
 
@@ -275,17 +279,17 @@ class ClassStore:
             )
 
     def origins(self) -> dict[str, Origin]:
-        """Return the masters of the sources by assignment; empty if the class has no note of them."""
+        """Return the masters of the sources, by assignment; empty if the class has no record of them."""
         return {name: Origin(*fields) for name, *fields in self._rows("SELECT * FROM origin")}
 
     def keep_graded_cells(self, fingerprint: str, cells: bytes) -> None:
-        """Store the cells that were read from the present sources, replacing all others."""
+        """Store the graded cells that were read from the current sources, in place of all earlier ones."""
         with self._step() as book:
             book.execute("DELETE FROM graded_cells")
             book.execute("INSERT INTO graded_cells VALUES (?, ?)", (fingerprint, cells))
 
     def graded_cells(self, fingerprint: str) -> bytes:
-        """Return the cells that were read from the sources with this fingerprint; empty if none are stored."""
+        """Return the graded cells that were read from the sources with this fingerprint; empty if none are stored."""
         rows = self._rows("SELECT cells FROM graded_cells WHERE fingerprint = ?", fingerprint)
         return rows[0][0] if rows else b""
 
@@ -304,7 +308,7 @@ class ClassStore:
                 return []
             book = self._opened(may_make=False)
             if not self._has_tables:
-                return []  # the process that made the file was killed before its first transaction
+                return []  # the process that created the file was killed before its first transaction
             return book.execute(question, [name_as_text(name) for name in names]).fetchall()
 
     @contextlib.contextmanager
@@ -318,7 +322,8 @@ class ClassStore:
 
     def _opened(self, *, may_make: bool) -> sqlite3.Connection:
         if self._connection is None:
-            # Open for writing even if only queries follow, so that SQLite rolls back a transaction that was killed.
+            # Open for writing even if only queries follow, so that SQLite can roll back the transaction of a killed
+            # process.
             address = f"{self._path.as_uri()}?mode={'rwc' if may_make else 'rw'}"
             self._connection = sqlite3.connect(address, _PATIENCE, isolation_level=None, uri=True)
             self._connection.execute("PRAGMA journal_mode = TRUNCATE")
@@ -339,11 +344,11 @@ class ClassStore:
 
     @contextlib.contextmanager
     def _said_clearly(self) -> Iterator[None]:
-        """Roll back on a failure, and turn the database's message into one for an instructor."""
+        """Roll back after a failure, and turn the database's message into one for an instructor."""
         try:
             yield
         except BaseException as error:
-            self.close()  # which rolls back
+            self.close()  # closing rolls back the transaction
             if is_disk_full(error):
                 raise DiskFull(self._class) from error
             if isinstance(error, sqlite3.Error):

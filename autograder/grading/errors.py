@@ -1,4 +1,4 @@
-"""Errors about a class, with advice. After one of them the command line exits with code 2."""
+"""Errors about a class, with advice for instructors. They end the command line with exit code 2."""
 
 from __future__ import annotations
 
@@ -15,11 +15,12 @@ if TYPE_CHECKING:
 
 
 def course_command(*words: object, inside: Path | None = None) -> str:
-    """Return a command as messages print it, quoted so that a shell takes each word, even a path with blanks, as one.
+    """Return a command as messages show it, quoted so that a shell takes each word as one, even a path with spaces.
 
     Args:
-        words: The words after ``./course``, or after ``autograder`` if the wheel is installed.
-        inside: The folder in which it has to be typed, which nbgrader's own commands require; None for any folder.
+        words: The words after ``./course`` (after ``autograder`` if the wheel is installed).
+        inside: The folder in which the command has to be typed, which nbgrader's own commands require; None for any
+            folder.
     """
     program = ROOT / COMMAND if inside and IS_CLONE else COMMAND
     command = shlex.join(map(str, (program, *words)))
@@ -27,14 +28,14 @@ def course_command(*words: object, inside: Path | None = None) -> str:
 
 
 class GradingError(Exception):
-    """A problem that an instructor can fix; the message says what happened and what to do."""
+    """A problem that an instructor can fix. The message says what happened and what to do."""
 
 
 def check_known(wanted: Sequence[str], known: Sequence[str], what: str) -> None:
-    """Check that everything that was asked for by name exists.
+    """Check that every chosen name exists.
 
     Raises:
-        GradingError: A name does not exist; the message lists the existing names.
+        GradingError: A name does not exist. The message lists the names that do.
     """
     for name in wanted:
         if name not in known:
@@ -54,7 +55,7 @@ class NotAClass(GradingError):
 
 
 class ClassExists(GradingError):
-    """A class cannot be made: the folder is not empty."""
+    """A class cannot be made in a folder that is not empty."""
 
 
 class ClassIncomplete(GradingError):
@@ -66,7 +67,7 @@ class ClassBusy(GradingError):
 
     Args:
         path: The class.
-        holder: The process that runs it; empty if unknown.
+        holder: The process that runs the other batch; empty if unknown.
     """
 
     def __init__(self, path: Path, holder: str) -> None:
@@ -77,7 +78,7 @@ class ClassBusy(GradingError):
 
 
 class MasterUnusable(GradingError):
-    """A source notebook of the class cannot be graded against."""
+    """Submissions cannot be graded against this source notebook of the class."""
 
 
 class DiskFull(GradingError):
@@ -95,7 +96,7 @@ class GradebookTrouble(GradingError):
 
     Args:
         path: The class.
-        said: The database's message.
+        said: The message of the database.
     """
 
     def __init__(self, path: Path, said: str) -> None:
@@ -114,7 +115,7 @@ class StoreTrouble(GradingError):
 
     Args:
         file: The file of the store.
-        said: The reason, such as the database's message.
+        said: The reason, for example the message of the database.
     """
 
     def __init__(self, file: Path, said: str) -> None:
@@ -147,7 +148,7 @@ _STORE_ADVICE = {
 
 
 def is_disk_full(error: BaseException | None) -> bool:
-    """True if a full disk (or an exhausted quota) is the cause of ``error``."""
+    """Return True if ``error`` was caused by a full disk or an exhausted quota."""
     while error is not None:
         if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
             return True
@@ -159,10 +160,10 @@ def is_disk_full(error: BaseException | None) -> bool:
 
 @contextlib.contextmanager
 def clear_disk_errors(path: Path) -> Iterator[None]:
-    """Turn errors of the disk and the database into messages for an instructor.
+    """Turn errors of the disk and the database in the block into messages for an instructor.
 
     Args:
-        path: The class in use.
+        path: The class that is in use.
 
     Raises:
         DiskFull: The disk is full, whichever step noticed it.
@@ -193,15 +194,15 @@ def clear_disk_errors(path: Path) -> Iterator[None]:
 
 @contextlib.contextmanager
 def clear_place_errors(path: Path, option: str) -> Iterator[None]:
-    """Turn errors about the path of a requested file into messages for an instructor.
+    """Turn errors about the path of a requested output file into messages for an instructor.
 
     Args:
         path: The file to write.
-        option: The option that sets another path.
+        option: The command's option with which another path can be given.
 
     Raises:
-        GradingError: A file or folder with this name is in the way, or the name is not allowed.
-        OSError: A failure of the disk, for which :func:`clear_disk_errors` has messages.
+        GradingError: A file or folder is in the way, or the name is not allowed.
+        OSError: The disk failed; :func:`clear_disk_errors` has messages for that.
     """
     try:
         yield
@@ -218,7 +219,7 @@ def clear_place_errors(path: Path, option: str) -> Iterator[None]:
 
 
 def said_by_database(error: BaseException | None) -> str:
-    """Return the message of the database error that caused ``error``; empty if no database error did."""
+    """Return the message of the database error behind ``error``; empty if there is none."""
     while error is not None:
         if type(error).__module__.startswith(("sqlite3", "sqlalchemy")):
             return " ".join(str(getattr(error, "orig", None) or error).split())[:200]

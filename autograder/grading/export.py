@@ -1,4 +1,4 @@
-"""``nbgrader export`` for spreadsheets: the columns of nbgrader's own CSV export, quoted and defused."""
+"""``nbgrader export`` for spreadsheets: nbgrader's own CSV columns, with correct quoting and without formulas."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ _NUMBERS = ("raw_score", "late_submission_penalty", "score", "max_score")
 class SafeCsvExport(ExportPlugin):
     """One line for each student and assignment, with the columns of nbgrader's ``CsvExportPlugin``.
 
-    nbgrader's plug-in does not quote commas and line breaks in names, and leaves formulas active.
+    nbgrader's own plug-in does not quote commas and line breaks in names, and lets a spreadsheet execute formulas in
+    them.
     """
 
     def export(self, gradebook: Gradebook) -> None:

@@ -1,9 +1,9 @@
-"""Runs ``nbgrader autograde`` and ``nbgrader generate_feedback``, or formgrader's buttons, with the course's grader.
+"""Makes ``nbgrader autograde``, ``nbgrader generate_feedback`` and formgrader's buttons use the course's grader.
 
-nbgrader's own conversion has no judge, and copies whatever is in a submission: a pipe would block it for ever, and a
-sparse file of a terabyte would fill the disk. So its steps are replaced by those of ``./course grade``. The class's
-configuration names the exporters below. nbgrader makes an exporter before it converts the first notebook, and these
-exporters then take over the converter that made them.
+nbgrader's own conversion does not use the judge, and it copies whatever is in a submission: a pipe would block it
+forever, and a sparse file of a terabyte would fill the disk. So its steps are replaced by those of ``./course
+grade``. The class's configuration names the exporters below. nbgrader makes its exporter before it converts the first
+notebook, and at that moment the exporters below take over the converter that made them.
 """
 
 from __future__ import annotations
@@ -36,17 +36,17 @@ CANNOT = 2
 
 
 class _Ours(BaseConverter):
-    """A conversion of whole submissions by this package's grader.
+    """A conversion of whole submissions by this package's grader, in place of nbgrader's converter.
 
-    nbgrader has listed in ``assignments`` the folders to convert.
+    nbgrader has already listed the folders to convert in ``assignments``.
     """
 
     def convert_notebooks(self) -> None:
-        """Convert the submissions that were asked for.
+        """Convert the submissions that were chosen.
 
         Raises:
-            NbGraderException: Some could not be converted; the log has a line for each.
-            SystemExit: The same, if nbgrader runs as a command: with the exit code of ``./course grade``, which
+            NbGraderException: Some submissions could not be converted. The log has a line for each.
+            SystemExit: Raised instead if nbgrader runs as a command, with the exit code of ``./course grade``, which
                 nbgrader would turn into 1.
         """
         try:
@@ -62,10 +62,10 @@ class _Ours(BaseConverter):
             raise NbGraderException("; ".join(problems))
 
     def _chosen(self) -> dict[str, list[str]]:
-        """Return the students that were asked for, by assignment.
+        """Return the chosen students, by assignment.
 
         Raises:
-            GradingError: A single notebook was asked for.
+            GradingError: A single notebook was chosen.
         """
         if self.coursedir.notebook_id != "*":
             raise GradingError(
@@ -77,12 +77,12 @@ class _Ours(BaseConverter):
         return chosen
 
     def _convert(self, directory: ClassDirectory, chosen: dict[str, list[str]]) -> list[str]:
-        """Convert submissions. Return what went wrong."""
+        """Convert submissions, and return a message for each failure."""
         raise NotImplementedError
 
 
 class _OurAutograde(_Ours, Autograde):
-    """``nbgrader autograde``: what ``./course grade`` does, without pages of feedback."""
+    """``nbgrader autograde``, replaced by the steps of ``./course grade`` without feedback pages."""
 
     def _convert(self, directory: ClassDirectory, chosen: dict[str, list[str]]) -> list[str]:
         problems: list[str] = []
@@ -95,7 +95,8 @@ class _OurAutograde(_Ours, Autograde):
                 feedback=False,
                 console=Console(quiet=True),
             )
-            # A file without a place may belong to any student: it is not a failure of the submission being graded.
+            # A file that could not be placed may belong to any student, so it is not a failure of the submission
+            # being graded.
             refused = [(f"{one.path}: {one.reason}", one.path.is_absolute()) for one in report.refused]
             remarks = [f"{'/'.join(key)}: {words}" for key, words in remarks_on(report.rows).items()]
             for notice in (*report.notices, *remarks, *(text for text, in_class in refused if not in_class)):
@@ -106,7 +107,7 @@ class _OurAutograde(_Ours, Autograde):
 
 
 class _OurFeedback(_Ours, GenerateFeedback):
-    """``nbgrader generate_feedback``: the pages that ``./course grade`` makes, for what is graded already."""
+    """``nbgrader generate_feedback``, replaced: makes the pages of ``./course grade`` for work that is graded."""
 
     def _convert(self, directory: ClassDirectory, chosen: dict[str, list[str]]) -> list[str]:
         check_configuration(directory)
@@ -134,19 +135,19 @@ class _OurFeedback(_Ours, GenerateFeedback):
 
 
 def _take_over(converter: object) -> None:
-    """Let the grader do the work of nbgrader's converter.
+    """Let this package's grader do the work of nbgrader's converter.
 
     Args:
-        converter: A converter that has not begun; any other object is left unchanged.
+        converter: A converter that has not begun to convert. Any other object is left unchanged.
     """
     ours = {Autograde: _OurAutograde, GenerateFeedback: _OurFeedback}.get(type(converter))
     if ours is not None:
-        # nbgrader offers no way to choose the class of the converter.
+        # nbgrader offers no option for the class of its converter.
         converter.__class__ = ours
 
 
 class SubmissionExporter(NotebookExporter):
-    """nbgrader finds this package's way of grading by this name, however ``autograde`` is started."""
+    """The exporter that class configurations name for ``autograde``. Making it lets this package's grader take over."""
 
     def __init__(self, *args: Any, **kw: Any) -> None:
         initialise: Any = super().__init__
@@ -155,7 +156,7 @@ class SubmissionExporter(NotebookExporter):
 
 
 class FeedbackExporter(PageExporter):
-    """nbgrader finds this package's way of making pages by this name, however ``generate_feedback`` is started."""
+    """The exporter that class configurations name for ``generate_feedback``. Making it lets this package take over."""
 
     def __init__(self, *args: Any, **kw: Any) -> None:
         initialise: Any = super().__init__
@@ -164,13 +165,13 @@ class FeedbackExporter(PageExporter):
 
 
 class WireExecute(NbGraderPreprocessor):
-    """Replaces nbgrader's Execute and refuses to grade.
+    """Replaces nbgrader's Execute preprocessor, and refuses to grade.
 
-    The section of its name in the configuration contains the grader's settings: limits, and two switches.
+    The configuration section with this class's name contains the grader's settings: limits, and two switches.
     """
 
     def preprocess(self, *_: Any, **__: Any) -> tuple[Any, Any]:
-        """Report the missing line: nbgrader calls this only if the line that leads to the grader was removed.
+        """Report that the exporter's line is missing in the configuration, the only case in which nbgrader calls this.
 
         Raises:
             TypeError: Always.

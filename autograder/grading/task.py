@@ -1,4 +1,4 @@
-"""One notebook of one student, ready to be executed anywhere, and the points for its verdicts."""
+"""One notebook of one student, ready to be executed anywhere; and the points for the verdicts on it."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ UNREADABLE = "unreadable"
 
 @dataclass(frozen=True)
 class Task:
-    """A task for a worker: everything that it needs, and nothing else.
+    """A task for a worker. It contains everything that the worker needs, and nothing else.
 
     Attributes:
         student: The student's id, for messages.
         assignment: The assignment's name.
         notebook: The notebook's name.
-        cells: The rebuilt notebook.
+        cells: The cells of the rebuilt notebook.
         seed: The seed of the judge's random inputs.
-        course: A hash of everything that decides a grade.
-        limits: All limits.
+        course: A hash of everything in the course that influences a grade.
+        limits: The limits on time, memory and output.
         files: The assignment's files next to the notebook, by relative path.
-        problem: Why nothing can be executed; empty if the notebook can be.
+        problem: Why nothing can be executed; empty if the notebook can be executed.
         remarks: Sentences about repairs of the notebook.
-        pictures: A hash of the pictures that the student attached: other pictures make it other work.
-        boxed: True to execute in boxes, or not at all. False is for the course's own notebooks, and for an instructor
-            who asked for it; such a result never counts as one from a box.
+        pictures: A hash of the pictures that the student attached. With other pictures it counts as other work.
+        boxed: True to execute the notebook only in boxes. False for the course's own notebooks, or if the instructor
+            asked for it; such a result never counts as one from a box.
     """
 
     student: str
@@ -51,20 +51,20 @@ class Task:
     boxed: bool = True
 
     def beside_others(self, beside: bool) -> Task:
-        """Return the task as a worker gets it: with its share of memory if other tasks run, else with all limits."""
+        """Return the task as a worker gets it: with its share of the memory if other tasks run, else with all of it."""
         return replace(self, limits=replace(self.limits, beside=beside))
 
     @property
     def label(self) -> str:
-        """The name of the task in messages."""
+        """Return the name of the task for messages."""
         return f"{self.student}/{self.assignment}/{self.notebook}"
 
     def key(self) -> str:
-        """Return a hash of everything that the execution depends on: equal tasks have the same result."""
+        """Return a hash of everything on which the execution depends. Tasks with equal hashes have the same result."""
         return hashlib.sha256(msgspec.json.encode(self, order="deterministic")).hexdigest()
 
     def without_execution(self) -> Execution:
-        """Return the result of a task with a problem: no cell runs, and every check is zero with the reason."""
+        """Return the result of a task with a problem: no cell is run, and each check gets zero and the reason."""
         verdicts = {
             index: zero_points(
                 cell.check, UNREADABLE, self.problem, "Hand in the notebook as JupyterLab saves it."
@@ -75,7 +75,7 @@ class Task:
         return Execution(cells=(), verdicts=verdicts)
 
     def in_trouble(self, reason: str) -> Execution:
-        """Return the result of a task that the grader could not execute: no check is the student's fault.
+        """Return the result of a task that the grader could not execute, which is not the student's fault.
 
         Args:
             reason: Why the task could not be executed.
@@ -87,7 +87,7 @@ class Task:
 
 
 def points(check: CellCheck, verdict: Verdict) -> float:
-    """Return the points for a verdict: the judge's share of the cell's points."""
+    """Return the points for a verdict: the cell's points times the share that the judge gave."""
     share = verdict.score / verdict.max_score if verdict.max_score > 0 else 0.0
     return round(min(1.0, max(0.0, share)) * check.worth, 4)
 

@@ -1,1 +1,1 @@
-"""A class on disk: making it, its folders, its configuration and its lock."""
+"""A class on disk: how it is made, its folders, its configuration and its lock."""

@@ -1,4 +1,4 @@
-"""A class on disk: its folders, valid names for them, and its lock."""
+"""A class on disk: its folders, the rules for their names, and its lock."""
 
 from __future__ import annotations
 
@@ -32,16 +32,18 @@ if TYPE_CHECKING:
 CONFIG_NAME = "nbgrader_config.py"
 STATE_NAME = ".autograder"
 COURSE_NAME = "course"
-"""The file in the class's state that names the top folder of the course. An installed package cannot find it itself."""
+"""The name of the file, in the class's state folder, that contains the path of the course's top folder. It is needed
+because an installed package cannot find the course from its own location.
+"""
 SUFFIX = ".ipynb"
 _LONGEST_NAME = 100
 _STUDENTS_FILES = ("submitted", "autograded", "feedback", "downloaded")
-"""The folders of a class that contain students' files, by nbgrader's names."""
+"""The folders of a class that contain students' files; the names are nbgrader's."""
 
 
 @dataclass(frozen=True)
 class Submission:
-    """One student's work for one assignment.
+    """The work of one student for one assignment.
 
     Attributes:
         student: The student's id.
@@ -56,11 +58,11 @@ class Submission:
 
 @dataclass(frozen=True)
 class RefusedFile:
-    """A file or folder in ``submitted`` that cannot be graded under its name.
+    """A file or folder in ``submitted`` that cannot be graded where it is.
 
     Attributes:
         path: The file or folder.
-        reason: The reason, and what to do.
+        reason: The reason, and what to do about it.
     """
 
     path: Path
@@ -68,10 +70,10 @@ class RefusedFile:
 
 
 class ClassDirectory:
-    """An nbgrader course directory that this package grades.
+    """An nbgrader course directory, which this package grades.
 
     Args:
-        path: The folder that holds ``nbgrader_config.py``.
+        path: The folder that contains ``nbgrader_config.py``.
 
     Raises:
         NotAClass: The folder is not a class; the message says what is missing.
@@ -91,7 +93,7 @@ class ClassDirectory:
 
     @property
     def state(self) -> Path:
-        """The folder of the autograder's own files: secret, lock, store, log. Nothing for students."""
+        """The folder of the autograder's own files: secret, lock, store and log. It contains nothing for students."""
         return self.path / STATE_NAME
 
     @property
@@ -103,10 +105,10 @@ class ClassDirectory:
 
     @functools.cached_property
     def config(self) -> Config:
-        """Return the class's nbgrader configuration, with its root set to the class's present folder.
+        """Return the class's nbgrader configuration, with its root set to the folder in which the class is now.
 
         Raises:
-            ClassIncomplete: The configuration is not valid Python, or does not grade with the judge.
+            ClassIncomplete: The configuration is not valid Python, or does not use the judge for grading.
         """
         config = self._as_written
         steps = [str(step) for step in config.Autograde.get("autograde_preprocessors", ())]
@@ -117,7 +119,8 @@ class ClassDirectory:
             )
         url = str(config.CourseDirectory.get("db_url") or "sqlite:")
         if not url.startswith("sqlite:") and not config.CourseDirectory.get("course_id"):
-            # nbgrader stores the course's id as a foreign key, and only SQLite accepts an id that does not exist.
+            # nbgrader stores the course's id as a foreign key. Only SQLite accepts an id that does not exist as a
+            # course.
             raise ClassIncomplete(
                 f"A gradebook in a database server needs the name of the course. Add a line to "
                 f'{self.path / CONFIG_NAME}: c.CourseDirectory.course_id = "ros2"'
@@ -127,9 +130,9 @@ class ClassDirectory:
 
     @property
     def time_zone(self) -> ZoneInfo:
-        """The time zone of formgrader's due dates and of all times that this package shows.
+        """The time zone of due dates in formgrader, and of all times that this package shows.
 
-        This is nbgrader's own option ``c.NbGraderAPI.timezone``; its default is UTC.
+        It is set by nbgrader's own option ``c.NbGraderAPI.timezone``; the default is UTC.
 
         Raises:
             ClassIncomplete: The zone does not exist.
@@ -147,17 +150,17 @@ class ClassDirectory:
     def _as_written(self) -> Config:
         try:
             return PyFileConfigLoader(CONFIG_NAME, path=str(self.path)).load_config()
-        except Exception as error:  # the file is a program: it may raise anything
+        except Exception as error:  # the configuration file is a program, so it may raise anything
             raise ClassIncomplete(
                 f"{self.path / CONFIG_NAME} cannot be read: {type(error).__name__}: {error}"
             ) from error
 
     @functools.cached_property
     def secret(self) -> bytes:
-        """Return the class secret; make it if the class has none.
+        """Return the secret of the class. If the class has none, make one.
 
         Raises:
-            ClassIncomplete: The secret is damaged.
+            ClassIncomplete: The file of the secret is damaged.
         """
         path = self.state / "secret"
         try:
@@ -185,17 +188,17 @@ class ClassDirectory:
         """Return the trusted master of a notebook.
 
         Raises:
-            MasterUnusable: It cannot be graded against.
+            MasterUnusable: Submissions cannot be graded against this master.
         """
         from autograder.grading.rebuilding.master import (
-            read_master,  # with nbgrader, which takes a second to import
+            read_master,  # imported here because it imports nbgrader, which takes a second
         )
 
         return read_master(self.path / "source" / assignment / f"{notebook}{SUFFIX}", self.config)
 
     @functools.cached_property
     def named_cells(self) -> NamedCells:
-        """The named cells of all notebooks of the class, as they are now."""
+        """Return the named cells of all notebooks of the class, as they are now."""
         from autograder.grading.rebuilding.named_cells import NamedCells
 
         return NamedCells(
@@ -219,9 +222,9 @@ class ClassDirectory:
         }
 
     def submissions(self) -> tuple[list[Submission], list[RefusedFile]]:
-        """Return everything that was handed in, and what cannot be graded under its name.
+        """Return everything that was handed in, and everything that cannot be graded where it is.
 
-        A notebook that is not an ordinary file is in both lists: it gets zero points and the reason.
+        A notebook that is not an ordinary file is in both lists: it gets zero points, and the reason is reported.
         """
         notebooks = {assignment: self.notebooks(assignment) for assignment in self.assignments()}
         taken: list[Submission] = []
@@ -239,18 +242,20 @@ class ClassDirectory:
         return taken, refused
 
     def has_converted(self, submission: Submission, notebooks: Iterable[str]) -> bool:
-        """True if ``autograded`` has all of these notebooks of a submission."""
+        """Return True if ``autograded`` contains all of these notebooks of a submission."""
         folder = self.path / "autograded" / submission.student / submission.assignment
         return all((folder / f"{notebook}{SUFFIX}").is_file() for notebook in notebooks)
 
     def has_pages(self, submission: Submission, notebooks: Iterable[str]) -> bool:
-        """True if ``feedback`` has a page for each of these notebooks of a submission."""
+        """Return True if ``feedback`` contains a page for each of these notebooks of a submission."""
         folder = self.path / "feedback" / submission.student / submission.assignment
         return all((folder / f"{notebook}.html").is_file() for notebook in notebooks)
 
     @contextlib.contextmanager
     def lock(self) -> Iterator[None]:
-        """Keep a second batch out, and clean up after a killed one. The lock ends with the process.
+        """Keep a second batch out during the block, and first clean up after one that was killed.
+
+        The lock also ends when this process ends.
 
         Raises:
             ClassBusy: Another process holds the lock.
@@ -265,17 +270,17 @@ class ClassDirectory:
 
     @property
     def scratch_prefix(self) -> str:
-        """The beginning of the names of this class's temporary folders; short, because sockets are made in them."""
+        """The prefix of the names of this class's temporary folders; short, because sockets are made in them."""
         return f"autograder-{hashlib.sha256(str(self.path).encode()).hexdigest()[:8]}-"
 
 
 def refuse_students_folder(folder: Path) -> None:
     """Raise an error if a folder lies among the students' files of a class.
 
-    A student may have put a whole class there, and the configuration of a class is a program that would run.
+    Otherwise a student could hand in a whole class directory, whose configuration is a program that would be run.
 
     Raises:
-        ClassIncomplete: The folder lies there; the message names the class.
+        ClassIncomplete: The folder does lie there. The message names the class around it.
     """
     place = folder.resolve()
     for outer in place.parents:
@@ -287,10 +292,10 @@ def refuse_students_folder(folder: Path) -> None:
 
 
 def reason_against_name(name: str) -> str:
-    """Return why a folder's name cannot be a student's id; empty if it can.
+    """Return why the name of a folder cannot be a student's id; empty if it can.
 
-    nbgrader looks for folders with wildcards and splits paths at separators, so some characters would find another
-    student's folder or none; control characters would forge lines in a terminal or a log.
+    nbgrader looks for folders with wildcards and splits paths at separators. So with some characters in a name, it
+    would find another student's folder or none. Control characters would forge lines in a terminal or log.
     """
     if len(name.encode("utf-8", "surrogateescape")) > _LONGEST_NAME:
         return f"the name is longer than {_LONGEST_NAME} bytes"
@@ -311,7 +316,7 @@ def _odd_files(paths: Iterable[Path]) -> Iterator[RefusedFile]:
 
 
 def _folders(parent: Path, refused: list[RefusedFile]) -> list[Path]:
-    """Return the folders in ``parent`` with usable names; hidden entries and plain files are ignored."""
+    """Return the folders in ``parent`` that have usable names. Hidden entries and plain files are ignored."""
     found = []
     for entry in _entries(parent, refused):
         if entry.name.startswith("."):

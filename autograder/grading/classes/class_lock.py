@@ -23,12 +23,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Holder:
-    """The process that holds the lock.
+    """The process that holds the lock of a class.
 
     Attributes:
         pid: The process id.
-        host: The machine that it runs on.
-        since: The local time at which it began.
+        host: The name of the machine on which it runs.
+        since: The local time at which it took the lock.
     """
 
     pid: int
@@ -36,30 +36,31 @@ class Holder:
     since: str
 
     def __str__(self) -> str:
-        """The holder in a few words."""
+        """Return the holder in a few words."""
         where = "" if self.host == socket.gethostname() else f" on {self.host}"
         return f"process {self.pid}{where}, since {self.since}"
 
 
 _own: dict[Path, Holder] = {}
-"""The locks of this process: the system would let a process take the same lock twice."""
+"""The locks that this process holds. They are recorded because the system would let a process take the same lock twice.
+"""
 _changing = threading.Lock()
 
 
 @contextlib.contextmanager
 def held(path: Path, of: Path) -> Iterator[bool]:
-    """Hold the lock of a class. The value is True if the process that held it before was killed.
+    """Hold the lock of a class during the block. The value is True if its last holder was killed.
 
-    This is a POSIX record lock: the system drops it when the process ends, and no child inherits it. The file contains
-    the holder's name while the lock is held: a name without a lock means that the holder was killed.
+    This is a POSIX record lock: the system releases it when the process ends, and no child inherits it. While the
+    lock is held, the file contains the holder's name. So a name without a lock means that the holder was killed.
 
     Args:
-        path: The lock's file; made if it does not exist.
-        of: The class, for messages.
+        path: The lock file, which is created if it does not exist.
+        of: The class, for use in messages.
 
     Raises:
-        ClassBusy: Another process holds the lock; the message names it.
-        OSError: The file cannot be written.
+        ClassBusy: Another process holds the lock. The message names it.
+        OSError: The lock file cannot be written.
     """
     path = path.resolve()
     now = Holder(os.getpid(), socket.gethostname(), f"{datetime.now():%Y-%m-%d %H:%M:%S}")

@@ -1,7 +1,7 @@
-"""The lines of ``nbgrader_config.py`` that decide how submissions are converted, and which values are supported.
+"""Checks which options of ``nbgrader_config.py`` that affect grading are set to supported values.
 
-Every command uses the same conversion into the gradebook. If a class sets an option of nbgrader's conversion that this
-one does not support, the command refuses before it changes anything, so that no line is silently ignored.
+Every command uses the same conversion into the gradebook. If a class sets an option of nbgrader's conversion that
+this one does not support, a command refuses before it changes anything, so that no option is silently ignored.
 """
 
 from __future__ import annotations
@@ -42,12 +42,12 @@ _MAY_BE: Mapping[str, Mapping[str, tuple[Any, ...]]] = {
     "HTMLExporter": {
         "filters": ({"markdown2html": "autograder.grading.returning.page_exporter.markdown_to_html"},)
     },
-    # The last three limit what nbgrader's exchange accepts.
+    # The last three options limit what nbgrader's exchange accepts.
     "CourseDirectory": dict.fromkeys(
         ("root", "db_url", "course_id", "include", "max_file_size", "max_dir_size"), (_ANYTHING,)
     ),
     "WireExecute": dict.fromkeys((*_LIMITS, "unsafe_no_sandbox", "demonstrations"), (_ANYTHING,)),
-    # None of these has an effect here.
+    # No option of these sections has an effect here, so none is supported.
     **{
         section: {}
         for section in (
@@ -71,8 +71,8 @@ _MAY_BE: Mapping[str, Mapping[str, tuple[Any, ...]]] = {
         )
     },
 }
-"""The supported values of each section's options; a section that is not listed has nothing to do with the
-conversion, or is fully supported.
+"""The supported values of options, by section. A section that is not listed does not affect the conversion, or is fully
+supported.
 """
 
 
@@ -80,14 +80,14 @@ _INSTEAD = {
     f"{section}.timeout": "c.WireExecute.cell_seconds limits the time of a cell"
     for section in ("Execute", "ExecutePreprocessor", "NotebookClient")
 }
-"""The supported line that the instructor probably meant, by option."""
+"""For an unsupported option, the supported one that the instructor probably meant."""
 
 
 def check_configuration(directory: ClassDirectory) -> None:
-    """Check that every option in the class's configuration is supported.
+    """Check that the class's configuration sets only supported options.
 
     Raises:
-        ClassIncomplete: One is not; the message names the option and says what to do.
+        ClassIncomplete: An option is not supported. The message names it and says what to do.
     """
     path = directory.path / CONFIG_NAME
     for option in _not_honoured(directory.config):
@@ -99,17 +99,17 @@ def check_configuration(directory: ClassDirectory) -> None:
     for section in ("Autograde", "GenerateFeedback"):
         if not directory.config[section].get("exporter_class"):
             raise ClassIncomplete(
-                f"{path} does not set c.{section}.exporter_class, so that nbgrader's own commands would go past the "
-                f"judge: copy the line from a class that `{COMMAND} new-class` makes."
+                f"{path} does not set c.{section}.exporter_class. Without it, nbgrader's own commands "
+                f"bypass the judge. Copy the line from a class that `{COMMAND} new-class` makes."
             )
     limits_of(directory)
 
 
 def limits_of(directory: ClassDirectory) -> Limits:
-    """Return the limits that the class's configuration sets, or the defaults.
+    """Return the limits that the class's configuration sets; for all others, the defaults.
 
     Raises:
-        ClassIncomplete: A limit is not a number above zero.
+        ClassIncomplete: A limit is not a number greater than zero.
     """
     configured = directory.config.WireExecute
     found: dict[str, Any] = {}

@@ -1,4 +1,4 @@
-"""Makes a class, an nbgrader course directory with the course's masters, and updates its sources."""
+"""Makes a class, that is, an nbgrader course directory with the course's masters; and updates its sources."""
 
 from __future__ import annotations
 
@@ -89,12 +89,12 @@ os.environ.setdefault("RCUTILS_COLORIZED_OUTPUT", "0")
 
 @dataclass(frozen=True)
 class NewClass:
-    """A class that was made.
+    """A class that was just made.
 
     Attributes:
         path: The class directory.
-        assignments: Its assignments; ``release/`` has their notebooks as students get them.
-        timezone: The name of its time zone.
+        assignments: The assignments of the class. ``release/`` contains their notebooks as students get them.
+        timezone: The name of the class's time zone.
     """
 
     path: Path
@@ -102,7 +102,7 @@ class NewClass:
     timezone: str
 
     def summary(self) -> str:
-        """The new class and the next steps, in a few lines."""
+        """Return a few lines that describe the new class and the next steps."""
         return "\n".join(
             (
                 f"{self.path} is a class with these assignments: {', '.join(self.assignments)}.",
@@ -127,15 +127,15 @@ def new_class(
 
     Args:
         path: A new or empty folder outside the course's repository.
-        course_root: The folder that contains ``solutions``.
-        assignments: The names of the masters; all masters with a graded cell by default.
-        timezone: The name of the time zone of due dates, such as ``Europe/Berlin``; this machine's by default.
-        cell_seconds: Wall time of one cell.
-        notebook_seconds: Wall time of a notebook.
+        course_root: The top folder of the course, which contains ``solutions``.
+        assignments: The names of the masters to use; by default all that have a graded cell.
+        timezone: The name of the time zone of due dates, such as ``Europe/Berlin``; by default this machine's.
+        cell_seconds: Time limit of a cell, in seconds of wall time.
+        notebook_seconds: Time limit of a notebook, in seconds of wall time.
 
     Raises:
         ClassExists: The folder is not empty, or is inside the repository.
-        GradingError: An assignment is unknown, a master cannot be used, or nbgrader could not make the class.
+        GradingError: An assignment does not exist, a master cannot be used, or nbgrader could not make the class.
     """
     path = path.absolute()
     _check_place(path, course_root)
@@ -151,7 +151,7 @@ def new_class(
             _fill(path, sources, config)
             (path / STATE_NAME / COURSE_NAME).write_text(str(course_root.resolve()), encoding="utf-8")
     except BaseException:
-        # An unfinished class would only be in the way of the next attempt.
+        # An unfinished class would only be in the way of the next attempt, so it is removed.
         for entry in path.iterdir() if path.is_dir() else ():
             shutil.rmtree(entry) if entry.is_dir() else entry.unlink()
         if made_folder and path.is_dir():
@@ -161,7 +161,7 @@ def new_class(
 
 
 def machine_timezone() -> str:
-    """Return the name of this machine's time zone, ``UTC`` if it has none with a name (see ``man 5 localtime``)."""
+    """Return the name of this machine's time zone; ``UTC`` if it is not set by name (see ``man 5 localtime``)."""
     linked = os.path.realpath("/etc/localtime").partition("/zoneinfo/")[2]
     name = os.environ.get("TZ", "").removeprefix(":") or linked
     return name if name in available_timezones() else "UTC"
@@ -185,18 +185,18 @@ def _check_place(path: Path, course_root: Path) -> None:
 
 
 Sources = dict[str, "tuple[Path, NotebookNode]"]
-"""By assignment: the master, and the source notebook made from it."""
+"""For each assignment, the path of its master and the source notebook made from the master."""
 
 
 def sources_of(course_root: Path, wanted: Sequence[str]) -> Sources:
     """Return the masters, and the source notebooks that a class gets from them.
 
     Args:
-        course_root: The folder that holds ``solutions``.
-        wanted: The names of assignments; all with a graded cell by default.
+        course_root: The top folder of the course, which contains ``solutions``.
+        wanted: The names of the assignments; by default all that have a graded cell.
 
     Raises:
-        GradingError: An assignment is not known, or its master cannot be used.
+        GradingError: An assignment does not exist, or its master cannot be used.
     """
     try:
         known = {lab_name(master): master for master in masters(course_root)}
@@ -218,7 +218,7 @@ def _fill(path: Path, sources: Sources, config: str) -> None:
     (path / "submitted").mkdir()
     (path / STATE_NAME).mkdir(mode=0o700)
     create_secret(path / STATE_NAME / "secret")
-    # Students' work, points and the secret must not go into a repository.
+    # Students' work, points and the secret must not be committed to a repository.
     (path / ".gitignore").write_text("*\n", encoding="utf-8")
     for name, (_, notebook) in sources.items():
         (path / "source" / name).mkdir(parents=True)
@@ -231,15 +231,15 @@ def _fill(path: Path, sources: Sources, config: str) -> None:
 def write_source(
     directory: ClassDirectory, name: str, notebook: NotebookNode, assignments: Container[str]
 ) -> None:
-    """Write the source of an assignment, with links that work in a class.
+    """Write the source of an assignment into a class, with links that work there.
 
-    In the chapter all notebooks are in one folder; in nbgrader's class each is in a folder of its own. Notebooks
-    outside the class are named without a link.
+    In the course, all notebooks of a chapter are in one folder; in a class, each is in a folder of its own. A
+    notebook that is not in the class is mentioned without a link.
 
     Args:
-        directory: The class; it already has the assignment's folder.
+        directory: The class. The assignment's folder exists already.
         name: The assignment.
-        notebook: The source as in the course.
+        notebook: The source notebook as it was made from the master.
         assignments: The assignments of the class.
 
     Raises:
@@ -259,14 +259,14 @@ def write_source(
 
 
 def release(directory: ClassDirectory, assignments: Sequence[str] = ()) -> None:
-    """Do the same as ``nbgrader generate_assignment``.
+    """Make the notebooks for students, as ``nbgrader generate_assignment`` does.
 
     Args:
         directory: The class.
-        assignments: The assignments; all of the class by default.
+        assignments: The assignments to release; by default all of the class.
 
     Raises:
-        GradingError: nbgrader failed; the class's ``nbgrader.log`` has the details.
+        GradingError: nbgrader failed. The class's ``nbgrader.log`` has the details.
     """
     for assignment in assignments or directory.assignments():
         course = CourseDirectory(config=directory.config)
@@ -288,16 +288,16 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
 
     Args:
         path: The class directory.
-        course_root: The folder that holds ``solutions``.
-        assignments: The assignments to renew; all that have a master in the course by default.
+        course_root: The top folder of the course, which contains ``solutions``.
+        assignments: The assignments to renew; by default all that have a master in the course.
 
     Returns:
-        One line for each assignment that says what was done.
+        One line for each assignment, which says what was done.
 
     Raises:
         GradingError: An assignment is missing in the course or in the class, no assignment is in both, or nbgrader
-            refuses the new text.
-        OSError: The sources could not be written. After any error they are as before.
+            rejects the new text.
+        OSError: The sources could not be written. After any error they are unchanged.
     """
     directory = ClassDirectory(path)
     there = directory.assignments()
@@ -315,7 +315,7 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
             for name, (_, notebook) in made.items():
                 write_source(directory, name, notebook, there)
             release(directory, list(made))
-        except BaseException:  # including a full disk and Ctrl-C
+        except BaseException:  # any error, including a full disk or Ctrl-C: put the earlier sources back
             for name in made:
                 shutil.copytree(kept / name, directory.path / "source" / name, dirs_exist_ok=True)
             raise
@@ -330,8 +330,8 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
 def _version_read_here() -> Iterator[None]:
     """Make nbgrader read the version of its tables in this process, for as long as the block lasts.
 
-    nbgrader runs Alembic's command for it (``nbgrader.api.get_alembic_version``), which takes four seconds of
-    processor time for each new gradebook. This reads the same files.
+    nbgrader runs an Alembic command for this (``nbgrader.api.get_alembic_version``), which takes four seconds of
+    processor time for each new gradebook. This reads the same files much faster.
     """
     theirs = api.get_alembic_version
     api.get_alembic_version = _newest_version
@@ -342,7 +342,7 @@ def _version_read_here() -> Iterator[None]:
 
 
 def _newest_version() -> str:
-    """Return the version of the tables that this nbgrader makes."""
+    """Return the version of the database tables that this nbgrader makes."""
     settings = Config()
     settings.set_main_option("script_location", dbutil.ALEMBIC_DIR.replace("%", "%%"))
     return str(ScriptDirectory.from_config(settings).get_current_head())

@@ -1,8 +1,8 @@
-"""The masters from which the sources of a class were made, and which of them have changed since.
+"""The masters from which the sources of a class were made, and which of these masters have changed since.
 
-A class has its own copy of each assignment, which its instructor may change. The judge has no copy: it judges by the
-present course. So a master then is compared with the master now, and only its cells that are graded or answered
-count.
+A class has its own copy of each assignment, which its instructor may change. The judge does not use that copy; it
+judges by the current course. So the master from which a source was made is compared with the master as it is now.
+Only the cells that are graded or answered count.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def note_origins(store: ClassStore, made: Mapping[str, tuple[Path, NotebookNode]
 
     Args:
         store: The store of the class.
-        made: By assignment: the master, and the source made from it.
+        made: For each assignment, its master and the source that was made from it.
     """
     store.note_origins(
         {
@@ -45,8 +45,8 @@ def news(directory: ClassDirectory, store: ClassStore, assignments: Iterable[str
 
     Args:
         directory: The class.
-        store: Its store, which knows the origins.
-        assignments: The assignments that are graded.
+        store: The class's store, which contains the origins.
+        assignments: The assignments to be graded.
     """
     known = store.origins()
     if not known:
@@ -60,7 +60,7 @@ def news(directory: ClassDirectory, store: ClassStore, assignments: Iterable[str
 
 
 def warning(directory: ClassDirectory, assignment: str) -> str:
-    """Return the warning about a changed assignment, with what to do."""
+    """Return the warning about an assignment whose task has changed, with what to do."""
     return (
         f"{assignment}: its master in the course was changed since this class got its source. The judge expects what "
         "the course says now, so work that was written for the old text may fail. See first who would: "
@@ -75,15 +75,16 @@ def _has_moved(origin: Origin) -> bool:
     try:
         if _digest([master.read_text("utf-8")]) == origin.text:
             return False
-        from autograder.masters.source import source_notebook  # takes a second, and is rarely needed
+        # Imported here because it takes a second and is rarely needed.
+        from autograder.masters.source import source_notebook
 
         return _work(source_notebook(master)) != origin.work
     except (OSError, UnicodeDecodeError, MasterError):
-        return False  # the course has moved, or is being edited
+        return False  # the course has been moved, or is being edited
 
 
 def _in_course(master: Path) -> str:
-    """Return the master's path relative to the course, so that the course may move; else the whole path."""
+    """Return the master's path relative to the course, so that the course may be moved; else the whole path."""
     path, root = master.resolve(), course.root().resolve()
     return str(path.relative_to(root) if path.is_relative_to(root) else path)
 

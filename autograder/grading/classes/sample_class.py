@@ -1,4 +1,4 @@
-"""The sample class: submissions right, wrong and broken, made by this program from one data file."""
+"""The sample class: right, wrong and broken submissions, made by this program from one data file."""
 
 from __future__ import annotations
 
@@ -32,16 +32,18 @@ if TYPE_CHECKING:
 
 DATA = Path(__file__).with_suffix(".toml")
 CELL_SECONDS = 8.0
-"""Short, so that the student with the endless loop does not slow down the demonstration."""
+"""The time limit of a cell in seconds. It is short, so that the student with the endless loop does not slow down the
+demonstration.
+"""
 NOTEBOOK_SECONDS = 120.0
 BANK = Path("tests", "submissions", "notebooks")
-"""The folder, in the course, of answers as students write them, right and wrong."""
+"""The folder, in the course, that contains answers as students write them, right and wrong."""
 _STAMP = "sample"
 
 
 @dataclass(frozen=True)
 class SampleNotebook:
-    """One notebook of one student; the data file explains the fields."""
+    """One notebook of one student. The data file explains the fields."""
 
     student: str
     assignment: str
@@ -59,7 +61,7 @@ class SampleNotebook:
 
 @dataclass(frozen=True)
 class _Answer:
-    """A student's text in a solution cell, and in added cells before it."""
+    """A student's text in a solution cell, and in the cells that the student added before it."""
 
     source: str
     extra: tuple[str, ...]
@@ -72,7 +74,7 @@ def sample_notebooks() -> tuple[SampleNotebook, ...]:
 
 
 def submit_sample(path: Path) -> None:
-    """Hand in every sample notebook in the class at ``path``."""
+    """Hand in every sample notebook to the class at ``path``."""
     for notebook in sample_notebooks():
         folder = path / "submitted" / notebook.student / notebook.assignment
         folder.mkdir(parents=True, exist_ok=True)
@@ -81,17 +83,17 @@ def submit_sample(path: Path) -> None:
 
 
 def demo(path: Path, *, console: Console | None = None) -> GradeReport:
-    """Make the sample class, grade it, and print the table and the paths of everything.
+    """Make the sample class, grade it, and print the table and the paths of all results.
 
-    If this command made the class before from the same course, it only grades it, which takes seconds. If no sandbox
-    is possible it grades without one: the samples come from the course itself.
+    If an earlier call made the class from the same course, it is only graded, which takes seconds. If no sandbox is
+    possible, it is graded without one, because the samples come from the course itself.
 
     Args:
-        path: The class directory; made if it does not exist.
-        console: Standard output by default.
+        path: The class directory, which is made if it does not exist.
+        console: The console to print on; by default standard output.
 
     Raises:
-        GradingError: ``path`` contains something else, or grading is not possible.
+        GradingError: ``path`` contains something other than the sample class, or grading is not possible.
     """
     console = console or Console()
     if sandbox.why_impossible():
@@ -124,7 +126,7 @@ def _make(path: Path, console: Console) -> None:
 
 
 def _version(root: Path) -> str:
-    """Return a hash of the masters, the answers and data of the sample, and the configuration of a class."""
+    """Return a hash of the masters, of the sample's answers and data, and of the class configuration."""
     digest = hashlib.sha256(DATA.read_bytes() + CONFIG.encode())
     notebooks = sample_notebooks()
     names = {notebook.assignment for notebook in notebooks}
@@ -141,7 +143,7 @@ def made_notebook(path: Path, wanted: SampleNotebook) -> NotebookNode:
     """Return the notebook as the student saved it.
 
     Args:
-        path: The class, with its sources and its release.
+        path: The class, which has its sources and its release.
         wanted: The notebook to make.
     """
     name = f"{wanted.assignment}{SUFFIX}"
@@ -159,7 +161,7 @@ def made_notebook(path: Path, wanted: SampleNotebook) -> NotebookNode:
 def _changed(
     cell: NotebookNode, wanted: SampleNotebook, right: dict[str, str], answers: dict[str, _Answer]
 ) -> list[NotebookNode]:
-    """Return the cells that replace one cell of the released notebook."""
+    """Return the cells with which the student's notebook replaces one cell of the released notebook."""
     name = grade_id(cell)
     if not name:
         return [cell]
@@ -182,7 +184,7 @@ def _changed(
 
 
 def _bank_answers(file: str) -> dict[str, _Answer]:
-    """Return the cells of a bank answer: ``# %% extra`` and ``# %% solution NAME`` each begin one."""
+    """Return the cells of an answer from the bank. A line ``# %% extra`` or ``# %% solution NAME`` begins a cell."""
     text = (course.root() / BANK / file).read_text(encoding="utf-8")
     found: dict[str, _Answer] = {}
     extra: list[str] = []

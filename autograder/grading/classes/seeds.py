@@ -1,4 +1,4 @@
-"""Random inputs that a student cannot guess, that differ between students, and that can be reproduced."""
+"""Seeds for random inputs that a student cannot guess, that differ between students, and that can be reproduced."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _BYTES = 32
 
 
 def create_secret(path: Path) -> None:
-    """Write a new class secret that only its owner can read.
+    """Write a new class secret, which only its owner can read.
 
     Raises:
-        FileExistsError: A secret exists; a new one would change every student's inputs.
+        FileExistsError: A secret exists already. A new one would change every student's inputs.
     """
     descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     with os.fdopen(descriptor, "w") as file:
@@ -29,8 +29,8 @@ def read_secret(path: Path) -> bytes:
     """Return the class secret.
 
     Raises:
-        OSError: It cannot be read.
-        ValueError: It is damaged.
+        OSError: The file cannot be read.
+        ValueError: The file is damaged.
     """
     secret = bytes.fromhex(path.read_text().strip())
     if len(secret) != _BYTES:
@@ -39,15 +39,15 @@ def read_secret(path: Path) -> bytes:
 
 
 def seed_for(secret: bytes, student: str, assignment: str, notebook: str, work: str) -> str:
-    """Return the seed of one student's notebook; the judge adds each exercise's id.
+    """Return the seed of one student's notebook. From this the judge derives a seed for each exercise.
 
     Args:
         secret: The class secret.
         student: The student's id.
         assignment: The assignment's name.
         notebook: The notebook's name.
-        work: A hash of what was handed in. So a student who copies inputs from the feedback on one submission into
-            the next one gets different inputs there.
+        work: A hash of what was handed in. So a student who copies inputs from the feedback into the next submission
+            gets different inputs there.
     """
     # The message contains the lengths, so that ("ab", "c") and ("a", "bc") never give the same seed.
     message = "".join(f"{len(part)}:{part};" for part in (student, assignment, notebook, work))

@@ -1,4 +1,4 @@
-"""The time of handing in, from nbgrader's timestamp file, which may be forged."""
+"""The time of handing in, from nbgrader's timestamp file. A student may have forged that file."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 TIMESTAMP = "timestamp.txt"
-"""The name of the file next to the notebooks."""
+"""The name of the timestamp file, which lies next to the notebooks."""
 SECRET = "submission_secret.txt"
-"""nbgrader's exchange writes this file next to the notebooks that it collects, and identifies a page's student by
-it.
+"""The name of the file that nbgrader's exchange writes next to collected notebooks. nbgrader uses it to decide which
+student a feedback page is for.
 """
 _LONGEST = 200
 _HEX = frozenset("0123456789abcdef")
 _EARLIEST = datetime(2024, 5, 23)
-"""The release day of ROS 2 Jazzy."""
+"""The earliest accepted time: the release day of ROS 2 Jazzy."""
 _AHEAD = timedelta(days=1)
-"""How far ahead another machine's clock may be."""
+"""How far ahead of this machine's clock a time may be, because it may come from another machine."""
 
 
 def read_timestamp(folder: Path) -> str:
-    """Return the text of the file; empty if it does not exist or is not an ordinary file.
+    """Return the text of the timestamp file; empty if it does not exist or is not an ordinary file.
 
-    If ``./course collect`` collected the work, the file counts only if the command wrote it: a student can include
-    such a file in a submission.
+    If ``./course collect`` collected the work, the file counts only if that command wrote it, because a student can
+    include such a file in a submission.
     """
     records = CollectedRecords(folder.parent.parent.parent / STATE_NAME)
     if records.is_used:
@@ -40,7 +40,7 @@ def read_timestamp(folder: Path) -> str:
 
 
 def _text(path: Path) -> str | None:
-    """Return the text of a short file, or None if it cannot be read."""
+    """Return the text of a short file; None if it cannot be read."""
     try:
         return read_bytes(path, most=_LONGEST).decode("ascii", "replace").strip()
     except UnreadableSubmission:
@@ -48,9 +48,9 @@ def _text(path: Path) -> str | None:
 
 
 def companions(folder: Path) -> dict[str, bytes]:
-    """Return nbgrader's files that follow a submission into ``autograded`` and ``feedback``, by name.
+    """Return nbgrader's files that accompany a submission into ``autograded`` and ``feedback``, by name.
 
-    Without them `nbgrader release_feedback` does not know which student a page is for.
+    Without these files, `nbgrader release_feedback` does not know which student a page is for.
     """
     found = {}
     stamp = read_timestamp(folder)
@@ -63,7 +63,7 @@ def companions(folder: Path) -> dict[str, bytes]:
 
 
 def is_not_believed(folder: Path) -> bool:
-    """True if the timestamp file of a submission differs from the time that ``./course collect`` recorded."""
+    """Return True if a submission's timestamp file differs from the time that ``./course collect`` recorded."""
     records = CollectedRecords(folder.parent.parent.parent / STATE_NAME)
     if not records.is_used or not (folder / TIMESTAMP).exists():
         return False
@@ -74,7 +74,7 @@ def timestamp_text(when: datetime) -> str:
     """Return a time in nbgrader's format.
 
     Args:
-        when: The time in UTC.
+        when: A time in UTC.
     """
     return f"{when:%Y-%m-%d %H:%M:%S.%f} UTC"
 
@@ -84,11 +84,11 @@ def handed_in_at(folder: Path, *, believed: datetime | None = None) -> datetime 
 
     Args:
         folder: The folder of the submission.
-        believed: A time that was accepted before, such as the one in the gradebook; it stays accepted even if the clock
-            of this machine is wrong today.
+        believed: A time that was accepted earlier, such as the one in the gradebook. It stays accepted even if this
+            machine's clock is wrong today.
 
     Raises:
-        ValueError: The text is not a time, or a time at which no student can have handed in work.
+        ValueError: The text is not a time, or is a time at which no student can have handed in work.
     """
     stamp = read_timestamp(folder)
     if not stamp:
@@ -100,7 +100,7 @@ def handed_in_at(folder: Path, *, believed: datetime | None = None) -> datetime 
     try:
         at: datetime = parse_utc(stamp)
     except (ValueError, OverflowError) as error:
-        raise ValueError(f"{folder / TIMESTAMP} holds no time: {stamp[:60]!r}") from error
+        raise ValueError(f"{folder / TIMESTAMP} does not contain a time: {stamp[:60]!r}") from error
     if at != believed and not _EARLIEST <= at <= datetime.now(tz=UTC).replace(tzinfo=None) + _AHEAD:
         raise ValueError(
             f"{folder / TIMESTAMP} says {stamp[:60]}, when no student can have handed in work for this course: "

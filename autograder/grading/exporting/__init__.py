@@ -1,1 +1,1 @@
-"""Exports from a class: points in the formats of learning management systems, and feedback as one zip."""
+"""Exports from a class: points in the formats of learning management systems (LMS), and feedback as a zip."""

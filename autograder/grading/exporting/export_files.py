@@ -1,4 +1,4 @@
-"""Writes the files for an LMS into the class's folder ``export``."""
+"""Writes the files for an LMS into the folder ``export`` of the class."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Exported:
-    """The files that were written.
+    """The files that an export wrote.
 
     Attributes:
-        files: Each file, and its purpose.
-        notices: Sentences that the instructor should read before the upload.
+        files: Pairs of a file and its purpose.
+        notices: Sentences that the instructor should read before uploading.
     """
 
     files: tuple[tuple[Path, str], ...]
@@ -48,21 +48,23 @@ def export(
 
     Args:
         path: The class directory.
-        to: A system of :data:`LAYOUTS`, ``ilias``, ``csv`` or ``xlsx``.
-        assignments: The assignments to export; all that at least one student has handed in by default.
-        into: A list that the LMS has exported, to be filled in.
-        folder: The folder to write into; ``export`` in the class by default.
-        absent_zero: Write zero for students who have handed in nothing; otherwise nothing is written.
-        columns: The names of assignments' columns in ``into``, if they differ from the assignments' names.
-        sections: Only the students of these sections; all students if empty.
+        to: A system in :data:`LAYOUTS`, or ``ilias``, ``csv`` or ``xlsx``.
+        assignments: The assignments to export; by default all that at least one student has handed in.
+        into: A list that the LMS has exported, to be filled in with points.
+        folder: The folder to write into; by default ``export`` in the class.
+        absent_zero: True to write zero for students who have handed in nothing; otherwise nothing is written for
+            them.
+        columns: For assignments whose column in ``into`` has another name, that name.
+        sections: The sections whose students are exported; all students if empty.
 
     Raises:
-        GradingError: There is nothing to export, a run is in progress, or the list cannot be filled in or is missing.
+        GradingError: There is nothing to export, a grading run is in progress, or the list is missing or cannot be
+            filled in.
     """
     if columns and not into:
         raise GradingError("--column names a column of --into: name that list, too, or leave --column out.")
     directory = ClassDirectory(path)
-    # During a run, grades that were taken back look like zero points.
+    # While a grading run is in progress, grades that were set to zero look like results.
     with directory.lock():
         table = read_table(directory, sections)
         table = replace(table, absent=0.0) if absent_zero else table

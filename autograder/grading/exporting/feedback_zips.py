@@ -1,8 +1,9 @@
-"""Feedback as one zip in the format that an LMS reads: each page has the name of the file that it answers.
+"""Feedback as one zip in the format that an LMS can read: a page is named after the file that it is about.
 
-Moodle (*Upload multiple feedback files in a zip*) takes a page by the folder ``<name>_<number>_assignsubmission_file``;
-Canvas (*Upload submissions*) by the numbers of student and file in the name that it gave the file; Brightspace, Sakai
-and ILIAS (from memory) by the folder that they gave the student.
+The systems find the student of a page as follows. Moodle (*Upload multiple feedback files in a zip*): by the folder
+``<name>_<number>_assignsubmission_file``. Canvas (*Upload submissions*): by the numbers of the student and of the
+file in the name that it gave the file. Brightspace, Sakai and ILIAS (from memory): by the folder that they gave the
+student.
 """
 
 from __future__ import annotations
@@ -28,26 +29,26 @@ WAYS = {
     "sakai": "Upload All, Feedback Attachment(s)",
     "ilias": "Multi-Feedback",
 }
-"""The page of each system for uploading the zip."""
+"""For each system, the name of its page for uploading the zip."""
 _WITHIN = {"sakai": "Feedback Attachment(s)/"}
-"""The folder for feedback inside the student's folder."""
+"""The folder for feedback pages inside the student's folder, by system."""
 _MADE = (2000, 1, 1, 0, 0, 0)
 
 
 def feedback_zip(
     directory: ClassDirectory, table: ClassTable, records: CollectedRecords, assignment: str, lms: str
 ) -> tuple[bytes, list[str]]:
-    """Return the pages of one assignment as a zip.
+    """Return the feedback pages of one assignment as a zip, and the students whose page could not be included.
 
     Args:
         directory: The class.
-        table: The table of this class.
+        table: The table of the class.
         records: The records of what was collected.
         assignment: The assignment's name.
-        lms: One of :data:`WAYS`.
+        lms: A key of :data:`WAYS`.
 
     Returns:
-        The zip, empty if it would contain no page, and the students who have a page but whose name in that LMS is
+        The zip, empty if it would contain no page; and the students who have a page but whose name in that LMS is
         unknown.
     """
     data = io.BytesIO()
@@ -66,15 +67,15 @@ def feedback_zip(
                     called = _moodle(table.roster.students[student].name or student, there.number, page.name)
                 else:
                     called = _called(there.file, lms, page, is_one=len(pages) == 1)
-                # The same class gives the same zip: it contains no time of this machine.
+                # The zip contains no time of this machine, so the same class gives the same zip.
                 archive.writestr(zipfile.ZipInfo(called, _MADE), page.read_bytes(), zipfile.ZIP_DEFLATED)
     return (data.getvalue() if archive.namelist() else b""), unknown
 
 
 def _called(file: str, lms: str, page: PurePath, *, is_one: bool) -> str:
-    """Return the name of a page for a system, from the name that it gave to the student's file or folder.
+    """Return the name of a page in the zip, derived from the name that the system gave to the student's file or folder.
 
-    From an unpacked zip that is the folder's name, because the student chose the names inside it.
+    If a zip was unpacked, this is the name of the folder, because the student chose the names inside it.
     """
     parts = PurePosixPath(file).parts
     place, found = next(

@@ -1,11 +1,11 @@
-"""The files that learning management systems (LMS) import into their gradebooks, one row of a table each.
+"""The formats of the files that learning management systems (LMS) import into their gradebooks; one row each.
 
 Canvas reads ``Student, ID, SIS User ID, SIS Login ID, Section``, then a column for each assignment, and in the second
 line the points possible (https://community.canvaslms.com, "How do I import grades in the Gradebook?"). Moodle's
-gradebook reads any columns, of which one identifies the student (https://docs.moodle.org, "Grade import").
-Brightspace reads ``OrgDefinedId`` or ``Username``, ``… Points Grade`` and a marker for the end of the line
-(https://community.d2l.com, "Importing grades"). Gradescope imports no grades, but programs for its lists read this
-format. The formats of Blackboard and Sakai are from memory.
+gradebook reads any columns, one of which identifies the student (https://docs.moodle.org, "Grade import").
+Brightspace reads ``OrgDefinedId`` or ``Username``, ``… Points Grade`` and an end-of-line marker
+(https://community.d2l.com, "Importing grades"). Gradescope imports no grades, but programs that read its lists read
+this format. The formats of Blackboard and Sakai are from memory.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ class GradebookLayout:
     """The format of one system's gradebook file.
 
     Attributes:
-        purpose: The page of the system for uploading the file.
-        columns: The names of the columns before the points, each with the name of its content in :func:`_facts`, or
-            nothing.
-        points: The name of an assignment's column, made from the assignment's name and its most points.
-        most: The name of a second column for the most points; empty for none.
-        possible: The first cell of the line with the most points; empty if there is no such line.
-        excused: The word that the system reads as excused.
-        end: Columns after the points, each with its content.
+        purpose: The page of the system on which the file is uploaded.
+        columns: The columns before the points: each name with the key of its content in :func:`_facts`, or an empty
+            text.
+        points: A template for the name of an assignment's column, with the assignment's name and maximum points.
+        most: A template for the name of a second column, for the maximum points; empty if there is none.
+        possible: The first cell of the line that contains the maximum points; empty if there is no such line.
+        excused: The word with which the system marks an excused student.
+        end: The columns after the points, each with its content.
     """
 
     purpose: str
@@ -82,7 +82,7 @@ LAYOUTS = {
 
 
 def known_there(records: CollectedRecords, assignment: str, student: str, lms: str) -> Collected | None:
-    """Return a student's name in the LMS from which work was collected; None if it came another way."""
+    """Return how the LMS named a student whose work was collected from it; None if the work came another way."""
     history = records.get(assignment, student)
     found = [one for one in history.now.values() if one.lms == lms] if history else []
     return found[-1] if found else None
@@ -112,7 +112,7 @@ def gradebook(lms: str, table: ClassTable, records: CollectedRecords, assignment
 def _facts(
     table: ClassTable, records: CollectedRecords, id_: str, lms: str, assignments: Sequence[str]
 ) -> dict[str, str]:
-    """Return what a file may contain about a student; ``there`` and ``user`` are the names from the system itself."""
+    """Return what a file may contain about a student. ``there`` and ``user`` are the names in the system itself."""
     student = table.roster.students[id_]
     own = student.lms.get(lms, "")
     is_asked = {"there", "user"} & set(LAYOUTS[lms].columns.values())

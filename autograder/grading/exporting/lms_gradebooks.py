@@ -1,6 +1,6 @@
-"""Moodle's grading worksheet, and lists exported by systems, to be filled in with points.
+"""Lists exported by an LMS, filled in with points; among them Moodle's grading worksheet.
 
-Moodle's assignment reads the columns ``Identifier``, ``Grade`` and ``Last modified (grade)`` of its worksheet.
+Moodle's assignment reads the columns ``Identifier``, ``Grade`` and ``Last modified (grade)`` of the worksheet.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ MOODLE_WORKSHEET = (
 def moodle_worksheet(table: ClassTable, records: CollectedRecords, assignment: str) -> tuple[str, list[str]]:
     """Return the grading worksheet of one assignment, and the students whose participant number is unknown.
 
-    The worksheet is empty if it would give points to no student. Moodle gives each student another number in each
+    The worksheet is empty if it would give points to no student. Moodle gives each student a different number in each
     assignment, so only work that was collected from there contains the number.
     """
     rows: list[list[str | float]] = [list(MOODLE_WORKSHEET)]
@@ -61,15 +61,16 @@ def moodle_worksheet(table: ClassTable, records: CollectedRecords, assignment: s
 
 
 class List(NamedTuple):
-    """A list exported by an LMS that can be filled in.
+    """A kind of list, exported by an LMS, that can be filled in.
 
     Attributes:
         lms: The system that exports the list.
         has: The columns by which the list is recognized.
         sure: The columns that identify a student, the most certain first.
-        called: The columns in which users name themselves.
-        numbered: True if the first of the sure columns has numbers of the LMS that no other system knows.
-        points: The column for the points, if the list is of one assignment; empty if each assignment has a column.
+        called: The columns with names that users can choose themselves.
+        numbered: True if the first column in ``sure`` contains numbers that only the LMS knows.
+        points: The column for the points, if the list is about one assignment; empty if each assignment has its own
+            column.
     """
 
     lms: str
@@ -108,24 +109,24 @@ _LISTS = (
 def filled_in(
     data: bytes, lms: str, table: ClassTable, assignments: Sequence[str], columns: Mapping[str, str]
 ) -> tuple[bytes, list[str], list[str], List]:
-    """Fill the points into a list from the LMS, and leave everything else in it unchanged.
+    """Fill points into a list that an LMS exported, and leave everything else in the list unchanged.
 
-    Points already in the list stay if the class has none for the student.
+    Points that are already in the list stay if the class has none for the student.
 
     Args:
         data: Moodle's grading worksheet, or a gradebook that another system exported.
         lms: The system, as the instructor named it.
-        table: The class.
-        assignments: The assignments to fill in; exactly one for a worksheet.
-        columns: The names of assignments' columns in the list, if they differ from the assignments' names.
+        table: The table of the class.
+        assignments: The assignments to fill in; exactly one if the list is a worksheet.
+        columns: For assignments whose column in the list has another name, that name.
 
     Returns:
-        The list; the lines that match no student of the class; the lines that may mean a student for whom another
-        line is at least as good (in an LMS, users name themselves); and the kind of list.
+        Four results: the list; the lines that match no student of the class; the lines that may mean a student for
+        whom another line matches at least as well (in an LMS, users choose their own names); and the kind of list.
 
     Raises:
-        GradingError: The list cannot be read, is of no known kind or of another system, or has no column for an
-            assignment that takes points.
+        GradingError: The list cannot be read, is of an unknown kind or from another system, or has no column that
+            takes points for an assignment.
     """
     try:
         text = data.decode("utf-8-sig")
@@ -159,7 +160,7 @@ def filled_in(
     for row in rows[1:]:
         if not any(row[:1]) or row[0].strip().startswith(("Points Possible", "Student, Test")):
             continue
-        # Some spreadsheet programs leave out the empty cells at the end of a line.
+        # Some spreadsheet programs omit empty cells at the end of a line.
         row += [""] * (len(header) - len(row))
         values = [
             original(row[header.index(name)].strip()).removeprefix("#") for name in names if name in header
@@ -192,7 +193,7 @@ class _Meant(NamedTuple):
 
 
 def _told_apart(meant: Mapping[str, Sequence[_Meant]]) -> tuple[dict[str, list[str]], list[str]]:
-    """Return the line of each student, and the names in other lines that may mean the same student."""
+    """Return the line of each student, and the names in further lines that may mean the same student."""
     certain: dict[str, list[str]] = {}
     doubtful: list[str] = []
     for student, lines in meant.items():
@@ -206,14 +207,14 @@ def _told_apart(meant: Mapping[str, Sequence[_Meant]]) -> tuple[dict[str, list[s
 
 
 _KINDS = ("number", "login", "name")
-"""The kinds of value that may identify a student, the most certain first."""
+"""The kinds of values that may identify a student, the most certain first."""
 
 
 def _open_columns(header: Sequence[str], rows: Sequence[Sequence[str]], kind: List) -> list[int]:
-    """Return the indexes of the columns that take points for an assignment.
+    """Return the indexes of the columns that can take the points of an assignment.
 
-    Canvas writes ``(read only)`` in the line *Points Possible* of each column that it computes itself. Gradescope
-    writes a column ``… - Max Points`` for each assignment.
+    The other columns are recognized as follows. In the line *Points Possible*, Canvas writes ``(read only)`` into
+    each column that it computes itself. Gradescope writes a column ``… - Max Points`` for each assignment.
     """
     known = {*kind.has, *kind.sure, *kind.called, *LAYOUTS[kind.lms].columns, "First Name"}
     possible: Sequence[str] = next((row for row in rows if row and row[0].strip() == "Points Possible"), ())
@@ -226,10 +227,10 @@ def _open_columns(header: Sequence[str], rows: Sequence[Sequence[str]], kind: Li
 
 
 def _column(header: Sequence[str], open_columns: Sequence[int], assignment: str, called: str) -> int:
-    """Return the index of the column for an assignment. Canvas writes a number after a name: ``lab_1_2 (815)``.
+    """Return the index of the column for an assignment. Canvas adds a number to its name: ``lab_1_2 (815)``.
 
     Raises:
-        GradingError: The list has no such column, or the system computes that column itself.
+        GradingError: The list has no such column, or the LMS computes that column itself.
     """
     named = [i for i, name in enumerate(header) if name == called or _without_number(name) == called]
     for index in named:
@@ -250,12 +251,12 @@ def _column(header: Sequence[str], open_columns: Sequence[int], assignment: str,
 
 
 def _without_number(name: str) -> str:
-    """Return a column's name without the suffix of Canvas, Brightspace, Blackboard or Sakai."""
+    """Return a column's name without the suffix that Canvas, Brightspace, Blackboard or Sakai adds."""
     return re2.sub(r"(?: \([^()]*\)| Points Grade.*| \[[^\]]*\](?: \|\d+)?)$", "", name)
 
 
 def _likeliest(assignment: str, names: Sequence[str]) -> str:
-    """Return the column name that is most similar to an assignment's name; case and punctuation do not count."""
+    """Return the column name that is most similar to an assignment's name. Case and punctuation are ignored."""
 
     def similarity(name: str) -> tuple[float, float]:
         one, other = (re2.sub(r"[\W_]+", "", text).casefold() for text in (assignment, _without_number(name)))
@@ -265,7 +266,7 @@ def _likeliest(assignment: str, names: Sequence[str]) -> str:
 
 
 def _check_one_each(places: Mapping[str, int], header: Sequence[str]) -> None:
-    """Raise GradingError if two assignments would write into one column."""
+    """Raise GradingError if two assignments would be written into the same column."""
     for name, index in places.items():
         others = [other for other, place in places.items() if place == index and other != name]
         if others:
@@ -276,10 +277,10 @@ def _check_one_each(places: Mapping[str, int], header: Sequence[str]) -> None:
 
 
 def _who(table: ClassTable, kind: List, values: Sequence[str]) -> tuple[Student, int] | None:
-    """Return the student of a line, and the rank of the value that matched; a low rank is a strong match."""
+    """Return the student of a line, and the rank of the matching value; a lower rank is a more certain match."""
     columns: list[tuple[str, tuple[str, ...]]] = [(value, _KINDS) for value in values]
     if kind.numbered:
-        # A number of the LMS may be another student's id in the class, so it is compared with ids last.
+        # A number that only the LMS knows may equal another student's id, so it is compared with ids last.
         columns = [(values[0], _KINDS[:1]), *columns[1:], (values[0], _KINDS[1:])]
     for place, (value, kinds) in enumerate(columns):
         for way in kinds if value else ():

@@ -1,4 +1,4 @@
-"""The table for a spreadsheet: a line for each student, then a line for each exercise."""
+"""The table of a class for a spreadsheet: a line for each student, then a line for each exercise."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Cells = list[str | float]
 
 
 def student_rows(table: ClassTable, assignments: Sequence[str]) -> list[Cells]:
-    """Return the column names, then a line for each student."""
+    """Return a line with the column names, then a line for each student."""
     who = ["student", "first_name", "last_name", "email"]
     rows: list[Cells] = [
         [*who, *assignments, "total", "max", "late_penalty", "waits_for_a_person", "excused", "dropped"]
@@ -45,16 +45,16 @@ def student_rows(table: ClassTable, assignments: Sequence[str]) -> list[Cells]:
 
 
 def as_csv(table: ClassTable, assignments: Sequence[str]) -> bytes:
-    """Return a line for each student as CSV, with the mark by which Excel recognizes UTF-8."""
+    """Return the students' lines as CSV, with the mark (BOM) by which Excel recognizes UTF-8."""
     return csv_text(student_rows(table, assignments)).encode("utf-8-sig")
 
 
 def as_xlsx(table: ClassTable, assignments: Sequence[str]) -> bytes:
-    """Return a workbook with two sheets: students, and exercises."""
+    """Return a workbook with two sheets: one of the students, one of the exercises."""
     exercises: list[Cells] = [list(COLUMNS)]
     exercises += [list(csv_cells(row)) for row in table.rows if row.assignment in assignments]
     data = io.BytesIO()
-    # Text from a student or an LMS never becomes a formula, a link or a number.
+    # A text from a student or an LMS must never become a formula, a link or a number.
     options = {
         "in_memory": True,
         "strings_to_formulas": False,

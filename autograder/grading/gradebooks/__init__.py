@@ -1,1 +1,1 @@
-"""The results of tasks, entered into the gradebook by one writer."""
+"""How results get into nbgrader's gradebook, through a single writer."""

@@ -1,7 +1,7 @@
 """Converts a graded submission: writes its notebooks to ``autograded/``, and makes its entry for the gradebook.
 
-The result is the same as that of nbgrader's conversion, in a twentieth of the time: nbgrader reads, validates and
-writes every notebook twice, and opens the gradebook a dozen times.
+The result equals that of nbgrader's conversion, in a twentieth of the time. nbgrader reads, validates and writes
+every notebook twice, and opens the gradebook a dozen times.
 """
 
 from __future__ import annotations
@@ -47,13 +47,13 @@ def convert(
     results: Sequence[tuple[Task, Execution]],
     folder: Path,
 ) -> dict[str, NotebookEntry]:
-    """Write the notebooks of a submission with their results, and return their entries for the gradebook.
+    """Write the notebooks of a submission with their results, and return the entries for the gradebook.
 
     Args:
         directory: The class.
         submission: The submission that was executed.
-        results: A pair for each notebook of the assignment.
-        folder: The folder for the notebooks; it is made here, and must not exist.
+        results: Pairs of a task and its result, one for each notebook of the assignment.
+        folder: The folder to create for the notebooks. It must not exist yet.
 
     Returns:
         The entries by notebook.
@@ -76,10 +76,10 @@ def convert(
 
 
 def write_companions(submission: Submission, folder: Path) -> None:
-    """Copy nbgrader's files about a submission, its timestamp and its secret, into a folder.
+    """Copy nbgrader's own files about a submission, its timestamp and its secret, into a folder.
 
     Raises:
-        OSError: They could not be written.
+        OSError: A file could not be written.
     """
     for name, data in companions(submission.folder).items():
         _write(folder / name, data)
@@ -97,7 +97,7 @@ def _graded(
 
 
 def _text(notebook: NotebookNode) -> bytes:
-    """Return the notebook as nbformat writes it, for which pure Python code indents; changes ``notebook``."""
+    """Return the notebook as nbformat would write it, but faster. Changes ``notebook``."""
     split: Any = rwbase.split_lines
     strip: Any = rwbase.strip_transient
     encoded = msgspec.json.encode(strip(split(notebook)), order="sorted")
@@ -105,7 +105,7 @@ def _text(notebook: NotebookNode) -> bytes:
 
 
 def _entry(notebook: NotebookNode) -> NotebookEntry:
-    """Return the entry that nbgrader's SaveAutoGrades would make."""
+    """Return the entry that nbgrader's SaveAutoGrades would make for the notebook."""
     scores: dict[str, float | None] = {}
     comments: dict[str, str | None] = {}
     for cell in notebook.cells:
@@ -127,7 +127,7 @@ def _write(path: Path, data: bytes) -> None:
 
 
 def _with_results(nb: NotebookNode, task: Task, execution: Execution) -> NotebookNode:
-    """Return the notebook with the outputs of its cells; a check cell gets the card and the points."""
+    """Return the notebook with the outputs of its cells. A check cell gets the card and the points."""
     count = 0
     for index, (node, cell) in enumerate(zip(nb.cells, task.cells, strict=True)):
         if node.cell_type != "code":
@@ -141,7 +141,7 @@ def _with_results(nb: NotebookNode, task: Task, execution: Execution) -> Noteboo
         else:
             node.outputs = [nbformat_nodes.output(**output) for output in run.outputs]
             node.outputs += _remark(node, cell, run, task.limits) if execution.cells else []
-    # Done here, because formgrader shows ``autograded/`` without cleaning it.
+    # This is done here because formgrader shows ``autograded/`` without cleaning it.
     make_harmless(nb, range(len(nb.cells)) if execution.trouble else execution.as_typed)
     nb.cells = list(_with_rubrics(nb.cells))
     if not task.boxed:
@@ -150,7 +150,7 @@ def _with_results(nb: NotebookNode, task: Task, execution: Execution) -> Noteboo
 
 
 def _with_rubrics(cells: Sequence[NotebookNode]) -> Iterator[NotebookNode]:
-    """Yield the cells, and below each question that a person grades the instructor's notes for grading."""
+    """Yield the cells; below each question that a person grades, add the instructor's notes for grading."""
     for cell in cells:
         known = cell.metadata.pop("autograder", {})
         yield cell
@@ -165,7 +165,7 @@ def _with_rubrics(cells: Sequence[NotebookNode]) -> Iterator[NotebookNode]:
 def _graded_outputs(
     check: CellCheck, verdict: Verdict, outputs: Sequence[Mapping[str, Any]]
 ) -> list[NotebookNode]:
-    """Return the card or the test's output, and the score as the cell's value: nbgrader takes that value as points."""
+    """Return the card or the test's output, and the score as the cell's value, which nbgrader takes as the points."""
     score = points(check, verdict)
     card = nbformat_nodes.output(output_type="display_data", data=mimebundle(verdict), metadata={})
     return [
@@ -180,9 +180,10 @@ def _graded_outputs(
 
 
 def _of_tests(outputs: Sequence[Mapping[str, Any]]) -> Iterator[NotebookNode]:
-    """Yield the output and errors of tests in a form from which nbgrader takes no points.
+    """Yield the output and errors of tests in a form from which nbgrader does not take points.
 
-    nbgrader gives zero points for an error or a line on standard error, and takes the first value as points.
+    nbgrader gives zero points for an error or a line on standard error, and takes the cell's first value as the
+    points.
     """
     for one in outputs:
         if one["output_type"] == "error":

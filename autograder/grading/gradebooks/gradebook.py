@@ -1,4 +1,4 @@
-"""Writes nbgrader's gradebook: takes points back and enters points, comments, times and late penalties."""
+"""Writes nbgrader's gradebook: sets points to zero, and enters points, comments, times and late penalties."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from sqlalchemy import Connection
 
 Scores = Mapping[str, float | None]
-"""By grade_id: the points; None if the cell has no automatic score."""
+"""The points by grade_id; None if the cell has no automatic score."""
 
 _GRADED = ("GradeCell", "TaskCell")
 _COMMENTED = ("SolutionCell", "TaskCell")
@@ -29,12 +29,13 @@ _PARAMETER = re.compile(r":(\w+)")
 
 @dataclass(frozen=True)
 class NotebookEntry:
-    """The entry of one notebook.
+    """The entry of one notebook in the gradebook.
 
     Attributes:
-        scores: Automatic points of each graded cell, by grade_id; None if a person has to give them.
+        scores: The automatic points of each graded cell, by grade_id; None if a person has to give them.
         comments: The automatic comment on each cell that can have one, by grade_id.
-        unchecked: The graded cells that could not be checked: their zero points mean nothing, as after :func:`reset`.
+        unchecked: The graded cells that could not be checked. As after :func:`reset`, their zero points say nothing
+            about the work.
     """
 
     scores: Scores
@@ -43,14 +44,14 @@ class NotebookEntry:
 
 
 def reset(url: str, submissions: Iterable[tuple[str, str]]) -> None:
-    """Take back the automatic grades of these submissions, in one transaction.
+    """Set the automatic grades of these submissions to zero, in one transaction.
 
-    The score becomes zero and marked for review: if anything fails later, no earlier score is left. A grade that an
+    The cells are also marked for review. So if a later step fails, no earlier score is left. A grade that an
     instructor gave by hand stays.
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
-        submissions: Pairs of assignment and student.
+        submissions: Pairs of an assignment and a student.
     """
     pairs = [{"assignment": assignment, "student": student} for assignment, student in submissions]
     with opened(url) as book:
@@ -71,20 +72,20 @@ def enter(
     notebooks: Mapping[str, NotebookEntry],
     timestamp: datetime | None,
 ) -> bool:
-    """Enter the results of one submission, in one transaction; what a person entered stays.
+    """Enter the results of one submission, in one transaction. What a person entered stays.
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
         assignment: The assignment's name.
-        student: The student's id; an unknown student is added.
+        student: The student's id. An unknown student is added.
         notebooks: The results by notebook.
-        timestamp: The time of handing in, in UTC; None to keep the known time.
+        timestamp: The time of handing in, in UTC; None to keep the time that is in the gradebook.
 
     Returns:
         True if the assignment has a due date, so that nbgrader has to compute the late penalty.
 
     Raises:
-        LookupError: The assignment was never generated.
+        LookupError: The gradebook does not contain the assignment or the notebook.
     """
     with opened(url) as book:
         found = book.execute(
@@ -99,7 +100,7 @@ def enter(
             if name not in cells:
                 raise LookupError(f"the gradebook has no notebook named {name} in {assignment}")
             _enter_notebook(book, submission, cells[name], entry)
-        # A notebook without a result still gets an entry, with zero points.
+        # A notebook without a result also gets an entry, with zero points.
         for name in cells.keys() - notebooks.keys():
             _enter_notebook(book, submission, cells[name], NotebookEntry({}, {}))
     return due is not None
@@ -107,7 +108,7 @@ def enter(
 
 @dataclass(frozen=True)
 class _Cells:
-    """A notebook's cells in the gradebook: its own id, then pairs of id and name."""
+    """The ids of a notebook and its cells in the gradebook. Cells are pairs of an id and a name."""
 
     notebook: str
     graded: tuple[tuple[str, str], ...]
@@ -133,7 +134,7 @@ def _cells(book: Connection, assignment: str) -> dict[str, _Cells]:
 
 
 def _submission(book: Connection, assignment: str, student: str, timestamp: datetime | None) -> str:
-    """Return the id of a submission; add it, with its timestamp as nbgrader keeps it, if it is new."""
+    """Return the id of a submission. If it is new, add it, with its timestamp in the form that nbgrader uses."""
     if not book.execute(sql("SELECT 1 FROM student WHERE id = :id"), {"id": student}).first():
         book.execute(sql("INSERT INTO student (id) VALUES (:id)"), {"id": student})
     found = book.execute(
@@ -157,13 +158,13 @@ def _submission(book: Connection, assignment: str, student: str, timestamp: date
 
 
 def enter_time(url: str, assignment: str, student: str, timestamp: datetime) -> None:
-    """Enter the time of handing in of a known submission.
+    """Enter the time of handing in of a submission that is in the gradebook.
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
         assignment: The assignment's name.
         student: The student's id.
-        timestamp: In UTC.
+        timestamp: The time in UTC.
     """
     with opened(url) as book:
         found = book.execute(
@@ -180,7 +181,7 @@ def enter_penalties(url: str, assignment: str, student: str, penalties: Mapping[
         url: The address by which SQLAlchemy opens the gradebook.
         assignment: The assignment's name.
         student: The student's id.
-        penalties: The points to take off, by notebook; None for no penalty.
+        penalties: The points to subtract, by notebook; None for no penalty.
     """
     rows: list[dict[str, object]] = [
         {"a": assignment, "s": student, "n": notebook, "costs": costs}
@@ -228,7 +229,7 @@ def _enter_scores(book: Connection, notebook: str, cells: _Cells, entry: Noteboo
             "n": notebook,
             "cell": cell,
             "score": scores.get(name, 0.0),
-            # As in nbgrader's SaveAutoGrades: look at a cell that has points by hand, or has to get some.
+            # As nbgrader's SaveAutoGrades does, mark a cell for review if a person gave it points or still has to.
             "look": by_hand.get(cell) is not None or scores.get(name, 0.0) is None or name in entry.unchecked,
         }
         for cell, name in cells.graded
@@ -270,7 +271,7 @@ def _enter_comments(
 
 
 def _put(book: Connection, rows: list[dict[str, object]], statement: str) -> None:
-    """Execute a statement for each row; the statement may use fewer fields than a row has."""
+    """Execute a statement once for each row. It need not use all fields of a row."""
     if rows:
         names = _PARAMETER.findall(statement)
         book.execute(sql(statement), [{name: row[name] for name in names} for row in rows])

@@ -1,6 +1,6 @@
-"""Reads nbgrader's gradebook: connections, each for one transaction, and the points and comments of submissions.
+"""Reads nbgrader's gradebook: connections for one transaction each, and the points and comments of submissions.
 
-It uses SQL on nbgrader's own tables (``nbgrader/api.py``, as of 0.9), because nbgrader's objects cost a query for
+It uses SQL on nbgrader's own tables (``nbgrader/api.py``, as of 0.9), because nbgrader's objects need a query for
 every cell, and importing them takes more than a second.
 """
 
@@ -30,7 +30,7 @@ SUBMITTED = """
     JOIN submitted_notebook sn ON sn.assignment_id = s.id
     JOIN notebook n ON n.id = sn.notebook_id
 """
-"""The submitted notebooks, for FROM in a statement."""
+"""The joined tables of submitted notebooks, for use after FROM."""
 _FROM = "submitted_assignment s JOIN assignment a ON a.id = s.assignment_id"
 _CELLS = f"""
     SELECT s.student_id AS student, a.name AS assignment, n.name AS notebook, b.name AS cell,
@@ -40,7 +40,8 @@ _CELLS = f"""
         JOIN grade g ON g.notebook_id = sn.id JOIN base_cell b ON b.id = g.cell_id
         LEFT JOIN grade_cells gc ON gc.id = b.id LEFT JOIN task_cells tc ON tc.id = b.id
 """
-# To nbgrader, a question that a person grades is two cells of one name: one has the points, the other the comment.
+# In nbgrader, a question that a person grades consists of two cells with one name: one has the points, the other the
+# comment.
 _COMMENTS = f"""
     SELECT s.student_id AS student, a.name AS assignment, n.name AS notebook, b.name AS cell,
         COALESCE(c.manual_comment, c.auto_comment) AS said
@@ -61,15 +62,15 @@ _PENALTIES = f"""
 
 @dataclass(frozen=True)
 class CellEntry:
-    """The gradebook's row of one cell of a submission.
+    """The gradebook's entry for one cell of a submission.
 
     Attributes:
-        max_score: The most points for the cell.
-        judged: Points that were given automatically; None if there are none.
-        by_hand: Points that a person gave instead; None if no person did.
-        extra: Points that a person gave on top.
-        waits: True if nbgrader says that a person has to grade the cell.
-        comment: A person's comment, or else the automatic one.
+        max_score: The maximum points for the cell.
+        judged: The points that were given automatically; None if there are none.
+        by_hand: The points that a person gave instead; None if no person did.
+        extra: The points that a person added.
+        waits: True if nbgrader says that a person still has to grade the cell.
+        comment: The comment of a person; if there is none, the automatic comment.
     """
 
     max_score: float
@@ -81,19 +82,19 @@ class CellEntry:
 
     @property
     def score(self) -> float:
-        """The points that count."""
+        """The points that count for the cell."""
         return (self.by_hand if self.by_hand is not None else self.judged or 0.0) + self.extra
 
 
 @dataclass(frozen=True)
 class SubmissionEntry:
-    """The gradebook's rows of one submission.
+    """The gradebook's entry for one submission.
 
     Attributes:
         handed_in: The time of handing in, in UTC; None if unknown.
-        due: The due date for this student, in UTC; None without a due date.
+        due: The due date for this student, in UTC; None if there is none.
         penalties: The late penalty in points, by notebook.
-        cells: The entries by notebook and grade_id.
+        cells: The entries of the cells, by notebook and then by grade_id.
         name: The student's name; empty if the gradebook has none.
     """
 
@@ -105,29 +106,29 @@ class SubmissionEntry:
 
     @property
     def is_late(self) -> bool:
-        """True if it was handed in after its due date."""
+        """True if the submission was handed in after its due date."""
         return self.handed_in is not None and self.due is not None and self.handed_in > self.due
 
     @property
     def penalty(self) -> float:
-        """The late penalty of all notebooks together, in points."""
+        """The late penalties of all notebooks together, in points."""
         return sum(self.penalties.values())
 
     @property
     def raw(self) -> float:
-        """The points before the late penalty."""
+        """The points before the late penalty is subtracted."""
         return sum(cell.score for cells in self.cells.values() for cell in cells.values())
 
     @property
     def taken_off(self) -> float:
-        """The late penalty in points; as in nbgrader, no score falls below zero."""
+        """The points that the late penalty really costs. As in nbgrader, no score becomes negative."""
         return min(self.penalty, max(0.0, self.raw))
 
     def why_late(self, zone: tzinfo) -> str:
-        """Return the reason why points are taken off, with times in this zone; empty if none are taken off."""
+        """Return the reason for a late penalty, with times in this zone; empty if there is no penalty."""
         if not self.taken_off:
             return ""
-        # A due date may have been removed after the penalty was entered.
+        # The due date may have been removed after the penalty was entered.
         times = (("handed in", self.handed_in), ("due", self.due))
         return ", ".join(
             f"{word} {at.replace(tzinfo=UTC).astimezone(zone):%Y-%m-%d %H:%M} {zone}"
@@ -136,49 +137,49 @@ class SubmissionEntry:
         )
 
     def judged(self, notebook: str, cell: str) -> float | None:
-        """Return the points that a cell was given automatically, or None."""
+        """Return the points that a cell was given automatically; None if there are none."""
         entry = self.cells.get(notebook, {}).get(cell)
         return entry.judged if entry else None
 
     def shown(self) -> str:
-        """A hash of everything that a feedback page shows about points and comments."""
+        """Return a hash of everything about points and comments that a feedback page shows."""
         return hashlib.sha256(msgspec.json.encode(self, order="deterministic")).hexdigest()
 
 
 Entries = Mapping[tuple[str, str], SubmissionEntry]
-"""By student and assignment."""
+"""The gradebook's entries, by student and assignment."""
 
 
 def opened(url: str) -> AbstractContextManager[Connection]:
-    """Open a connection for one transaction, closed at the end of the block."""
+    """Open a connection for one transaction. It is closed at the end of the block."""
     return _engine(url).begin()
 
 
 @functools.lru_cache(maxsize=8)
 def _engine(url: str) -> Engine:
-    """Return an engine that keeps no connection, only SQLAlchemy's knowledge of the database and our statements."""
+    """Return an engine that keeps no open connection, only SQLAlchemy's knowledge of the database."""
     return sqlalchemy.create_engine(url, poolclass=NullPool)
 
 
 @functools.lru_cache(maxsize=64)
 def sql(statement: str) -> TextClause:
-    """Parse a statement, once."""
+    """Return a parsed statement. Each statement is parsed only once."""
     return sqlalchemy.text(statement)
 
 
 def gradebook_file(url: str) -> Path | None:
-    """Return the file of a gradebook, or None if a database server holds it."""
+    """Return the file of a gradebook; None if it is in a database server."""
     address = sqlalchemy.make_url(url)
     return Path(address.database) if address.database and address.get_backend_name() == "sqlite" else None
 
 
 def has_tables(book: Connection) -> bool:
-    """True if nbgrader has made its tables in this database."""
+    """Return True if nbgrader has created its tables in this database."""
     return sqlalchemy.inspect(book).has_table("grade")
 
 
 def worth(url: str, assignment: str) -> dict[str, dict[str, float]]:
-    """Return the points of each cell in the gradebook: by notebook, by grade_id."""
+    """Return the maximum points of each cell in the gradebook, by notebook and then by grade_id."""
     found: dict[str, dict[str, float]] = {}
     with opened(url) as book:
         if has_tables(book):
@@ -200,12 +201,12 @@ def worth(url: str, assignment: str) -> dict[str, dict[str, float]]:
 
 
 def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entries:
-    """Return the submissions that the gradebook knows.
+    """Return the submissions in the gradebook, by student and assignment.
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
-        student: Only this student's rows; all students' if empty.
-        assignment: Only this assignment's rows; all assignments' if empty.
+        student: Only this student's submissions; those of all students if empty.
+        assignment: Only submissions for this assignment; those for all assignments if empty.
     """
     names = {"student": student, "assignment": assignment}
     narrow = "(:student = '' OR s.student_id = :student) AND (:assignment = '' OR a.name = :assignment)"
@@ -244,13 +245,13 @@ def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entrie
 
 
 def read_entry(url: str, student: str, assignment: str) -> SubmissionEntry:
-    """Return the gradebook's rows of one submission; empty if the gradebook does not know the submission."""
+    """Return the gradebook's entry for one submission; an empty entry if there is none."""
     entries = read_entries(url, student=student, assignment=assignment)
     return entries.get((student, assignment), SubmissionEntry())
 
 
 def read_due_dates(url: str) -> dict[str, datetime]:
-    """Return the due dates of assignments by name, in UTC, without students' extensions."""
+    """Return the due dates of assignments by name, in UTC. Extensions for single students are not included."""
     with opened(url) as book:
         if not has_tables(book):
             return {}

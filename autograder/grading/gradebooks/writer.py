@@ -1,4 +1,4 @@
-"""The only writer to gradebook, ``autograded/`` and ``feedback/``; if it fails, the submission has zero points."""
+"""The only writer to gradebook, ``autograded/`` and ``feedback/``. If it fails, the submission has zero points."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ if TYPE_CHECKING:
 
 
 class NotWritten(RuntimeError):
-    """The points in the gradebook differ from the judge's; the message names the exercise."""
+    """The points in the gradebook differ from the judge's, or could not be written. The message names the exercise."""
 
 
 class Writer:
-    """Writes results into gradebook, ``autograded/`` and ``feedback/`` of one class.
+    """Writes results into the gradebook, ``autograded/`` and ``feedback/`` of one class.
 
     Args:
-        directory: The class, locked by this process.
-        store: The class's store, which notes what was entered.
+        directory: The class, which this process has locked.
+        store: The class's store, which records what was entered.
     """
 
     def __init__(self, directory: ClassDirectory, store: ClassStore) -> None:
@@ -48,7 +48,7 @@ class Writer:
         self._pages = feedback.FeedbackPages(directory)
 
     def take_back(self, submissions: Sequence[Submission]) -> None:
-        """Remove what an earlier run left of these submissions: grades, converted notebooks, feedback."""
+        """Remove what an earlier run wrote for these submissions: grades, converted notebooks, feedback."""
         self._store.forget_entered(submissions)
         for submission in submissions:
             for step in ("autograded", "feedback"):
@@ -67,12 +67,13 @@ class Writer:
 
         Args:
             submission: The submission that was executed.
-            fingerprint: A hash of everything that the results were made from.
-            results: A pair for each notebook of the assignment.
+            fingerprint: A hash of everything from which the results were made.
+            results: Pairs of a task and its result, one for each notebook of the assignment.
             rows: The results as rows of the report.
 
         Raises:
-            NotWritten: Writing failed, or the gradebook then holds other points. The grades are zero then.
+            NotWritten: Writing failed, or the gradebook then contains other points. In both cases the grades are
+                zero.
             OSError: The disk is full.
         """
         try:
@@ -98,7 +99,10 @@ class Writer:
         self._store.enter(submission, attempt, entered if is_final else None)
 
     def _convert_and_enter(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
-        """Write the notebooks first: without grades they have no effect."""
+        """Write the notebooks, then enter the grades.
+
+        The notebooks come first, because without grades they have no effect.
+        """
         folder = self._folder("autograded", submission)
         _remove(folder)
         entries = conversion.convert(self._directory, submission, results, folder)
@@ -110,11 +114,11 @@ class Writer:
             self._assign_penalties(submission)
 
     def enter_time(self, submission: Submission, at: datetime | None) -> None:
-        """Enter the time at which a graded submission was handed in, and the penalty for being late.
+        """Enter the time at which a graded submission was handed in, and the late penalty that follows.
 
         Args:
-            submission: A graded submission; its grades stay as they are.
-            at: In UTC; None if the gradebook has the time already.
+            submission: A graded submission. Its grades stay unchanged.
+            at: The time in UTC; None if the gradebook has the time already.
         """
         names = submission.assignment, submission.student
         with quiet(self._directory.state):
@@ -134,7 +138,7 @@ class Writer:
         return read_entries(url, student=student, assignment=assignment)[student, assignment]
 
     def write_feedback(self, submission: Submission) -> bool:
-        """Make the HTML pages that go back to a student. Return False if one failed; the log has the reason.
+        """Make the HTML pages for the student. Return False if a page failed; the log then contains the reason.
 
         Raises:
             OSError: The disk is full.
@@ -163,7 +167,7 @@ class Writer:
 
 
 class _LogFile(logging.FileHandler):
-    """A log file that ignores its own write errors: on a full disk, the grader itself reports the problem once."""
+    """A log file that ignores its own write errors. On a full disk, the grader itself reports the problem once."""
 
     def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802  (logging's name)
         """Ignore the error."""
@@ -171,7 +175,7 @@ class _LogFile(logging.FileHandler):
 
 @contextlib.contextmanager
 def quiet(state: Path) -> Iterator[None]:
-    """Send nbgrader's log to a file of the class, so that it does not break up the progress bar."""
+    """During the block, send nbgrader's log to a file in the class, so that it does not break up the progress bar."""
     logger = logging.getLogger("traitlets")
     handler = _LogFile(state / "nbgrader.log", delay=True)
     handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
@@ -180,7 +184,7 @@ def quiet(state: Path) -> Iterator[None]:
     logger.propagate = False
     try:
         with warnings.catch_warnings():
-            # nbgrader 0.9 was written for an older SQLAlchemy, which gave few warnings.
+            # nbgrader 0.9 was written for an older SQLAlchemy, which gave fewer warnings.
             warnings.simplefilter("ignore")
             yield
     finally:
@@ -190,7 +194,7 @@ def quiet(state: Path) -> Iterator[None]:
 
 
 def _remove(folder: Path) -> None:
-    """Remove a folder of read-only files."""
+    """Remove a folder, even if its files are read-only."""
     if folder.is_dir():
         folder.chmod(0o700)
         shutil.rmtree(folder)

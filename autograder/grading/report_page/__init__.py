@@ -1,1 +1,1 @@
-"""The class at a glance: one page for the instructor."""
+"""The report page: one page about the whole class, for the instructor."""

@@ -1,4 +1,4 @@
-"""The page about a class: one file without scripts or network access, readable in black and white."""
+"""The report page about a class: one file without scripts or network access, readable in black and white."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ class _Person:
     """A student as shown on the page.
 
     Attributes:
-        shown: The name, or a number if names are hidden.
-        links: The feedback pages by assignment, relative to the page; empty if names are hidden.
+        shown: The name; if names are hidden, a number.
+        links: The links to feedback pages by assignment, relative to this page; empty if names are hidden.
     """
 
     shown: str
@@ -45,13 +45,13 @@ class _Person:
 def write_report(
     path: Path, *, names: bool = True, to: Path | None = None, sections: Sequence[str] = ()
 ) -> Path:
-    """Write the page about a class.
+    """Write the report page of a class.
 
     Args:
         path: The class directory.
-        names: True to show names, with links to the pages of feedback.
-        to: The file to write; ``report.html`` in the class by default.
-        sections: Only the students of these sections; all students if empty.
+        names: True to show names, with links to the feedback pages.
+        to: The file to write; by default ``report.html`` in the class.
+        sections: The sections whose students are shown; all students if empty.
 
     Returns:
         The absolute path of the file.
@@ -114,17 +114,17 @@ def _people(directory: ClassDirectory, table: ClassTable, *, names: bool, folder
         for assignment in table.assignments:
             pages = sorted((directory.path / "feedback" / student / assignment).glob("*.html"))
             if pages:
-                # A page outside the class's folder keeps its whole path.
+                # A feedback page outside the class's folder is linked by its whole path.
                 inside = pages[0].is_relative_to(folder)
                 links[assignment] = quote(str(pages[0].relative_to(folder))) if inside else pages[0].as_uri()
         name = table.roster.students[student].name
-        # In an LMS, users name themselves.
+        # In an LMS, users choose their own names, so the text is shortened to one line.
         people[student] = _Person(one_line(f"{name} ({student})" if name else student, _LONGEST_NAME), links)
     return people
 
 
 def _dropped(table: ClassTable) -> dict[str, list[str]]:
-    """Return the assignments that ``drop_lowest`` leaves out of a student's total; empty if it leaves out none."""
+    """Return the assignments that ``drop_lowest`` leaves out of totals, by student."""
     found: dict[str, list[str]] = {}
     for row in table.rows:
         if row.exercise == DROPPED:
@@ -139,13 +139,13 @@ def _cell(row: Row | None) -> str:
 
 
 def _progress(store: ClassStore, table: ClassTable) -> list[figures.AttemptProgress]:
-    """Return the students whose work was graded more than once, those who gained most first."""
+    """Return the students whose work was graded more than once, those with the greatest improvement first."""
     found = [one for student in table.students for one in figures.progress(student, store.attempts(student))]
     return sorted(found, key=lambda one: one.first - one.last)
 
 
 def _times(directory: ClassDirectory, table: ClassTable) -> list[dict[str, object]]:
-    """Return the times of handing in relative to the due date, with the points."""
+    """Return the times of handing in, relative to the due date, with the points."""
     records = CollectedRecords(directory.state)
     found: list[dict[str, object]] = []
     for (student, assignment), entry in sorted(

@@ -1,4 +1,4 @@
-"""Statistics of a class, computed from its table."""
+"""Statistics of a class, computed from its table of results."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 BANDS = 10
 _ABSENT = (NOT_SUBMITTED, EXCUSED)
 _FEWEST = 3
-"""The smallest number of students for a meaningful correlation."""
+"""The minimum number of students for a meaningful correlation."""
 
 
 @dataclass(frozen=True)
 class Band:
-    """A tenth of the range of points.
+    """One of ten equal parts of the range of points.
 
     Attributes:
-        low: The lower end in percent.
-        high: The upper end in percent; the last band includes full points.
+        low: The lower end in percent of the points.
+        high: The upper end in percent. The last band includes full points.
         students: The number of students in the band.
     """
 
@@ -40,7 +40,7 @@ class Band:
 
 @dataclass(frozen=True)
 class CriterionFigures:
-    """The figures of one criterion.
+    """The figures for one criterion.
 
     Attributes:
         title: The criterion's title.
@@ -58,16 +58,17 @@ class ItemFigures:
     """The statistics of one exercise, over the students who handed it in.
 
     Attributes:
-        exercise: The exercise's id, preceded by the assignment's name if several assignments have cells of that name.
-        max_score: The most points for the exercise.
+        exercise: The exercise's id. If several assignments have a cell with this name, it is preceded by the
+            assignment's name.
+        max_score: The maximum points for the exercise.
         handed_in: The number of students who have handed it in.
-        mean: Their mean points.
+        mean: The mean of these students' points.
         full: The number of these students with full points.
         none: The number of these students without points.
-        difficulty: The mean as a share of the most points: a high value means an easy exercise.
-        discrimination: The correlation (Pearson's) of its points with those of all other exercises, from -1 to 1;
-            None if it cannot be computed.
-        criteria: The figures of its criteria, in the order of the exercise.
+        difficulty: The mean divided by the maximum points. A high value means an easy exercise.
+        discrimination: Pearson's correlation, from -1 to 1, of the exercise's points with the points of all other
+            exercises; None if it cannot be computed.
+        criteria: The figures for its criteria, in the order of the exercise.
     """
 
     exercise: str
@@ -83,13 +84,13 @@ class ItemFigures:
 
 @dataclass(frozen=True)
 class MistakeFigures:
-    """A recognized mistake.
+    """A mistake that was recognized, with the students who made it.
 
     Attributes:
         assignment: The assignment's name.
         exercise: The exercise's id.
         key: The mistake's key.
-        reason: The text that the first of these students got.
+        reason: The explanation that the first of these students got.
         students: The students who made it.
     """
 
@@ -110,7 +111,7 @@ class AttemptProgress:
         attempts: The number of times that changed work was graded.
         first: The points of the first attempt.
         last: The points of the last attempt.
-        max_score: The most points that the judge gives.
+        max_score: The maximum points that the judge gives.
     """
 
     student: str
@@ -122,15 +123,15 @@ class AttemptProgress:
 
 
 def progress(student: str, attempts: Iterable[Attempt]) -> list[AttemptProgress]:
-    """Return how a student's points developed over the attempts.
+    """Return how a student's points developed over the attempts at each assignment.
 
     Args:
         student: The student's id.
-        attempts: All graded attempts, the first one first. Those graded with another version of the course than the
-            last one are left out, because their points are not comparable.
+        attempts: All graded attempts, oldest first. Attempts that were graded with another version of the course than
+            the last one are left out, because their points are not comparable.
 
     Returns:
-        An entry for each assignment that was graded with changed work.
+        An entry for each assignment that was graded again with changed work.
     """
     found: dict[str, list[Attempt]] = defaultdict(list)
     for attempt in attempts:
@@ -147,7 +148,7 @@ def progress(student: str, attempts: Iterable[Attempt]) -> list[AttemptProgress]
 
 
 def bands(table: ClassTable) -> list[Band]:
-    """Return the distribution of students by their share of the points, without students who have none yet."""
+    """Return the number of students in each tenth of the range of points. Students without points yet are left out."""
     found: dict[int, list[str]] = defaultdict(list)
     for student in handed_in(table):
         if (points := table.score(student)) is None:
@@ -169,16 +170,16 @@ def handed_in(table: ClassTable) -> list[str]:
 
 
 def totals(table: ClassTable) -> list[float]:
-    """Return the points of every student who has any; empty if nothing is graded yet."""
+    """Return the total points of every student who has any; empty if nothing is graded yet."""
     return [points for student in handed_in(table) if (points := table.score(student)) is not None]
 
 
 def items(table: ClassTable, store: ClassStore) -> list[ItemFigures]:
-    """The statistics of each exercise.
+    """Return the statistics of each exercise.
 
     Args:
-        table: The class.
-        store: The store of the class, with the judge's verdicts.
+        table: The table of the class.
+        store: The store of the class, which contains the judge's verdicts.
     """
     criteria = _criteria(table, store)
     found = []
@@ -232,7 +233,7 @@ def _correlation(ours: Sequence[float], others: Sequence[float]) -> float | None
 
 
 def _criteria(table: ClassTable, store: ClassStore) -> dict[tuple[str, str], list[CriterionFigures]]:
-    """Return the figures of each criterion, from the verdicts behind the points in the table."""
+    """Return the figures for each criterion, taken from the verdicts on which the points in the table are based."""
     counted = {(row.student, row.assignment) for row in table.rows if row.state in ("passed", "failed")}
     seen: dict[tuple[str, str], dict[str, CriterionFigures]] = defaultdict(dict)
     for student, assignment in sorted(counted):

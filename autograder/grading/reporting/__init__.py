@@ -1,1 +1,1 @@
-"""The result of a run for the person who started it: a table, a JSON object, a CSV file."""
+"""The result of a run, shown to the person who started it: a table, a JSON object, a CSV file."""

@@ -1,4 +1,4 @@
-"""The result of grading a class, as an object and as the JSON that ``grade --json`` prints."""
+"""The result of grading a class, as an object, and as the JSON that ``grade --json`` prints."""
 
 from __future__ import annotations
 
@@ -23,27 +23,27 @@ if TYPE_CHECKING:
     from autograder.grading.table.point_differences import Difference
 
 FORM = 2
-"""The version of the JSON object: increased when a field is renamed or removed."""
+"""The version of the JSON object. It is increased when a field is renamed or removed."""
 
 
 @dataclass(frozen=True)
 class GradeReport:
-    """The result of a batch.
+    """The result of a grading run.
 
     Attributes:
         path: The class.
-        rows: The rows by student, in the order of the course.
-        refused: Files in ``submitted`` that cannot be graded under their name.
-        problems: Other problems, each a sentence; none of them gave a student points.
-        notices: Sentences that the instructor should read, but that are not about a mistake.
-        would_change: The points that would change, if nothing was entered; None if the points were entered.
-        executed: The number of notebooks that were run.
-        reused: The number of notebooks whose result was known.
-        written: The number of submissions entered into the gradebook in this run.
-        seconds: The wall time of the run in seconds.
-        timings: How this time was spent.
-        note: A warning for readers of the points, if the class was graded without boxes; else empty.
-        gradebook: The file of nbgrader's gradebook; None if a database server holds it.
+        rows: The rows, sorted by student and then in the order of the course.
+        refused: Files in ``submitted`` that cannot be graded where they are.
+        problems: Other problems, as sentences. None of them gave a student points.
+        notices: Sentences that the instructor should read although they report no failure.
+        would_change: After a dry run, the points that would change; None if points were entered.
+        executed: The number of notebooks that were executed.
+        reused: The number of notebooks whose result was already known.
+        written: The number of submissions that this run entered into the gradebook.
+        seconds: The duration of the run, in seconds of wall time.
+        timings: The parts of this time, by step.
+        note: A warning about the points if the class was graded without boxes; else empty.
+        gradebook: The file of nbgrader's gradebook; None if it is in a database server.
         due: The due date of each assignment that has one, in the time zone of the class.
     """
 
@@ -64,23 +64,23 @@ class GradeReport:
 
     @property
     def csv(self) -> Path:
-        """The CSV file of all rows."""
+        """The path of the CSV file with all rows."""
         return self.path / "grades.csv"
 
     @property
     def feedback(self) -> Path:
-        """The folder of pages for the students."""
+        """The folder that contains the pages for students."""
         return self.path / "feedback"
 
     @property
     def exit_code(self) -> int:
-        """0 if everything was graded; 2 if something could not be checked or was refused."""
+        """The command's exit code: 0 if everything was graded; 2 if something could not be checked or was refused."""
         unchecked = any(row.state == State.NOT_CHECKED for row in self.rows)
         return 2 if self.refused or self.problems or unchecked else 0
 
 
 def report_json(report: GradeReport) -> bytes:
-    """Return one line of JSON: the batch, each submission, totals and times."""
+    """Return one line of JSON: the run, each submission, totals and times."""
     return msgspec.json.encode(
         {
             "form": FORM,
@@ -112,7 +112,7 @@ def report_json(report: GradeReport) -> bytes:
 
 
 def table_json(page: Path, table: ClassTable) -> bytes:
-    """Return one line of JSON: each submission of a class, what waits for a person, and the path of the page."""
+    """Return one line of JSON: the submissions of a class, what a person has to grade, and the report page's path."""
     return msgspec.json.encode(
         {
             "form": FORM,
@@ -126,7 +126,7 @@ def table_json(page: Path, table: ClassTable) -> bytes:
 
 
 def _submissions(rows: tuple[Row, ...]) -> list[dict[str, Any]]:
-    """Return one object for each student and assignment, in the order of the rows."""
+    """Return an object for each student and assignment, in the order of the rows."""
     found = []
     for (student, assignment), group in groupby(rows, key=lambda row: (row.student, row.assignment)):
         all_rows = list(group)

@@ -1,4 +1,4 @@
-"""The result of a run in a terminal."""
+"""The result of a run, printed in a terminal."""
 
 from __future__ import annotations
 
@@ -37,17 +37,17 @@ if TYPE_CHECKING:
 
 _WIDE = 130
 _NAME = 30
-"""The width of a student's id or name, in columns of a terminal, above which it is folded."""
+"""The maximum width of a student's id or name, in columns of a terminal. Longer ones are wrapped."""
 _ANY_WIDTH = 10_000
 _STYLES = {State.PASSED: "green", State.FAILED: "red", State.NOT_CHECKED: "yellow", WAITS: "yellow"}
 
 
 def show(report: GradeReport, console: Console | None = None) -> None:
-    """Print the table, what could not be graded, and the paths of the results.
+    """Print the table of results, what could not be graded, and the paths of the files.
 
     Args:
         report: The result of the run.
-        console: Standard output by default.
+        console: The console to print on; by default standard output.
     """
     console = console or Console()
     if not report.rows:
@@ -96,16 +96,19 @@ def show(report: GradeReport, console: Console | None = None) -> None:
 
 
 def tables(rows: Sequence[Row], console: Console, *, diagnoses: bool) -> Iterator[Table]:
-    """Yield tables with students down and exercises across; several if one is too wide, with the total in the last.
+    """Yield tables with a row per student and a column per exercise. If one is too wide, there are several.
+
+    The last of them also has the total.
 
     Args:
         rows: The rows to show.
-        console: The console into which they must fit.
-        diagnoses: Also show what is wrong if points are missing; needs about 130 columns for four exercises.
+        console: The console into which each table has to fit.
+        diagnoses: True to also show the mistake where points are missing. This needs about 130 columns for four
+            exercises.
     """
     grid = _Grid.of(rows, diagnoses=diagnoses)
     left = list(grid.names)
-    # rich is slow to measure a cell and a class has many rows, so only the widest cell of each column is measured.
+    # rich measures cells slowly and a class has many rows, so only the widest cell of each column is measured.
     widest = grid.of_the_widest()
     no_column = _needs(widest.table([]), console)
     widths = {key: _needs(widest.table([key]), console) - no_column for key in left}
@@ -122,19 +125,19 @@ def tables(rows: Sequence[Row], console: Console, *, diagnoses: bool) -> Iterato
 
 
 def _needs(shown: Table, console: Console) -> int:
-    """Return the columns of a terminal that a table needs so that nothing is cut off or folded."""
+    """Return the width, in columns of a terminal, at which nothing in a table is cut off or wrapped."""
     return console.measure(shown, options=console.options.update(width=_ANY_WIDTH)).maximum
 
 
 @dataclass(frozen=True)
 class _Grid:
-    """The content of the table's cells.
+    """The content of the cells of a table.
 
     Attributes:
         names: The heading of each column, by assignment and exercise.
         students: The rows of each student.
-        results: The row of each cell, by student, assignment and exercise.
-        diagnoses: True if cells also say what is wrong.
+        results: The row for each cell, by student, assignment and exercise.
+        diagnoses: True if cells also show the mistake.
     """
 
     names: Mapping[tuple[str, str], str]
@@ -151,21 +154,21 @@ class _Grid:
         return cls(columns(rows), students, results, diagnoses)
 
     def of_the_widest(self) -> Self:
-        """Return a grid of one student who has the widest cell of each column."""
+        """Return a grid with a single row that has the widest cell of each column."""
         student = next(iter(self.students))
         by_width = sorted(self.results.values(), key=lambda row: cell_len(_cell(row, self.diagnoses).plain))
-        # The last row of each column stays, which is the widest.
+        # The rows are sorted by width, so the last one in each column, which stays, is the widest.
         results = {(student, row.assignment, row.exercise): row for row in by_width}
         return replace(self, students={student: self.students[student]}, results=results)
 
     def table(self, keys: Sequence[tuple[str, str]], *, is_last: bool = False) -> Table:
-        """Return a table of these columns; the last also has the late penalty, dropped assignments and the total."""
+        """Return a table of these columns. The last table also has late penalty, dropped assignments and total."""
         there = {exercise for _, _, exercise in self.results} if is_last else set()
         late, dropped = LATE in there, DROPPED in there
         shown = Table(header_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
         shown.add_column("student", overflow="fold", max_width=_NAME)
         for key in keys:
-            # In two lines, so that four exercises fit into a terminal of 80 columns.
+            # A heading takes two lines, so that four exercises fit into a terminal of 80 columns.
             shown.add_column(self.names[key].replace(".", "\n."), no_wrap=True)
         if late:
             shown.add_column("late", justify="right", no_wrap=True)
@@ -204,7 +207,7 @@ def _diagnoses(rows: Sequence[Row]) -> Table:
 
 
 def _unreadable(report: GradeReport) -> list[tuple[str, str]]:
-    """Return a line, with the reason, for each file that is not a notebook; refused files are listed elsewhere."""
+    """Return a line with the reason for each file that is not a notebook. Refused files are listed elsewhere."""
     refused = {(entry.path.parent.parent.name, entry.path.parent.name) for entry in report.refused}
     reasons = {
         f"{row.student}/{row.assignment}": row.reason
@@ -224,7 +227,7 @@ def _cell(row: Row | None, diagnoses: bool) -> Text:
 
 
 def _legend(rows: Sequence[Row]) -> list[str]:
-    """Return the meaning of the marks after points, if there are any."""
+    """Return an explanation of each mark that appears after points."""
     waiting = sum(row.waits for row in rows)
     marks = {row.mark for row in rows}
     found = ["*  a person gave these points, or some of them"] if "*" in marks else []

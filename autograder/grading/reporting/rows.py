@@ -1,4 +1,4 @@
-"""The rows of a class's results, and the CSV file of them: ``grades.csv``."""
+"""The rows of a class's results, and the CSV file with these rows, ``grades.csv``."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
 
 NOT_SUBMITTED = "not_submitted"
 NOT_GRADED = "not_graded"
-"""The state of an exercise that was handed in but not yet graded by any run."""
+"""The state of an exercise that was handed in but that no run has graded yet."""
 WAITS = "waits"
-"""The state of a cell that a person grades, and that has no points yet."""
+"""The state of a cell that a person has to grade and that has no points yet."""
 BY_HAND = "by_hand"
-"""The state of a cell for which a person has given points."""
+"""The state of a cell to which a person has given points."""
 EXCUSED = "excused"
-"""The state of an assignment that students.csv excuses the student from: it counts for no student."""
+"""The state of an assignment from which students.csv excuses the student. The student's total does not include it."""
 LATE = "late"
-"""Replaces the exercise's name in the row with the late penalty."""
+"""The value of ``exercise`` in the row that contains the late penalty."""
 DROPPED = "dropped"
-"""Replaces it in the row that takes one of a student's lowest assignments out of the total."""
+"""The value of ``exercise`` in the row that takes one of a student's lowest assignments out of the total."""
 NO_EXERCISE = (LATE, DROPPED)
 COLUMNS = (
     "student",
@@ -55,31 +55,31 @@ _NOTHING_JUDGED = (NOT_SUBMITTED, NOT_GRADED, EXCUSED, State.NOT_CHECKED)
 
 
 def total(rows: Iterable[Row]) -> float | None:
-    """Return the points of several rows together; None if none of them is judged."""
+    """Return the sum of the points in several rows; None if no row has been judged."""
     scores = [score for row in rows if (score := row.shown_score) is not None]
     return round(sum(scores), 4) if scores else None
 
 
 @dataclass(frozen=True)
 class Row:
-    """One student's result in one exercise.
+    """The result of one student in one exercise.
 
     Attributes:
         student: The student's id.
         assignment: The assignment's name.
-        exercise: The exercise's id; the name of a cell that a person grades; ``late`` or ``dropped``.
+        exercise: The exercise's id, or the name of a cell that a person grades, or ``late`` or ``dropped``.
         score: The points in the gradebook, including those that a person gave.
-        max_score: The most points for the exercise.
+        max_score: The maximum points for the exercise.
         state: ``passed``, ``failed``, ``not_checked``, ``not_graded``, ``not_submitted``, ``excused``, ``waits``,
             ``by_hand``, ``late`` or ``dropped``.
-        diagnosis: The key of the mistake; empty for none.
-        reason: The text of the mistake; empty for none.
-        judged: The judge's points in the gradebook; None if there are none.
+        diagnosis: The key of the recognized mistake; empty if there is none.
+        reason: The text about the mistake; empty if there is none.
+        judged: The points from the judge in the gradebook; None if there are none.
         by_hand: The points that a person gave instead; None if no person did.
-        extra: Points that a person gave on top.
-        waits: True if a person has to look at it.
+        extra: The points that a person added.
+        waits: True if a person still has to look at it.
         name: The student's name; empty if unknown.
-        remarks: Sentences about repairs of the notebook, such as missing cells.
+        remarks: Sentences about repairs of the notebook, for example missing cells.
     """
 
     student: str
@@ -99,12 +99,12 @@ class Row:
 
     @property
     def is_blank(self) -> bool:
-        """True if nothing is judged yet: such a row has no points, which differs from zero points."""
+        """True if nothing has been judged yet. Such a row has no points, which differs from zero points."""
         return self.state in _NOTHING_JUDGED and self.by_hand is None and not self.extra
 
     @property
     def is_unchecked(self) -> bool:
-        """True if it was handed in but not judged: the next run may give points."""
+        """True if the exercise was handed in but not judged. The next run may then give points."""
         return self.is_blank and self.state in (NOT_GRADED, State.NOT_CHECKED)
 
     @property
@@ -114,19 +114,19 @@ class Row:
 
     @property
     def shown_score(self) -> float | None:
-        """The points; None if nothing is judged yet."""
+        """The points; None if nothing has been judged yet."""
         return None if self.is_blank else self.score
 
     @property
     def mark(self) -> str:
-        """The mark after the points: ``?`` if they wait for a person, ``*`` if a person gave some of them, or none."""
+        """The mark after the points: ``?`` if a person still has to grade, ``*`` if a person gave some, or none."""
         return "?" if self.waits else "*" if self.by_hand is not None or self.extra else ""
 
 
 def columns(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
-    """Return the column name of each exercise, by assignment and exercise.
+    """Return the name of each exercise's column, by assignment and exercise.
 
-    Instructors often use one cell name in several assignments; then the assignment's name comes first.
+    Instructors often use one cell name in several assignments. Then the column's name begins with the assignment's.
     """
     keys = list(
         dict.fromkeys((row.assignment, row.exercise) for row in rows if row.exercise not in NO_EXERCISE)
@@ -136,7 +136,7 @@ def columns(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
 
 
 def rows_of(task: Task, execution: Execution) -> list[Row]:
-    """The rows of one notebook."""
+    """Return the rows of one notebook."""
     found = []
     for index, cell in enumerate(task.cells):
         if cell.check is None:
@@ -160,7 +160,7 @@ def rows_of(task: Task, execution: Execution) -> list[Row]:
 
 
 def remarks_on(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
-    """Return the remarks on the notebooks of each student and assignment, in one line; only if there are any."""
+    """Return the remarks on each submission's notebooks in one line, by student and assignment, if there are any."""
     found: dict[tuple[str, str], dict[str, None]] = {}
     for row in rows:
         found.setdefault((row.student, row.assignment), {}).update(dict.fromkeys(row.remarks))
@@ -168,16 +168,16 @@ def remarks_on(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
 
 
 def write_csv(path: Path, rows: Iterable[Row]) -> None:
-    """Write the rows as CSV in UTF-8 with the mark by which Excel recognizes it, replacing the file as a whole.
+    """Write the rows as CSV in UTF-8, with the mark (BOM) by which Excel recognizes it. The file is replaced whole.
 
     Raises:
-        OSError: The file could not be written; an earlier file is then unchanged.
+        OSError: The file could not be written. An earlier file is then unchanged.
     """
     write_whole(path, csv_text([COLUMNS, *map(csv_cells, rows)]).encode("utf-8-sig"))
 
 
 def csv_cells(row: Row) -> tuple[str | float, ...]:
-    """Return a row as the cells of :data:`COLUMNS`."""
+    """Return a row as the cells of the columns in :data:`COLUMNS`."""
     return (
         row.student,
         row.assignment,

@@ -1,4 +1,4 @@
-"""CSV files that a spreadsheet shows but never executes."""
+"""CSV files that a spreadsheet shows without executing formulas in them."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ import re2
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-# A list from an LMS contains texts that students have typed, which may be long.
+# The limit on the length of a cell is raised, because texts in a list from an LMS, typed by students, may be long.
 csv.field_size_limit(50_000_000)
 _FORMULA = frozenset("=+-@\N{MINUS SIGN}")
-# A spreadsheet may be set to split a line at these; a formula could begin after them.
+# A spreadsheet may be set to split a line at these characters, so a formula could begin after them.
 _SEPARATOR = re2.compile(r"([;|])")
 _SPACES = frozenset({"Cc", "Zl", "Zp", "Zs"})
 
@@ -25,7 +25,8 @@ def csv_text(rows: Iterable[Iterable[str | float]]) -> str:
     """Return rows as CSV text. Texts are made harmless; numbers stay numbers."""
     text = io.StringIO(newline="")
     writer = csv.writer(text, lineterminator="\n")
-    as_text = functools.cache(defused)  # most texts appear many times in the rows of a class
+    # Cache the texts, because most of them appear many times in the rows of a class.
+    as_text = functools.cache(defused)
     for row in rows:
         writer.writerow([as_text(cell) if isinstance(cell, str) else f"{cell:g}" for cell in row])
     return text.getvalue()
@@ -49,12 +50,12 @@ def original(cell: str) -> str:
 
 
 def defused(cell: str) -> str:
-    """Return a cell that no spreadsheet takes for a formula (OWASP, "CSV Injection").
+    """Return the text of a cell, changed so that no spreadsheet takes it for a formula (OWASP, "CSV Injection").
 
-    An apostrophe is put before a possible formula, at the start or after a character at which some spreadsheets
-    split; spreadsheets then read the cell as text. Full-width signs count, because some programs convert them. Tabs,
-    line breaks and other control characters become blanks, and invisible characters (such as changes of the writing
-    direction) are dropped.
+    An apostrophe is put before a possible formula: at the start, or after a character at which some spreadsheets
+    split. Spreadsheets then read the cell as text. Full-width signs count as well, because some programs convert
+    them. Tabs, line breaks and other control characters become spaces, and invisible characters (such as changes of
+    the writing direction) are removed.
 
     Args:
         cell: Any text.

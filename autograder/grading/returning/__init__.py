@@ -1,1 +1,1 @@
-"""The feedback pages for students, with nothing harmful in them."""
+"""The feedback pages for students, which contain nothing harmful."""

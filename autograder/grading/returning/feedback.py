@@ -1,4 +1,4 @@
-"""Makes the feedback pages for students, one after the other, with templates that are read once."""
+"""Makes the feedback pages for students, one after the other, with templates that are read only once."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class FeedbackPages:
-    """Makes pages for one class.
+    """Makes the feedback pages of one class.
 
     Args:
         directory: The class.
@@ -75,7 +75,7 @@ class FeedbackPages:
 
 
 def _fill_in(cell: Any, cells: Mapping[str, CellEntry]) -> None:
-    """Put into a cell what nbgrader's GetGrades would put there for the template."""
+    """Put into a cell what nbgrader's GetGrades preprocessor would put there for the template."""
     marks: Mapping[str, Any] = cell.metadata.get("nbgrader", {})
     known = cells.get(marks.get("grade_id", ""))
     if known is None:

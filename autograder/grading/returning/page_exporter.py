@@ -1,4 +1,4 @@
-"""Makes a feedback page: nbgrader's template without anything that a browser executes or fetches."""
+"""Makes a feedback page from nbgrader's template, without anything that a browser would execute or fetch."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
-"""A browser's rights on a page: it may show the page's own text, styles and pictures (W3C, "Content Security
-Policy").
+"""The policy that limits what a browser does on a page: it may only show the page's own text, styles and pictures (W3C,
+"Content Security Policy").
 """
 
 _OURS = Path(__file__).parents[1] / "page_templates"
@@ -42,19 +42,21 @@ _NBGRADERS = _FORMGRADER / "templates"
 _BOOTSTRAP = _FORMGRADER / "static" / "node_modules" / "bootstrap" / "dist" / "css"
 _SCRIPT = re.compile(r"<script\b.*?</script\s*>", re.DOTALL | re.IGNORECASE)
 _REMEMBERED = 1024
-"""The number of pieces of code to remember; the given cells of a chapter are a few hundred."""
+"""The number of highlighted pieces of code to remember. The given cells of a chapter are a few hundred."""
 _REMEMBERED_CHARACTERS = 8_000_000
-"""Characters of rendered parts to remember; those that a chapter's students share have about a million."""
+"""The number of characters of rendered parts to remember. The parts that a chapter's students share have about a
+million.
+"""
 _PICTURE = re2.compile(r"(?i)<img\b[^>]*")
 _SHOWS_ATTACHED = re2.compile(r'(?P<before><img\b(?:\s+[\w-]+="[^"]*")*?\s+)src="attachment:(?P<name>[^"]*)"')
 _ALTERNATIVE = re2.compile(r"(?i)\salt=")
 
 
 class Remembered:
-    """A cache of texts by the values they were made from; the longest unused text is dropped first.
+    """A cache of texts, by the values from which they were made. The text that was unused for longest is dropped first.
 
     Args:
-        characters: The limit for all texts together.
+        characters: The maximum length of all texts together.
     """
 
     def __init__(self, characters: int) -> None:
@@ -62,13 +64,13 @@ class Remembered:
         self._texts: OrderedDict[bytes, str] = OrderedDict()
 
     def get(self, of: Any, make: Callable[[], str]) -> str:
-        """Return the text made from these values; make it if it is not in the cache.
+        """Return the text made from these values. If it is not in the cache, make it.
 
         Args:
-            of: Everything that the text depends on, as JSON values.
+            of: Everything on which the text depends, as JSON values.
             make: Makes the text.
         """
-        # Students write a part of it, so the key is a hash for which no student can find two values.
+        # Students write a part of the values, so the key is a hash for which no student can find two values.
         key = hashlib.sha256(msgspec.json.encode(of)).digest()
         known = self._texts.get(key)
         if known is not None:
@@ -84,12 +86,12 @@ class Remembered:
 
 
 class PageExporter(HTMLExporter):
-    """nbgrader's feedback page without scripts, safe for untrusted notebooks.
+    """nbgrader's feedback page without scripts, and safe for untrusted notebooks.
 
-    nbgrader's own page loads MathJax from the network; without it, formulas are shown as TeX. Parts that many
-    students share are rendered once. Nbconvert copies and validates a notebook twice before it reaches the template,
-    in case a preprocessor changes it. There are no preprocessors here, so the template is rendered from the notebook
-    itself.
+    nbgrader's own page loads MathJax from the network; this one does not, and shows formulas as TeX. Parts that many
+    students share are rendered only once. Nbconvert copies and validates a notebook twice before it reaches the
+    template, in case a preprocessor changes it. There are no preprocessors here, so the template is rendered from the
+    notebook itself.
     """
 
     @property
@@ -118,7 +120,7 @@ class PageExporter(HTMLExporter):
         self._set_filter("markdown2html", markdown_to_html)
 
     def default_filters(self) -> Iterator[tuple[str, Any]]:
-        """The filters of nbconvert, some replaced by those of this module."""
+        """Yield the filters of nbconvert, some of them replaced by those of this module."""
         filters: Any = super().default_filters
         yield from filters()
         yield "without_scripts", without_scripts
@@ -129,8 +131,8 @@ class PageExporter(HTMLExporter):
         """Make the page of one notebook.
 
         Args:
-            notebook: The notebook from ``autograded/``, with points and comments filled in; it is changed.
-            names: The values of the template for the student, the notebook and the points.
+            notebook: The notebook from ``autograded/``, with points and comments filled in. It is changed.
+            names: The values that the template needs about the student, the notebook and the points.
         """
         language = notebook.metadata.get("language_info", {})
         lexer = language.get("pygments_lexer", language.get("name", None))
@@ -143,20 +145,22 @@ class PageExporter(HTMLExporter):
 
     @functools.cached_property
     def _resources(self) -> dict[str, Any]:
-        """The resources that nbconvert passes to a template: always the same, so an empty notebook provides them."""
+        """Return the resources that nbconvert passes to a template, taken from an empty notebook: they never change."""
         initialise: Any = self._init_resources
         names = {"notebook": "", "score": 0.0, "max_score": 0.0, "late_penalty": 0.0}
-        # nbconvert looks for custom/custom.css below this folder, or else below the current one.
+        # nbconvert looks for custom/custom.css below this folder, and without it below the current one.
         resources: dict[str, Any] = initialise({"nbgrader": names, "config_dir": str(_OURS)})
         shown: Any = WidgetsDataTypeFilter(notebook_metadata={}, parent=self, resources=resources)
         self._set_filter("filter_data_type", shown)
-        convert: Any = TemplateExporter.from_notebook_node  # HTMLExporter's method would parse the page again
+        convert: Any = (
+            TemplateExporter.from_notebook_node
+        )  # the method of HTMLExporter would parse the page again
         _, resources = convert(self, nbformat_nodes.notebook([], {}), resources)
         return resources
 
     def _part(self, lexer: str | None, render: Callable[[], str], depends_on: Any) -> str:
         if isinstance(depends_on, NotebookNode) and is_check(depends_on):
-            return render()  # it contains this student's card
+            return render()  # not remembered, because it contains this student's card
         return self._parts.get((lexer, depends_on), render)
 
     def _set_filter(self, name: str, function: Callable[..., Any]) -> None:
@@ -166,15 +170,15 @@ class PageExporter(HTMLExporter):
 
 @pass_context
 def markdown_to_html(context: Any, source: str) -> str:
-    """Replaces nbconvert's filter of that name; text that differs from the master is cleaned.
+    """Replaces nbconvert's filter with this name. Text that differs from the master is cleaned.
 
-    ``nbgrader_config.py`` sets it as ``HTMLExporter.filters["markdown2html"]`` for formgrader. A picture that is not
-    attached is left out, because nbconvert would make no page at all.
+    For formgrader, ``nbgrader_config.py`` sets it as ``HTMLExporter.filters["markdown2html"]``. A picture that is
+    missing among the attachments is left out, because nbconvert would make no page at all.
     """
     cell = context.get("cell", {})
     rendered = MarkdownWithMath(renderer=Renderer(escape=False)).render(source)
     harmless = rendered if is_the_masters(cell) else clean(rendered)
-    # nbgrader's pages and nbconvert's classic template let a picture grow beyond its column.
+    # Limit the width, because nbgrader's pages and nbconvert's classic template let a picture grow beyond its column.
     page = without_dead_links(harmless.replace("<img ", '<img style="max-width: 100%" '))
     attached = dict(cell.get("attachments", {}))
     return _with_pictures(page, attached.get if is_the_masters(cell) else attached.pop)
@@ -184,8 +188,9 @@ def _with_pictures(page: str, take: Callable[[str, dict[str, str]], Mapping[str,
     """Return a piece of a page with the pictures that are attached to its cell.
 
     Args:
-        page: HTML in which a picture is the name of an attachment.
-        take: Returns an attachment by its name. A student's attachment is returned once, so that a page cannot grow.
+        page: HTML in which a picture's address is the name of an attachment.
+        take: Returns an attachment by its name. A student's attachment is returned only once, so that a page cannot
+            grow.
     """
 
     def shown(tag: Any) -> str:
@@ -195,13 +200,13 @@ def _with_pictures(page: str, take: Callable[[str, dict[str, str]], Mapping[str,
     return _SHOWS_ATTACHED.sub(shown, page)
 
 
-# The head is the same for all students of an assignment, and most of a page.
+# The result is cached, because the head is the same for all students of an assignment and is most of a page.
 @functools.lru_cache(maxsize=16)
 def without_scripts(head: str) -> str:
-    """Return the head of a page without its scripts, and with the policy that forbids any other.
+    """Return the head of a page without its scripts, and with the policy that forbids any script.
 
     Args:
-        head: The head from a trusted template.
+        head: The head of the page, from a trusted template.
     """
     policy = f'<meta http-equiv="Content-Security-Policy" content="{POLICY}" />'
     return _SCRIPT.sub("", head).replace("<head>", f"<head>\n{policy}", 1)
@@ -224,7 +229,7 @@ def _highlighter(lexer: str | None) -> Any:
 
 
 def _with_alternative_texts(page: str) -> str:
-    """Do nbconvert's last step on a whole page, which parses it again, only if a picture lacks an alternative text."""
+    """Add missing alternative texts to pictures, nbconvert's last step, only if needed: it parses the page again."""
     if all(_ALTERNATIVE.search(picture[0]) for picture in _PICTURE.finditer(page)):
         return page
     soup = BeautifulSoup(page, features="html.parser")

@@ -1,6 +1,6 @@
-"""The head of a feedback page: the student, and a table of the exercises with their points.
+"""The head of a feedback page: the student, and a table of the exercises with points.
 
-nbgrader's own head has no student's name, and calls each exercise "Test cell".
+nbgrader's own head does not name the student, and calls each exercise "Test cell".
 """
 
 from __future__ import annotations
@@ -24,7 +24,9 @@ if TYPE_CHECKING:
     from autograder.grading.gradebooks.gradebook_reading import CellEntry
 
 WAITS = "waits_for_a_person"
-"""The key, in a cell's nbgrader metadata, that marks points as still to come; its value is the text for that."""
+"""The key in a cell's nbgrader metadata that marks points as still to come. Its value is the text to show instead of
+the points.
+"""
 _FOR_A_PERSON, _TRIED_AGAIN = "waits for your instructor", "could not be checked, and is tried again"
 _BEGIN, _END = '<div id="toc">', "</div>"
 _LINK = re2.compile(r'(?s)<a\b[^>]*\bhref="([^"]*)"[^>]*>(.*?)</a>')
@@ -33,10 +35,10 @@ _CELL = "padding: 4px 14px 4px 0; vertical-align: top; text-align: left"
 
 
 def with_summary(body: str, notebook: NotebookNode, names: Mapping[str, Any]) -> str:
-    """Return a page with the student and a table of the exercises at the top, instead of nbgrader's list.
+    """Return a page that begins with the student and a table of exercises, in place of nbgrader's list.
 
     Args:
-        body: The page; it has no student's text before the list.
+        body: The page. It contains no text by a student before nbgrader's list.
         notebook: The notebook of the page, with points filled in.
         names: The template's values for the student and the points.
     """
@@ -58,7 +60,8 @@ def cards_first(notebook: NotebookNode) -> list[tuple[bool, bool]]:
     """Move the checks, whose outputs are the cards, to the top of a notebook.
 
     Returns:
-        For each cell, whether the lab's text begins with it, and whether it ends with it; a page folds that text.
+        For each cell a pair: whether the lab's text begins with this cell, and whether it ends with it. A page folds
+        that text.
     """
     notebook.cells = sorted(notebook.cells, key=lambda cell: not is_check(cell))
     given = [is_the_masters(cell) and not is_check(cell) for cell in notebook.cells]
@@ -69,10 +72,10 @@ def cards_first(notebook: NotebookNode) -> list[tuple[bool, bool]]:
 
 
 def mark_waiting(notebook: NotebookNode, cells: Mapping[str, CellEntry]) -> None:
-    """Mark the cells whose points are still to come from a person or the judge.
+    """Mark the cells whose points are still to come, from a person or from the judge.
 
     Args:
-        notebook: A graded notebook; it is changed.
+        notebook: A graded notebook. It is changed.
         cells: The notebook's entries in the gradebook, by grade_id.
     """
     for cell in notebook.cells:
@@ -83,12 +86,12 @@ def mark_waiting(notebook: NotebookNode, cells: Mapping[str, CellEntry]) -> None
 
 
 def without_dead_links(page: str) -> str:
-    """Turn links to files next to the page into plain text, because the page is sent alone."""
+    """Turn links to files next to the page into plain text, because the page is sent without these files."""
     return _LINK.sub(lambda link: link[0] if _LEADS_SOMEWHERE.match(link[1]) else link[2], page)
 
 
 def _lines(notebook: NotebookNode, names: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
-    """Yield the name, the points and a remark for each cell with points, as HTML."""
+    """Yield for each cell with points, as HTML: the name, the points, and a remark."""
     for cell in notebook.cells:
         marks = cell.metadata.get("nbgrader", {})
         if not (marks.get("grade") or marks.get("task")):
@@ -106,7 +109,7 @@ def _lines(notebook: NotebookNode, names: Mapping[str, Any]) -> Iterator[tuple[s
 
 
 def _title(cell: NotebookNode) -> str:
-    """Return the exercise's title for a check by the judge; the cell's own name for any other cell."""
+    """Return the exercise's title if the judge checks the cell; otherwise the name of the cell."""
     name = grade_id(cell)
     if is_check(cell) and is_the_masters(cell):
         with contextlib.suppress(LookupError):

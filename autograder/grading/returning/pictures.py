@@ -1,7 +1,7 @@
 """The number of pixels of a picture, read from its header without decoding it.
 
 A PNG of 30 kB may have 16,000 x 16,000 pixels, which take a gigabyte in a browser. Each frame of an animated picture
-counts. Sources: PNG specification (W3C, third edition), 11.2 and 11.3.6; GIF89a, 18 to 26; ITU-T T.81, B.2.2; RFC
+is counted. Sources: PNG specification (W3C, third edition), 11.2 and 11.3.6; GIF89a, 18 to 26; ITU-T T.81, B.2.2; RFC
 9649.
 """
 
@@ -16,12 +16,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 MOST_POINTS = 100_000_000
-"""The limit on pixels of all pictures of a notebook on a page: 400 MB in a browser, or a dozen screenshots of 4K."""
+"""The maximum number of pixels of all pictures in a notebook's page: 400 MB in a browser, or a dozen 4K screenshots."""
 _PNG = b"\x89PNG\r\n\x1a\n"
 _NO_SIZE = {0xC4, 0xC8, 0xCC}
-"""JPEG markers in the range of start-of-frame markers that start no frame: tables, a reserved one, conditioning."""
+"""JPEG markers that lie in the range of start-of-frame markers but do not start a frame: tables, a reserved one,
+conditioning.
+"""
 _ALONE = {0x01, *range(0xD0, 0xD8)}
-"""JPEG markers without a segment."""
+"""JPEG markers that have no segment after them."""
 
 
 class PixelBudget:
@@ -31,7 +33,7 @@ class PixelBudget:
         self._left = MOST_POINTS
 
     def fit(self, encoded: Iterable[str]) -> bool:
-        """Return True, and count them, if all of these base64 pictures are within the limit."""
+        """Return True if all of these base64 pictures are within the limit together; then count them."""
         wanted = sum(points_of(picture) or 0 for picture in encoded)
         if wanted > self._left:
             return False
@@ -40,15 +42,15 @@ class PixelBudget:
 
 
 def is_shown(encoded: str) -> bool:
-    """True if a page may show a base64 picture: a browser can show it, and it is not too large by itself."""
+    """Return True if a page may show a base64 picture: a browser can show it, and it alone is not too large."""
     points = points_of(encoded)
     return points is not None and points <= MOST_POINTS
 
 
 def points_of(encoded: str) -> int | None:
-    """Return the pixels of a base64 picture, all frames together; None if it is not a PNG, JPEG, GIF or WebP.
+    """Return the number of pixels of a base64 picture, in all frames; None if it is not a PNG, JPEG, GIF or WebP.
 
-    Like a browser, this goes by the content of a picture, not by its claimed type.
+    Like a browser, this goes by the content of a picture and not by its declared type.
     """
     try:
         data = base64.b64decode(encoded)
@@ -61,7 +63,7 @@ def points_of(encoded: str) -> int | None:
         if data[:4] == b"RIFF" and data[8:12] == b"WEBP":
             return _points_of_webp(data)
     except (binascii.Error, ValueError, struct.error, IndexError):
-        pass  # incomplete, or not a picture
+        pass  # the picture is incomplete, or is not a picture
     return None
 
 
@@ -81,7 +83,7 @@ def _points_of_gif(data: bytes) -> int | None:
     while place < len(data) and data[place] != 0x3B:
         if data[place] == 0x2C:
             left, top, wide, high, flags = struct.unpack_from("<HHHHB", data, place + 1)
-            # A browser enlarges the screen for a frame that reaches beyond it.
+            # A browser enlarges the whole picture for a frame that reaches beyond it.
             width, height, frames = max(width, left + wide), max(height, top + high), frames + 1
             place += 11 + _colors(flags)
         else:
@@ -128,7 +130,7 @@ def _points_of_webp(data: bytes) -> int | None:
 
 
 def _chunks(data: bytes) -> Iterator[tuple[bytes, int]]:
-    """Yield the type of each WebP chunk, and the start of its content."""
+    """Yield the type of each WebP chunk, and the index at which its content starts."""
     place = 12
     while place + 8 <= len(data):
         yield data[place : place + 4], place + 8

@@ -1,9 +1,10 @@
-"""A time budget for rendering the texts of one notebook on a page.
+"""A limit on the time for rendering the texts of one notebook on a page.
 
 A text can be crafted to keep parsers of Markdown and code busy for minutes. So the worker that has executed a
-student's notebook also renders its texts for trial: it can be interrupted without delaying other work. The trial
-takes the same steps as nbconvert's template of a page. Text beyond the notebook's budget is shown as typed and cut
-short (:func:`autograder.grading.returning.sanitize.make_harmless`), both in nbgrader's pages and in formgrader.
+student's notebook also renders the notebook's texts as a trial, because a worker can be interrupted without delaying
+other work. The trial takes the same steps as nbconvert's page template. Text beyond the notebook's time limit is
+shown as typed and cut (:func:`autograder.grading.returning.sanitize.make_harmless`), both in nbgrader's pages and in
+formgrader.
 """
 
 from __future__ import annotations
@@ -20,23 +21,24 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 SECONDS = 0.5
-"""Processor time for a notebook; usual texts take a few hundredths of a second."""
+"""The limit in seconds of processor time for a notebook. Usual texts take a few hundredths of a second."""
 
 
 def too_costly(cells: Sequence[Cell], seconds: float = SECONDS) -> tuple[int, ...]:
     """Return the indexes of the cells that must be shown as typed.
 
-    Call it in the main thread of a process that may be interrupted.
+    Call this in the main thread of a process that may be interrupted.
 
     Args:
         cells: The cells of a rebuilt notebook.
-        seconds: Processor time for all cells together.
+        seconds: The limit in seconds of processor time for all cells together.
     """
     own = [(place, cell) for place, cell in enumerate(cells) if cell.own and cell.source]
     if sum(len(cell.source) for _, cell in own) <= HARMLESS_LENGTH:
         return ()
     collects = gc.isenabled()
-    gc.disable()  # this notebook must not pay for what earlier ones have left
+    # Garbage collection off, so that this notebook's time does not include cleaning up after earlier notebooks.
+    gc.disable()
     try:
         return _beyond(seconds, own)
     finally:
@@ -45,7 +47,7 @@ def too_costly(cells: Sequence[Cell], seconds: float = SECONDS) -> tuple[int, ..
 
 
 def _beyond(seconds: float, cells: Sequence[tuple[int, Cell]]) -> tuple[int, ...]:
-    """Return the indexes of the first cell that goes beyond the budget, and of all cells after it."""
+    """Return the indexes of the first cell that exceeds the limit, and of all cells after it."""
     render = _renderer()
     found = []
     left = seconds
@@ -64,7 +66,7 @@ def _beyond(seconds: float, cells: Sequence[tuple[int, Cell]]) -> tuple[int, ...
 
 
 def _renderer() -> Callable[[Cell], object]:
-    """Return a function that renders a cell's text as a page does; its imports are made only if it is needed."""
+    """Return a function that renders a cell's text as a page does. It imports what it needs only when called."""
     from bs4 import BeautifulSoup
     from nbconvert.filters.highlight import Highlight2HTML
     from nbconvert.filters.markdown_mistune import markdown2html_mistune
@@ -75,15 +77,17 @@ def _renderer() -> Callable[[Cell], object]:
     highlight = Highlight2HTML(pygments_lexer="ipython3")
 
     def render(cell: Cell) -> object:
-        # The blocks "markdowncell" and "input" of nbconvert/templates/lab/base.html.j2.
+        # This follows the blocks "markdowncell" and "input" of nbconvert/templates/lab/base.html.j2.
         if cell.kind is CellType.CODE:
             piece = clean_html(highlight(cell.source))
         elif cell.kind is CellType.MARKDOWN:
             piece = strip_files_prefix(clean(markdown2html_mistune(harmless_markdown(cell.source))))
         else:
-            return None  # always shown as typed
+            return None  # a text this long is always shown as typed
         return BeautifulSoup(piece, "html.parser")  # nbconvert/exporters/html.py: from_notebook_node
 
     for kind in (CellType.CODE, CellType.MARKDOWN):
-        render(Cell("a <b>", kind))  # lexers and parsers are loaded at their first use
+        render(
+            Cell("a <b>", kind)
+        )  # render something once, because lexers and parsers are loaded at their first use
     return render

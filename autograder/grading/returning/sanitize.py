@@ -31,14 +31,16 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 LONGEST_MARKDOWN = 50_000
-"""The longest text cell, in characters, that is rendered; a longer one is shown as typed."""
+"""The maximum length of a text cell, in characters, that is rendered. A longer one is shown as typed."""
 _MOST_PLACES = 50_000
-"""The limit on rows times columns of a text's tables: a browser stores the borders of each, filled or not."""
+"""The maximum number of rows times columns in a text's tables. A browser stores the borders of each position, even if
+there is no cell.
+"""
 SHOWN = (*IMAGES, "text/plain")
-"""The types of output that a submission's cell may show; none can contain code."""
+"""The types of output that a submission's cell may show. None of them can contain code."""
 
 _FORMATTING = frozenset(("a", "b", "code", "em", "i", "s", "small", "strike", "strong", "tt", "u"))
-"""Elements that an HTML parser opens again in each block, until they are closed."""
+"""Elements that an HTML parser opens again in each block until they are closed."""
 _TAGS = _FORMATTING | {
     *("abbr", "blockquote", "br", "caption", "center", "dd", "del", "details", "div", "dl", "dt"),
     *("h1", "h2", "h3", "h4", "h5", "h6", "hr", "img", "input", "ins", "kbd", "li", "mark", "ol", "p", "pre"),
@@ -50,28 +52,28 @@ _ATTRIBUTES = {
     "abbr": {"title"},
     "details": {"open"},
     "img": {"alt", "height", "src", "title", "width"},
-    "input": {"disabled", "type"},  # a task list's box; no one can tick it or type into it
+    "input": {"disabled", "type"},  # the checkbox of a task list; no reader can change it
     "ol": {"start"},
-    "td": {"colspan", "rowspan", "style"},  # mistune sets the style for alignment
+    "td": {"colspan", "rowspan", "style"},  # mistune writes the alignment into the style
     "th": {"colspan", "rowspan", "style"},
     "*": {"class"},
 }
 _MOST_OPENED = 200_000
-"""The limit on elements that a parser may have to make for unclosed formatting; a text of the course has up to
-1,700.
+"""The maximum number of elements that a parser may have to make for unclosed formatting. A text of the course needs up
+to 1,700.
 """
 # Matches a comment; a tag, in which a quoted ">" does not end it; or a "<" that begins neither.
 _MARKUP = re2.compile(r"""<!--|</?([a-zA-Z][^\s/>]*)(?:[^<>"']|"[^"]*"|'[^']*')*>|<""")
 # Matches the beginning of a tag, up to its end or its first quotation mark.
 _TAG = re2.compile(r"""<([a-zA-Z][^\s/>]*)[^<>"']*["']?""")
 _CONTROL = dict.fromkeys((*range(1, 9), 11, 12, *range(14, 32)), "?")
-# Only links that open a page on a click. No "//" at the beginning: it would be another host.
+# Only links that open a page on a click are allowed. They must not begin with "//", which would be another host.
 _LINK = re2.compile(r"https?://\S+|mailto:[^\s:]+|#\S*|(/|/?[\w%.-][\w%./-]*)(#\S*)?")
 _PICTURE = re2.compile(r"data:image/(?:png|jpeg|gif|webp);base64,([A-Za-z0-9+/=\s]*)")
 _ATTACHED = "attachment:"
 _ATTACHMENT = re2.compile(rf"{_ATTACHED}[\w.%+-]+")
-# Only the classes that Pygments gives to pieces of code, and mistune to code blocks: others could make a text look
-# like a verdict, or cover the page.
+# These are the only classes that Pygments gives to pieces of code, and mistune to code blocks. Other classes could
+# make a text look like a verdict, or cover the page.
 _CLASSES = {name for name in STANDARD_TYPES.values() if name} | {"highlight"}
 _LANGUAGE = re2.compile(r"language-[\w+-]{1,30}")
 
@@ -80,24 +82,26 @@ _TURNS = {
     code: f"\\u{code:04x}"
     for code in (0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A))
 }
-"""Characters that change the direction of writing: a text may look different (Unicode TR 36, "Bidirectional Text")."""
+"""Characters that change the writing direction, so that a text may look different from what it is (Unicode TR 36,
+"Bidirectional Text"), each with its escape.
+"""
 
 
 def visible(text: str) -> str:
-    """Return ``text`` with direction changes shown as escapes."""
+    """Return ``text`` with characters that change the writing direction shown as escapes."""
     return text if text.isascii() else text.translate(_TURNS)
 
 
 def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> NotebookNode:
-    """Change a student's texts and outputs so that no browser executes, fetches or is misled by any of it.
+    """Change a student's texts and outputs so that no browser executes or fetches anything or is misled.
 
-    Cells that come from the master stay unchanged, and so do the outputs of its check cells, which show the judge's
+    Cells from the master stay unchanged, and so do the outputs of the master's check cells, which show the judge's
     verdict. Nothing else in a notebook is trusted.
 
     Args:
-        notebook: A rebuilt or graded notebook; it is changed.
+        notebook: A rebuilt or graded notebook. It is changed.
         as_they_are: The indexes of cells whose text must not be rendered, because that would take too long. They are
-            shown literally, but that also goes through nbconvert's filters, so they are cut to a total length.
+            shown as typed. As that, too, goes through nbconvert's filters, they are cut to a total length.
 
     Returns:
         The same notebook.
@@ -120,20 +124,22 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
             elif cell.cell_type == CellType.RAW:
                 cell.update(nbformat_nodes.cell(CellType.MARKDOWN, as_typed(cell.source)) | {"id": cell.id})
             elif place in as_they_are:
-                cell.metadata["magics_language"] = "text"  # nbconvert then does not highlight the code
+                cell.metadata["magics_language"] = (
+                    "text"  # with this value, nbconvert does not highlight the code
+                )
         if cell.cell_type == CellType.CODE and not (is_check(cell) and is_the_masters(cell)):
             cell.outputs = [_with_pictures_that_fit(harmless_output(o), pictures) for o in cell.outputs]
     return notebook
 
 
 def _pictures_of(cell: NotebookNode) -> list[str]:
-    """Return the pictures of a text cell, in base64: each once, however often the text shows it."""
+    """Return the pictures of a text cell in base64; each only once, however often the text shows it."""
     attached = [data for kinds in cell.get("attachments", {}).values() for data in kinds.values()]
     return [*attached, *{found[1] for found in _PICTURE.finditer(cell.source)}]
 
 
 def _with_pictures_that_fit(output: NotebookNode, pictures: PixelBudget) -> NotebookNode:
-    """Return an output in which a sentence replaces each picture that a page may not show; the output is changed."""
+    """Return an output in which a sentence replaces each picture that a page may not show. The output is changed."""
     for kind in IMAGES:
         encoded = output.get("data", {}).get(kind)
         if encoded is not None and not (is_shown(text := "".join(encoded)) and pictures.fit([text])):
@@ -142,14 +148,14 @@ def _with_pictures_that_fit(output: NotebookNode, pictures: PixelBudget) -> Note
     return output
 
 
-# Most text cells of a class are unchanged ones, checked once instead of once for each student.
+# The result is cached, because most text cells of a class are unchanged: they are checked once, not once per student.
 @functools.lru_cache(maxsize=1024)
 def harmless_markdown(source: str, figures: tuple[str, ...] = ()) -> str:
     """Return Markdown with the same text as ``source`` that can do nothing harmful.
 
     Args:
         source: A student's text cell.
-        figures: The names of the bitmaps attached to the cell; each may be shown once.
+        figures: The names of the bitmaps attached to the cell. Each may be shown once.
     """
     if len(source) > LONGEST_MARKDOWN:
         return as_typed(source)
@@ -157,15 +163,15 @@ def harmless_markdown(source: str, figures: tuple[str, ...] = ()) -> str:
         looking = _Looking(figures)
         rendered = MarkdownWithMath(renderer=looking).render(source)
         if visible(plain := unescape(rendered)) != plain:
-            return as_typed(source)  # a change of direction may be written as an entity
+            return as_typed(source)  # a change of the writing direction may also be written as an entity
         cleaned = clean(rendered)
         if looking.is_plain and cleaned.count("&lt;") == rendered.count("&lt;"):
             return source
         if (in_one_line := _in_one_line(cleaned)) == source:
-            return source  # the text was cleaned before
+            return source  # this text is the result of an earlier cleaning
         block = f"<div>{in_one_line}</div>"
         return block if _as_shown(block).strip() == block else as_typed(source)
-    except Exception:  # such as for too deep nesting; a parser may raise anything on hostile text
+    except Exception:  # for example because of too deep nesting; on hostile text a parser may raise anything
         return as_typed(source)
 
 
@@ -176,7 +182,7 @@ def as_typed(source: str) -> str:
 
 
 def _figures(cell: Any) -> tuple[str, ...]:
-    """Return the names of the bitmaps of a text cell; other attachments are removed."""
+    """Return the names of the bitmaps attached to a text cell; remove all other attachments."""
     attached = cell.pop("attachments", {})
     bitmaps = {
         name: {kind: data}
@@ -190,7 +196,7 @@ def _figures(cell: Any) -> tuple[str, ...]:
 
 
 def _longest_shown(lengths: Iterable[int]) -> int:
-    """Return the length to cut texts of these lengths to, so that all of them together are harmless."""
+    """Return the length to which texts of these lengths have to be cut, so that all of them together are harmless."""
     left, fewest_first = HARMLESS_LENGTH, sorted(lengths)
     for place, length in enumerate(fewest_first):
         share = left // (len(fewest_first) - place)
@@ -205,16 +211,16 @@ def _cut(source: str, length: int) -> str:
 
 
 def _in_one_line(page: str) -> str:
-    """Return HTML without line breaks: a blank line would end the block, and Markdown would be parsed after it."""
+    """Return HTML without line breaks, because after a blank line the rest would be parsed as Markdown."""
     pieces = re2.split(r"(?s)(<pre\b.*?</pre>)", page.strip())
     return "".join(("&#10;" if i % 2 else " ").join(piece.splitlines()) for i, piece in enumerate(pieces))
 
 
 @functools.lru_cache(maxsize=1024)
 def clean(page: str) -> str:
-    """Return HTML with nothing but text, its structure, links and embedded pictures.
+    """Return HTML that contains only text, its structure, links and embedded pictures.
 
-    A forbidden tag is shown as text: nh3 would drop it, and with it the meaning of "List<int>".
+    A forbidden tag is shown as text. nh3 would remove it, and so change the meaning of "List<int>".
     """
     if _may_open(page) > _MOST_OPENED:
         return f"<pre>{escape(page)}</pre>"
@@ -223,26 +229,26 @@ def clean(page: str) -> str:
 
 
 def _may_open(page: str) -> int:
-    """Return a limit on the number of elements that nh3 makes for formatting that stays open.
+    """Return an upper limit for the number of elements that nh3 makes for formatting that is left open.
 
-    At each tag, nh3 opens each kind of unclosed formatting again, up to three times a kind. A text of 50,000
+    At each tag, nh3 opens each kind of unclosed formatting again, up to three times per kind. So a text of 50,000
     characters can make it create gigabytes of elements, and it cannot be interrupted.
     """
     tags = list(_TAG.finditer(page))
     formatting = [tag[0] for tag in tags if tag[1].lower() in _FORMATTING]
-    # A tag is read up to its first quotation mark, so each tag with one counts as a kind of its own.
+    # A tag is read only up to its first quotation mark, so each tag that has one counts as a different kind.
     kinds = {tag for tag in formatting if tag[-1] not in "\"'"}
     return len(tags) * (3 * len(kinds) + sum(tag not in kinds for tag in formatting))
 
 
 def _shown_or_kept(markup: Any) -> str:
-    """Return an allowed tag or a comment unchanged, anything else as text."""
+    """Return an allowed tag or a comment unchanged, and anything else as text."""
     stays = markup[0] == "<!--" or (markup[1] or "").lower() in _TAGS
     return markup[0] if stays else markup[0].replace("<", "&lt;")
 
 
 def _is_picture(address: str) -> bool:
-    """True if an address is itself a picture that a page may show."""
+    """Return True if an address itself contains a picture (data URL) that a page may show."""
     found = _PICTURE.fullmatch(address)
     return found is not None and is_shown(found[1])
 
@@ -278,7 +284,7 @@ _CLEANER = nh3.Cleaner(
 
 
 class Renderer(IPythonRenderer):
-    """nbconvert's renderer, except that attached pictures are inserted last, as a megabyte takes long to parse."""
+    """nbconvert's renderer, but attached pictures are inserted last, because parsing a megabyte takes long."""
 
     def _embed_image_or_attachment(self, src: str) -> str:
         embedded: str = super()._embed_image_or_attachment("" if src.startswith(_ATTACHED) else src)
@@ -286,7 +292,7 @@ class Renderer(IPythonRenderer):
 
 
 class _Looking(Renderer):
-    """Renders as nbconvert does, and notes everything that is more than plain Markdown."""
+    """Renders as nbconvert does, and records everything that is more than plain Markdown."""
 
     def __init__(self, figures: tuple[str, ...] = ()) -> None:
         super().__init__(escape=False, exclude_anchor_links=True)
@@ -302,7 +308,7 @@ class _Looking(Renderer):
         return super().inline_html(html)
 
     def block_mermaidjs(self, code: str) -> str:
-        """Note a diagram, which nbconvert writes into the page without escaping it."""
+        """Record a diagram, which nbconvert writes into the page without escaping it."""
         self.is_plain = False
         return f"<pre>{escape(code)}</pre>"
 
@@ -312,7 +318,7 @@ class _Looking(Renderer):
         return super().link(text, url, title)
 
     def image(self, text: str, url: str, title: str | None = None) -> str:
-        """Note a picture: one from elsewhere would reveal who reads the page, and when."""
+        """Record a picture. One from another server would reveal who reads the page, and when."""
         if (name := url.removeprefix(_ATTACHED)) != url and name in self._left:
             self._left.remove(name)
             return super().image(text, url, title)
@@ -323,12 +329,12 @@ class _Looking(Renderer):
 
 
 def _as_shown(markdown: str) -> str:
-    """Return the form in which nbconvert will show it."""
+    """Return the HTML that nbconvert will make of Markdown."""
     return MarkdownWithMath(renderer=IPythonRenderer(escape=False)).render(markdown)
 
 
 def harmless_output(output: NotebookNode) -> NotebookNode:
-    """Return an output of a student's cell with nothing but texts and bitmaps; the output is changed."""
+    """Return the output of a student's cell, reduced to texts and bitmaps. The output is changed."""
     if "data" in output:
         output.data = {kind: _visible(output.data[kind]) for kind in SHOWN if kind in output.data}
         output.metadata = {}
@@ -339,7 +345,7 @@ def harmless_output(output: NotebookNode) -> NotebookNode:
 
 
 def _visible(words: Any) -> Any:
-    """Return the text, or the lines, of an output with direction changes shown as escapes."""
+    """Return the text (or lines) of an output, with characters that change the writing direction shown as escapes."""
     if isinstance(words, str):
         return visible(words)
     return [_visible(line) for line in words] if isinstance(words, list) else words

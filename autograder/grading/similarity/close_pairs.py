@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from autograder.grading.classes.class_directory import ClassDirectory, RefusedFile
 
 MOST = 100
-"""The most pairs of students to show; a reader needs no more, and they are the closest."""
+"""The maximum number of pairs of students to show. These are the closest ones, and a reader needs no more."""
 
 
 @dataclass(frozen=True)
 class Similar:
-    """The result of the search in a class.
+    """The result of a search for similar answers in a class.
 
     Attributes:
         path: The class.
@@ -33,7 +33,7 @@ class Similar:
         more: The number of further pairs of students that are not shown.
         names: The students' names, by id.
         compared: The number of notebooks that were compared.
-        notes: Lines that the instructor should read.
+        notes: Sentences that the instructor should read.
         troubles: A line for each file that could not be compared, or only partly.
     """
 
@@ -47,7 +47,7 @@ class Similar:
 
     @property
     def exit_code(self) -> int:
-        """2 if something could not be compared, else 0: a pair is a hint, not a failure."""
+        """The command's exit code: 2 if something could not be compared, else 0, because a pair is only a hint."""
         return 2 if self.troubles else 0
 
 
@@ -56,7 +56,7 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
 
     Args:
         directory: The class.
-        assignment: Only this assignment; all by default.
+        assignment: The assignment to compare; by default all.
 
     Raises:
         GradingError: No work was handed in, the assignment does not exist, or a source cannot be used.
@@ -109,7 +109,7 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
 def _not_looked_at(
     directory: ClassDirectory, refused: Iterable[RefusedFile], assignment: str
 ) -> Iterator[str]:
-    """Yield a line for each file that may be an answer but is in the wrong folder."""
+    """Yield a line for each file that may be an answer but lies in a wrong folder."""
     for one in (*refused, *beside_their_place(directory)[0]):
         # A file above the assignment's folder may belong to any assignment.
         below = one.path.relative_to(directory.path / "submitted").parts[1:]

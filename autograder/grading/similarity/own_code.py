@@ -1,4 +1,4 @@
-"""A student's own part of an answer: not the task's text, not its solution, not what many wrote."""
+"""Finds a student's own part of an answer: not from the task or its solution, and not what many students wrote."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from autograder.grading.similarity.student_texts import StudentAnswer
 
 SEQUENCE = 7
-"""The number of words in a row that are compared: about one short line."""
+"""The length of the sequences that are compared, in words: about one short line."""
 LONGEST = 10_000
-"""The most words of an answer that are compared: more than a thousand lines."""
+"""The maximum number of words of an answer that are compared: more than a thousand lines."""
 _LONGEST_TEXT = 20 * LONGEST
 _MANY, _MANY_SHARE = 5, 0.25
-"""Code counts as common if at least so many students, and so large a share of all students, have it."""
+"""Code counts as common if at least this number of students, and at least this fraction of all students, have it."""
 
 Sequence_ = tuple[str, ...]
 
@@ -32,7 +32,7 @@ class Compared:
     Attributes:
         answer: The answer.
         code: The words of the answer.
-        signs: The same words, with chosen names and texts made equal.
+        signs: The same words, but with names and texts that the student chose replaced by one sign each.
         own: For each word, True if it is the student's own.
         is_cut: True if the answer is longer than the compared part.
         sequences: The sequences of words that do not come from the task.
@@ -68,7 +68,7 @@ class GivenTexts:
 
 
 def compared(answers: Sequence[StudentAnswer], given: GivenTexts, students: int) -> list[Compared]:
-    """Find the students' own parts of their answers to one notebook.
+    """Return the answers to one notebook, each with the student's own part marked.
 
     Args:
         answers: All answers to that notebook.

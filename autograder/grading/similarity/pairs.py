@@ -1,4 +1,4 @@
-"""The pairs of answers that are more similar than the task explains, even if lines were inserted or moved."""
+"""Finds pairs of answers that are more similar than the task explains, even if lines were inserted or moved."""
 
 from __future__ import annotations
 
@@ -17,31 +17,32 @@ if TYPE_CHECKING:
     from autograder.grading.similarity.own_code import Compared
 
 SHORTEST = 40
-"""The number of own words that two answers must share, four to eight lines.
+"""The minimum number of own words that two answers must share: four to eight lines.
 
-Of the right answers in the bank, which solve one task in many ways, two independent ones share 27 at most.
+For comparison: in the bank, which solves a task in many ways, two independent right answers share at most 27.
 """
 LEAST_SHARE = 0.5
-"""The shared part of the own words of the shorter answer, at least."""
+"""The minimum share of own words that the two have in common, as a fraction of the answer with fewer own words."""
 _ROUNDS = 6
-"""The number of times that the rest is compared again: each time finds one more order of moved blocks."""
+"""The number of times that the rest of two answers is compared again. Each time finds one more order of moved blocks.
+"""
 _FOUND_IN_ONE, _FOUND_IN_OTHER = -3, -4
 
 HINT = (
     "A pair is a hint, not a proof: two students may have learnt from each other, or from one page on the web. "
     "Read both answers, and talk with both, before you decide anything."
 )
-"""Shown with every list of pairs."""
+"""The sentence that is shown with every list of pairs."""
 
 
 @dataclass(frozen=True)
 class Passage:
-    """A sequence of words that both answers have in the same order.
+    """A sequence of words that two answers have in common, in the same order.
 
     Attributes:
-        first: The index of the first word in one answer.
-        second: The index of the first word in the other answer.
-        own: For each word, True if it is the writer's own in both answers.
+        first: The index of its first word in the first answer.
+        second: The index of its first word in the second answer.
+        own: For each word, True if it is the student's own in both answers.
     """
 
     first: int
@@ -54,9 +55,9 @@ class Pair:
     """Two similar answers.
 
     Attributes:
-        one: One answer.
-        other: The other answer.
-        passages: The passages that they share, in the order of the first answer.
+        one: The first answer.
+        other: The second answer.
+        passages: The passages that they have in common, in the order of the first answer.
     """
 
     one: Compared
@@ -65,17 +66,17 @@ class Pair:
 
     @property
     def shared(self) -> int:
-        """The number of own words in these passages."""
+        """The number of own words in the common passages."""
         return sum(sum(passage.own) for passage in self.passages)
 
     @property
     def share(self) -> float:
-        """The shared part of the own words, relative to the answer that has fewer of them."""
+        """The number of shared own words, as a fraction of the own words of the answer that has fewer."""
         return self.shared / min(self.one.length, self.other.length)
 
     @property
     def percent(self) -> str:
-        """The share as text; rounded down, so that only complete agreement is 100 %."""
+        """Return the share in percent as text, rounded down, so that only complete agreement is 100 %."""
         return f"{int(100 * self.share)} %"
 
     @property
@@ -85,7 +86,7 @@ class Pair:
 
     @property
     def place(self) -> str:
-        """The notebook and cell of the answers."""
+        """Return the notebook and the cell of the answers, as text."""
         cells = dict.fromkeys((self.one.answer.cell, self.other.answer.cell))
         return f"{self.one.answer.notebook}, {' and '.join(cells)}"
 
@@ -93,7 +94,8 @@ class Pair:
 def close_pairs(answers: Sequence[Compared]) -> list[Pair]:
     """Return the similar pairs of answers to one notebook, the closest first.
 
-    Each cell is compared with every cell of another student: an answer may have been moved into an added cell.
+    Each cell is compared with every cell of another student, because an answer may have been moved into an added
+    cell.
     """
     candidates = _candidates([answer for answer in answers if answer.length >= SHORTEST])
     pairs = [Pair(left, right, _common_passages(left, right)) for left, right in candidates]
@@ -101,12 +103,12 @@ def close_pairs(answers: Sequence[Compared]) -> list[Pair]:
 
 
 def closest_first(pairs: Sequence[Pair]) -> list[Pair]:
-    """Return pairs in the order in which they are shown."""
+    """Return the pairs in the order in which they are shown."""
     return sorted(pairs, key=lambda pair: (-round(pair.share, 2), -pair.shared, _names(pair)))
 
 
 def by_students(pairs: Iterable[Pair]) -> list[list[Pair]]:
-    """Return the pairs of answers grouped by their two students, in the order of each group's first pair."""
+    """Return the pairs of answers grouped by their two students, in the order of the first pair of each group."""
     found: dict[tuple[str, str], list[Pair]] = {}
     for pair in pairs:
         found.setdefault(pair.students, []).append(pair)
@@ -114,9 +116,9 @@ def by_students(pairs: Iterable[Pair]) -> list[list[Pair]]:
 
 
 def _candidates(answers: Sequence[Compared]) -> list[tuple[Compared, Compared]]:
-    """Yield the pairs with enough common sequences for a result; comparing all answers directly would take too long.
+    """Return the pairs with enough common sequences to be worth comparing; comparing all pairs would take too long.
 
-    In a passage, at least every seventh of the shared own words is in a shared sequence, or begins one.
+    In a common passage, at least every seventh of the shared own words is part of a common sequence, or begins one.
     """
     holders: defaultdict[tuple[str, ...], list[int]] = defaultdict(list)
     for place, answer in enumerate(answers):
@@ -131,7 +133,7 @@ def _candidates(answers: Sequence[Compared]) -> list[tuple[Compared, Compared]]:
 
 
 def _common_passages(one: Compared, other: Compared) -> list[Passage]:
-    """Return the common passages of two answers in the order of the first; each has at least one own word."""
+    """Return the passages that two answers have in common, in the order of the first; each has an own word."""
     numbers = {sign: number for number, sign in enumerate({*one.signs, *other.signs})}
     first, second = ([numbers[sign] for sign in answer.signs] for answer in (one, other))
     found: list[Passage] = []
@@ -144,7 +146,7 @@ def _common_passages(one: Compared, other: Compared) -> list[Passage]:
         if not blocks:
             break
         for here, there, length in blocks:
-            # A passage is found only once: the other answer has no word with this number.
+            # A passage is found only once, because the other answer contains no word with this number.
             first[here : here + length] = [_FOUND_IN_ONE] * length
             second[there : there + length] = [_FOUND_IN_OTHER] * length
             sides = zip(one.own[here : here + length], other.own[there : there + length], strict=True)

@@ -1,4 +1,7 @@
-"""The page with each pair side by side, in one file without scripts, readable in black and white."""
+"""The page that shows the two answers of each pair side by side.
+
+It is one file without scripts, readable in black and white.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +27,7 @@ if TYPE_CHECKING:
 _NAME = "similar.html"
 _LONGEST_NAME = 200
 _AROUND = 3
-"""The number of lines shown before and after a marked line."""
+"""The number of unmarked lines shown before and after a marked line."""
 _LONGEST_PIECE = 400
 
 
@@ -34,8 +37,8 @@ class _Piece:
 
     Attributes:
         text: The text, with control characters made visible; the template escapes it for HTML.
-        passage: The number of the common passage that it belongs to; 0 for none.
-        begins: True if the passage's number is shown before it.
+        passage: The number of the common passage to which it belongs; 0 if it belongs to none.
+        begins: True if the number of the passage is shown before it.
     """
 
     text: str
@@ -45,12 +48,12 @@ class _Piece:
 
 @dataclass(frozen=True)
 class _Line:
-    """A line of an answer, or a mark for lines that are left out.
+    """A line of an answer, or a mark that lines were left out.
 
     Attributes:
-        number: The line's number, from 1; 0 if lines are left out.
+        number: The number of the line, from 1; 0 if this marks lines that were left out.
         pieces: The pieces of the line.
-        left_out: The number of lines that are left out here.
+        left_out: The number of lines that were left out here.
     """
 
     number: int
@@ -63,14 +66,14 @@ def write_page(found: Similar, to: Path | None = None) -> Path:
 
     Args:
         found: The result of the search.
-        to: The file; ``similar.html`` in the class by default.
+        to: The file to write; by default ``similar.html`` in the class.
 
     Returns:
         The absolute path of the file.
 
     Raises:
-        GradingError: Another file or folder is in its way.
-        OSError: It could not be written for another reason.
+        GradingError: Another file or folder is in the way.
+        OSError: The file could not be written for another reason.
     """
     to = (to or found.path / _NAME).absolute()
     with clear_place_errors(to, "--output"):
@@ -124,11 +127,12 @@ def _called(student: str, names: Mapping[str, str]) -> str:
 
 
 def _lines(answer: Compared, passages: Iterable[tuple[int, Sequence[bool]]]) -> list[_Line]:
-    """Return the lines with marked passages and the lines around them.
+    """Return the lines that contain marked passages, and the lines around them.
 
     Args:
-        answer: An answer of a pair.
-        passages: For each passage, the index of its first word in this answer, and whether each word counts.
+        answer: One answer of a pair.
+        passages: For each passage, the index of its first word in this answer, and for each of its words whether it
+            counts.
     """
     text = answer.answer.text
     passage_of = [0] * len(text)  # by character

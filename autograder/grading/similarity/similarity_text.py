@@ -1,4 +1,4 @@
-"""The close pairs for a terminal, and as data."""
+"""The similar pairs as text for a terminal, and as data."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ def show(found: Similar, page: Path, console: Console | None = None) -> None:
 
     Args:
         found: The result of the search.
-        page: The page with the pairs side by side.
-        console: Standard output by default.
+        page: The path of the page with the pairs side by side.
+        console: The console to print on; by default standard output.
     """
     console = console or Console()
 
@@ -49,7 +49,7 @@ def show(found: Similar, page: Path, console: Console | None = None) -> None:
 
 
 def similar_json(found: Similar, page: Path) -> dict[str, Any]:
-    """Return the result of a search, and the path of its page, for ``--json``."""
+    """Return the result of a search and the path of the page, as data for ``--json``."""
     pairs = [
         {
             "students": pair.students,

@@ -19,18 +19,18 @@ if TYPE_CHECKING:
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
 
 OWN_CELLS = "own cells"
-"""The cell name for all cells that a student added."""
+"""The name that is used for all cells that a student added, taken together."""
 
 
 @dataclass(frozen=True)
 class StudentAnswer:
-    """One student's text in one solution cell, or in all cells that the student added.
+    """A student's text in one solution cell, or in all cells that the student added.
 
     Attributes:
         student: The student's id.
         assignment: The assignment's name.
         notebook: The notebook's name.
-        cell: The cell's name.
+        cell: The name of the cell.
         text: The text of the cell.
     """
 
@@ -43,11 +43,11 @@ class StudentAnswer:
 
 @dataclass
 class HandedIn:
-    """The answers to one notebook.
+    """The answers that were handed in for one notebook.
 
     Attributes:
-        answers: The answers in the order of students and cells.
-        students: The students of the notebooks that could be read.
+        answers: The answers, sorted by student and then by cell.
+        students: The students whose notebooks could be read.
         troubles: A line for each submission that could not be read, or only partly.
     """
 
@@ -57,7 +57,7 @@ class HandedIn:
 
 
 def given_texts(directory: ClassDirectory) -> list[str]:
-    """Return all code of the class's sources and hand-outs: what students received, and every solution.
+    """Return all code in the class's sources and hand-outs: what students received, and every solution.
 
     Raises:
         MasterUnusable: A source is not a notebook.
@@ -91,7 +91,7 @@ def read_answers(
         try:
             cells, left_out = read_notebook(read_bytes(submission.folder / f"{notebook}{SUFFIX}"))
         except NotAFile:
-            continue  # the class lists it as refused
+            continue  # the class lists this file as refused
         except UnreadableSubmission as error:
             found.troubles.append(f"unreadable   {who}: {error}")
             continue
@@ -103,7 +103,7 @@ def read_answers(
         found.students.append(submission.student)
         written: dict[str, list[str]] = {}
         for cell in cells:
-            # An answer counts whatever type its cell has now, as in grading.
+            # An answer counts whatever type its cell has now, as it does in grading.
             if cell.grade_id in answers or (cell.kind == CellType.CODE and cell.grade_id not in named):
                 name = cell.grade_id if cell.grade_id in answers else OWN_CELLS
                 written.setdefault(name, []).append(cell.source)
@@ -118,7 +118,7 @@ def _cells(directory: ClassDirectory, place: str) -> list[NotebookNode]:
     path = directory.path / place
     try:
         return list(nbformat_nodes.read(path.read_text(encoding="utf-8")).cells)
-    except Exception as error:  # nbformat raises what its JSON and schema libraries raise
+    except Exception as error:  # nbformat passes on all errors of its JSON and schema libraries
         raise MasterUnusable(
             f"{path} is not a notebook: {error}. Make it again or put back a copy."
         ) from error

@@ -1,7 +1,7 @@
-"""Splits an answer into words that survive attempts to hide a copy: other comments, layout or names.
+"""Splits an answer into words that stay the same if a copy is hidden by other comments, layout or names.
 
-Nothing is parsed, because a student's text may be invalid or hostile Python. One regular expression reads it, in a
-time proportional to its length.
+The text is not parsed as Python, because a student's text may be invalid or hostile. One regular expression reads it,
+in time proportional to its length.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _OPENING, _CLOSING = frozenset("([{"), frozenset(")]}")
 
 @dataclass(frozen=True)
 class Word:
-    """A piece of code that counts in the comparison.
+    """A word of code, as it is compared.
 
     Attributes:
         kind: ``name``, ``string``, ``number`` or ``sign``.
@@ -50,7 +50,7 @@ class Word:
 
 
 def words(text: str) -> Iterator[Word]:
-    """Yield the words of a text, without comments, docstrings and the first line of a cell that writes a file."""
+    """Yield the words of a text. Comments, docstrings and the first line of a cell that writes a file are left out."""
     before = 0
     for match in _WORD.finditer(text):
         kind = match.lastgroup or "sign"
@@ -61,7 +61,7 @@ def words(text: str) -> Iterator[Word]:
 
 
 def chosen_names(code: Sequence[Word]) -> set[str]:
-    """Return the names that the writer has chosen: of variables, functions, classes, parameters and attributes."""
+    """Return the names that the student has chosen: of variables, functions, classes, parameters and attributes."""
     chosen: set[str] = set()
     depth, in_head, in_loop = 0, False, False
     for place, word in enumerate(code):
@@ -78,7 +78,7 @@ def chosen_names(code: Sequence[Word]) -> set[str]:
             in_loop = word.text == "for"
         elif word.kind == "name" and word.text not in _FIXED:
             is_parameter = in_head and depth == 1 and before in ("(", ",", "*", "**")
-            # A name with a type, or the first of several names: x: int = 3, self.x: int = 3, x, y = 3, 4
+            # A name with a type, or the first of several names, as in x: int = 3, self.x: int = 3, and x, y = 3, 4.
             first = code[place - 2] if before == "." else word
             is_declared = behind in (":", ",") and first.opens
             is_assigned = (depth == 0 and (behind == "=" or is_declared)) or behind == ":="
@@ -88,11 +88,11 @@ def chosen_names(code: Sequence[Word]) -> set[str]:
 
 
 def neutral(code: Sequence[Word], names: Collection[str], texts: Collection[str]) -> list[str]:
-    """Return the words with one sign for every chosen name, and one for every text that is not the task's.
+    """Return the words with one sign for each name that the student chose, and one for each text not from the task.
 
     Args:
         code: The words of an answer.
-        names: The names that the writer has chosen.
+        names: The names that the student has chosen.
         texts: The texts that the task contains.
     """
     return [

@@ -1,4 +1,4 @@
-"""The present table of a class, read without grading anything."""
+"""The current table of results of a class, read without grading anything."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ClassTable:
-    """The table of a class.
+    """The table of results of a class.
 
     Attributes:
-        rows: The rows by student, in the order of the course.
+        rows: The rows, sorted by student and then in the order of the course.
         roster: The students of the class.
         entries: The entries of the gradebook, by student and assignment.
-        stale: Submissions that were handed in or changed after their last grading, as student/assignment.
-        unplaced: Collected files that wait for a person's decision.
-        unusable: Assignments without rows because their source cannot be used, with the reason.
-        notices: Sentences about likely mistakes of the instructor, with students' ids.
-        absent: The points of students who handed in nothing: None, or zero if the instructor chose that.
+        stale: Submissions, as student/assignment, that were handed in or changed after they were last graded.
+        unplaced: Collected files for which a person has to decide where they belong.
+        unusable: Assignments that have no rows because their source cannot be used, with the reason.
+        notices: Sentences about likely mistakes of the instructor; they contain students' ids.
+        absent: The points of students who handed in nothing: None or, if the instructor chose that, zero.
     """
 
     rows: tuple[Row, ...]
@@ -65,24 +65,24 @@ class ClassTable:
         return list(dict.fromkeys(row.assignment for row in self.rows))
 
     def check_usable(self, wanted: Collection[str] = ()) -> None:
-        """Raise an error if a wanted assignment has no usable source, or, without a choice, if no assignment has one.
+        """Raise an error if a wanted assignment has no usable source; without a choice, if no assignment has one.
 
         Raises:
-            MasterUnusable: A source cannot be used; the message says why.
+            MasterUnusable: A source cannot be used. The message says why.
         """
         for name, reason in self.unusable.items():
             if name in wanted or not self.assignments:
                 raise MasterUnusable(reason)
 
     def of(self, student: str, assignment: str = "") -> list[Row]:
-        """Return a student's rows of all assignments, or of one, with its points even if the total leaves it out."""
+        """Return a student's rows of all assignments, or of one with its points, even if the total leaves it out."""
         own = self._of_student.get(student, [])
         return [
             row for row in own if not assignment or (row.assignment == assignment and row.exercise != DROPPED)
         ]
 
     def only(self, students: Collection[str]) -> ClassTable:
-        """Return the same table with these students alone."""
+        """Return the same table with only these students."""
         return replace(
             self,
             rows=tuple(row for row in self.rows if row.student in students),
@@ -94,28 +94,28 @@ class ClassTable:
     def score(self, student: str, assignment: str = "") -> float | None:
         """Return a student's points from the gradebook, minus the late penalty.
 
-        None if there are none, or if a check of the assignment could not be made: without that check, the sum could
-            be mistaken for the final points.
+        It is None if there are no points, or if a check could not be made: the sum without that check could be
+        mistaken for the final points.
         """
         rows = self.of(student, assignment)
         return None if assignment and any(row.is_unchecked for row in rows) else self.points(rows)
 
     def points(self, rows: Sequence[Row]) -> float | None:
-        """Return the sum of the points in some of a student's rows, by the same rule."""
+        """Return the sum of the points in some of a student's rows, by the same rule as :meth:`score`."""
         is_absent = any(row.state == NOT_SUBMITTED for row in rows) and all(row.is_blank for row in rows)
         return self.absent if is_absent else total(rows)
 
     def is_excused(self, student: str, assignment: str) -> bool:
-        """True if the student need not do the assignment."""
+        """Return True if the student is excused from the assignment."""
         return any(row.state == EXCUSED for row in self.of(student, assignment))
 
     def max_score(self, assignment: str = "") -> float:
-        """Return the most points for an assignment, or for all."""
+        """Return the maximum points for an assignment, or for all assignments together."""
         return self._max_scores.get(assignment, 0.0)
 
     @functools.cached_property
     def _max_scores(self) -> dict[str, float]:
-        """The most points for each assignment; the empty name has those of all together."""
+        """The maximum points by assignment. The empty name stands for all assignments together."""
         return {
             name: max(
                 (sum(row.max_score for row in self.of(one, name)) for one in self.students), default=0.0
@@ -125,19 +125,19 @@ class ClassTable:
 
     @property
     def waiting(self) -> list[Row]:
-        """The rows that wait for a person."""
+        """Return the rows that a person still has to grade."""
         return [row for row in self.rows if row.waits]
 
 
 def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> ClassTable:
-    """Read the table of a class.
+    """Read the current table of a class.
 
     Args:
         directory: The class.
-        sections: Only the students of these sections; all students if empty.
+        sections: The sections whose students are in the table; all students if empty.
 
     Raises:
-        GradingError: The class or its list of students cannot be used, or the section has no students.
+        GradingError: The class or its list of students cannot be used, or a section has no students.
     """
     fingerprints = Fingerprints(directory)
     with ClassStore(directory) as store:
@@ -176,5 +176,5 @@ def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> Class
 
 
 def by_exercise(rows: list[Row]) -> dict[tuple[str, str], Row]:
-    """Return a student's rows by assignment and exercise, without the rows for late penalties and dropped work."""
+    """Return a student's rows by assignment and exercise, without those of late penalties and dropped work."""
     return {(row.assignment, row.exercise): row for row in rows if row.exercise not in NO_EXERCISE}

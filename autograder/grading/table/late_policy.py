@@ -1,6 +1,7 @@
-"""The late penalty as data: a share of the points for each day that has begun, a grace period and a cut-off.
+"""The late penalty: a percentage of the points for each day begun, a grace period, and a cut-off.
 
-A class sets it in its ``nbgrader_config.py``; nbgrader calls it, whichever command or button grades.
+A class sets these values in its ``nbgrader_config.py``. nbgrader applies the penalty, whichever command or button
+grades.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ _DAY = 86_400.0
 
 
 class LatePolicy(LateSubmissionPlugin):
-    """Takes off a share of the points for each day."""
+    """Subtracts a percentage of the points for each day that the work is late."""
 
     percent_per_day = Float(
         10.0, min=0, max=100, help="Taken off for each day that has begun, in percent."
@@ -34,14 +35,14 @@ class LatePolicy(LateSubmissionPlugin):
     ).tag(config=True)
 
     def late_submission_penalty(self, student_id: str, score: float, total_seconds_late: float) -> float:
-        """Return the points to be taken off.
+        """Return the points to subtract.
 
         Args:
             student_id: The student's id.
             score: The points that were earned.
-            total_seconds_late: Seconds after the due date, extensions included.
+            total_seconds_late: The number of seconds after the due date. The due date includes extensions.
         """
-        del student_id  # the due date already contains an extension
+        del student_id  # not needed, because the due date already includes this student's extension
         if total_seconds_late <= 60 * self.grace_minutes:
             return 0.0
         if total_seconds_late > _DAY * self.cut_off_days:
@@ -51,12 +52,12 @@ class LatePolicy(LateSubmissionPlugin):
 
 
 def penalties(config: Config, student: str, entry: SubmissionEntry) -> dict[str, float | None]:
-    """Return the penalty of a late submission by notebook, from the class's own rule, as nbgrader does; None for none.
+    """Return the penalty of a late submission by notebook, computed as nbgrader does; None for no penalty.
 
     Args:
         config: The class's configuration.
         student: The student's id.
-        entry: The points and times, as the gradebook has them or would have them.
+        entry: The points and times, as they are in the gradebook or would be after a run.
     """
     if not (entry.handed_in and entry.due and entry.is_late):
         return dict.fromkeys(entry.cells)

@@ -16,17 +16,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Difference:
-    """A change in points, or in the diagnosis if the points are the same.
+    """A change in points; or in the diagnosis, if the points are the same.
 
     Attributes:
         student: The student's id.
         assignment: The assignment's name.
         exercise: The exercise's id, or ``late``.
-        before: Points before; None if there were none.
-        after: Points now; None if there are none any more.
+        before: The points before; None if there were none.
+        after: The points now; None if there are none any more.
         diagnosis_before: The diagnosis before.
         diagnosis_after: The diagnosis now.
-        note: A remark for a person; empty for none.
+        note: A remark for the instructor; empty if there is none.
     """
 
     student: str
@@ -39,7 +39,7 @@ class Difference:
     note: str = ""
 
     def line(self) -> str:
-        """The difference as one line of text."""
+        """Return the difference as a line of text."""
         points = " → ".join("–" if points is None else f"{points:g}" for points in (self.before, self.after))
         words = ""
         if self.before is None and self.diagnosis_after:
@@ -73,14 +73,14 @@ def compare(store: ClassStore, before: str = "", after: str = "") -> tuple[str, 
 
     Args:
         store: The store of the class.
-        before: A run; the last but one by default.
-        after: A later run; the last one by default.
+        before: The name of the earlier run; by default the last but one.
+        after: The name of the later run; by default the last one.
 
     Returns:
         The names of the two runs, and their differences.
 
     Raises:
-        GradingError: There are fewer than two runs, or no run has the given name.
+        GradingError: There are fewer than two runs, or no run has a given name.
     """
     names = store.runs()
     if len(names) < 2 and not (before and after):

@@ -1,4 +1,4 @@
-"""The students of a class: from ``students.csv`` and the gradebook, with their names in the LMS."""
+"""The students of a class, from ``students.csv`` and the gradebook, with their names in the LMS."""
 
 from __future__ import annotations
 
@@ -18,12 +18,13 @@ if TYPE_CHECKING:
 
 NAME = "students.csv"
 LMS = ("canvas", "moodle", "blackboard", "brightspace", "google", "github", "gradescope", "sakai", "ilias")
-"""Columns of ``students.csv`` for a student's id or user name in these systems."""
+"""Learning management systems. For each, ``students.csv`` may have a column with the student's id or user name there.
+"""
 _OWN = ("id", "first_name", "last_name", "email", "section", "excused")
 
 
 _EXPORTED = (
-    # The columns that identify a list from an LMS, then the columns in which each of ours may be.
+    # First the columns that identify a list from an LMS; then, for each of our columns, the ones it may be in.
     (
         ("student", "id", "section"),  # Canvas: Grades, Export
         {"id": ("sis login id", "sis user id", "id"), "full_name": ("student",), "canvas": ("id",)},
@@ -53,7 +54,7 @@ _NOBODY = ("points possible", "student, test")
 
 
 class RosterError(GradingError):
-    """``students.csv`` cannot be used; the message says which line is wrong."""
+    """``students.csv`` cannot be used. The message names the wrong line."""
 
 
 @dataclass(frozen=True)
@@ -61,14 +62,15 @@ class Student:
     """A student of the class.
 
     Attributes:
-        id: The student's id, which is also the folder's name.
+        id: The student's id, which is also the name of the student's folder.
         first_name: The first name; empty if unknown.
         last_name: The last name; empty if unknown.
-        email: The address; empty if unknown.
-        lms: Ids and user names in learning management systems, by the names of :data:`LMS`; and the content of other
-            columns, which ``collect --names`` may use.
-        excused: Assignments that the student need not do.
-        section: The group of students that one teaching assistant grades; empty for none.
+        email: The email address; empty if unknown.
+        lms: The student's ids and user names in learning management systems, by the names in :data:`LMS`; and the
+            content of other columns, which ``collect --names`` may use.
+        excused: The assignments from which the student is excused.
+        section: The section, that is, the group of students that one teaching assistant grades; empty if there is
+            none.
     """
 
     id: str
@@ -87,12 +89,12 @@ class Student:
 
 @dataclass(frozen=True)
 class Identity:
-    """A person's name in a file name, or in a list of an LMS.
+    """A person as named in a file name or in a list from an LMS.
 
     Attributes:
-        lms: The system, one of :data:`LMS`; empty if a folder has a plain name.
-        number: The system's number of the student.
-        login: A user name, an address, or a name with its blanks left out.
+        lms: The system, one of :data:`LMS`; empty if a folder just has a name.
+        number: The number by which the system knows the student.
+        login: A user name, an email address, or a name without spaces.
         name: A name as people write it.
     """
 
@@ -117,12 +119,12 @@ class Roster:
 
     @property
     def names(self) -> dict[str, str]:
-        """The students' names by id; empty if unknown."""
+        """The students' names by id; an empty name if it is unknown."""
         return {student.id: student.name for student in self.students.values()}
 
     @property
     def excused(self) -> set[tuple[str, str]]:
-        """The students who need not do an assignment, by assignment."""
+        """Return pairs of an assignment and a student who is excused from it."""
         return {(one.id, assignment) for one in self.students.values() for assignment in one.excused}
 
     def excused_from_nothing(self, assignments: Sequence[str], students: Iterable[str]) -> list[str]:
@@ -145,7 +147,7 @@ class Roster:
         ]
 
     def of_sections(self, sections: Iterable[str]) -> list[str]:
-        """The ids of the students in these sections.
+        """Return the ids of the students in these sections.
 
         Raises:
             RosterError: A section has no students.
@@ -160,9 +162,10 @@ class Roster:
         return [one.id for one in self.students.values() if one.section and one.section in set(sections)]
 
     def find(self, identity: Identity) -> tuple[Student, ...]:
-        """Return the students who may be meant: one if it is certain, several if not.
+        """Return the students who may be meant: one if it is certain, several if it is not.
 
-        The strongest match comes first: the number in that system, then user names and addresses, then names.
+        The most certain match decides: first the number in that system, then user names and email addresses, then
+        names.
         """
         for known in (self._by_number, self._by_login, self._by_name):
             found = known(identity)
@@ -198,7 +201,7 @@ class Roster:
 
 
 def read_roster(directory: ClassDirectory) -> Roster:
-    """Return the students of ``students.csv`` and of the gradebook; the file takes precedence.
+    """Return the students from ``students.csv`` and from the gradebook. What the file says takes precedence.
 
     Raises:
         RosterError: The file cannot be used.
@@ -216,7 +219,7 @@ def read_roster(directory: ClassDirectory) -> Roster:
 
 
 def read_students_csv(directory: ClassDirectory) -> list[Student]:
-    """Return the students of ``students.csv``; none if the file does not exist.
+    """Return the students from ``students.csv``; none if the file does not exist.
 
     Raises:
         RosterError: A column or an id is missing, or occurs twice.
@@ -265,7 +268,7 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
 
 
 def _as_ours(line: Mapping[str, str], form: Mapping[str, tuple[str, ...]]) -> dict[str, str]:
-    """Convert a line of an LMS's list to our columns; empty if the line is not a person."""
+    """Convert a line of an LMS's list to our columns; empty if the line is not about a person."""
     values = {ours: next(filter(None, map(line.get, theirs)), "") or "" for ours, theirs in form.items()}
     full = values.pop("full_name", "")
     if full.lower().startswith(_NOBODY):
@@ -279,7 +282,7 @@ def _as_ours(line: Mapping[str, str], form: Mapping[str, tuple[str, ...]]) -> di
 
 
 def enter_roster(directory: ClassDirectory) -> None:
-    """Enter the students of ``students.csv`` into the gradebook, leaving other students unchanged.
+    """Enter the students from ``students.csv`` into the gradebook, leaving other students unchanged.
 
     Raises:
         RosterError: The file cannot be used.
@@ -289,7 +292,7 @@ def enter_roster(directory: ClassDirectory) -> None:
         return
     with opened(directory.gradebook_url) as book:
         if not has_tables(book):
-            return  # the step that needs the gradebook reports that
+            return  # the step that needs the gradebook will report the problem
         known = set(book.execute(sql("SELECT id FROM student")).scalars())
         for student in students:
             values = {
@@ -325,12 +328,12 @@ _APOSTROPHES = str.maketrans(dict.fromkeys("'’‘ʼ`´"))
 
 
 def _forms(name: str) -> set[tuple[str, ...]]:
-    """Return a name's words in alphabetical order, for systems that drop an apostrophe or replace it with a blank."""
+    """Return a name's words in alphabetical order, once for each way in which systems write an apostrophe."""
     return {tuple(sorted(_words(form))) for form in (name, name.translate(_APOSTROPHES))}
 
 
 def _words(name: str) -> list[str]:
-    """Return a name's words, without accents and in lower case."""
+    """Return a name's words without accents and in lower case."""
     plain = "".join(
         character for character in unicodedata.normalize("NFKD", name) if not unicodedata.combining(character)
     )

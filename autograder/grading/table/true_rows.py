@@ -1,4 +1,4 @@
-"""The rows of the table: points from the gradebook, texts from the judge."""
+"""The rows of the table of results: points from the gradebook, texts from the judge."""
 
 from __future__ import annotations
 
@@ -30,18 +30,18 @@ def true_rows(
     what_counts: WhatCounts = WhatCounts(),  # noqa: B008 (it is frozen)
     zone: tzinfo = UTC,
 ) -> list[Row]:
-    """Return the rows of a class, by student, in the order of the course.
+    """Return the rows of a class, sorted by student and then in the order of the course.
 
-    Assignments that no student has handed in are left out; in the others every student has rows.
+    Assignments that no student has handed in are left out. For all others, every student has rows.
 
     Args:
         students: The names of the students, by id.
         cells: The cells with points, by assignment.
-        judged: The judge's results.
+        judged: The judge's results, by student and assignment.
         entries: The entries of the gradebook.
-        handed_in: The students and assignments in ``submitted``.
-        excused: The students and the assignments that they need not do.
-        what_counts: The weights, and the exercises that the instructor leaves out.
+        handed_in: The submissions in ``submitted``, as pairs of a student and an assignment.
+        excused: Pairs of a student and an assignment from which the student is excused.
+        what_counts: The instructor's weights, and the exercises that are left out.
         zone: The time zone of the class.
     """
     there = set(handed_in)
@@ -105,15 +105,15 @@ def _with_points(row: Row, kept: CellEntry) -> Row:
 
 
 _IS_GRADED = ("passed", "failed", WAITS, BY_HAND)
-"""States with a verdict: any other state waits for a run, not for a person."""
+"""The states with a final result. Any other state waits for a run, not for a person."""
 
 
 def _state(cell: GradedCell, kept: CellEntry) -> str:
     """Return the state of a cell for which the judge's result is unknown."""
     if not cell.by_judge:
         if kept.by_hand is None and not kept.waits:
-            return "failed"  # the cell is empty, so nbgrader gives no points
+            return "failed"  # nbgrader gives no points because the cell is empty
         return WAITS if kept.waits else BY_HAND
     if kept.waits and kept.by_hand is None:
-        return NOT_GRADED  # the grade was taken back
+        return NOT_GRADED  # the grade was set to zero
     return "passed" if (kept.judged or 0.0) >= kept.max_score else "failed"

@@ -1,4 +1,4 @@
-"""An instructor's weights for a class, and left-out exercises and assignments: ``class.toml``."""
+"""An instructor's weights for a class, and the exercises and assignments that are left out, from ``class.toml``."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ class _File(msgspec.Struct, forbid_unknown_fields=True):
 
 @dataclass(frozen=True)
 class WhatCounts:
-    """The weights for a class's table; the gradebook keeps the earned points, so weights can change at any time.
+    """The weights for a class's table. The gradebook keeps the earned points, so weights can change at any time.
 
     Attributes:
-        factors: The factors of points, by assignment and exercise; 0 leaves an exercise out.
-        drop_lowest: The number of a student's assignments that are left out of the total.
+        factors: The factors with which points are multiplied, by assignment and exercise; 0 leaves an exercise out.
+        drop_lowest: The number of each student's lowest assignments that are left out of the total.
     """
 
     factors: Mapping[tuple[str, str], float] = field(default_factory=dict)
@@ -42,7 +42,7 @@ class WhatCounts:
     def applied(self, rows: Sequence[Row]) -> list[Row]:
         """Return the rows of one submission with the weights applied.
 
-        The late penalty stays the same share of the points.
+        The late penalty stays the same fraction of the points.
         """
         plain = [row for row in rows if row.exercise != LATE]
         factors = [self.factors.get((row.assignment, row.exercise), 1.0) for row in plain]
@@ -53,10 +53,10 @@ class WhatCounts:
         return found + [_scaled(row, late) for row in rows if row.exercise == LATE and found]
 
     def without_lowest(self, rows: Sequence[Row]) -> list[Row]:
-        """Return the rows of one student, with one more for each assignment that is left out of the total.
+        """Return the rows of one student, with an additional row for each assignment that is left out of the total.
 
-        First, assignments are left out that were not handed in, then those with the smallest share of their points.
-        One always counts, and all count while points of any are still to come.
+        Assignments that were not handed in are left out first, then those with the lowest share of their maximum
+        points. At least one always counts. While points of any are still to come, all count.
         """
         by_assignment: dict[str, list[Row]] = {}
         for row in rows:
@@ -97,14 +97,14 @@ def _scaled(row: Row, factor: float) -> Row:
 
 
 def read_what_counts(directory: ClassDirectory, cells: Mapping[str, Sequence[GradedCell]]) -> WhatCounts:
-    """Return the content of ``class.toml``; if the file does not exist, everything counts as it is.
+    """Return the settings from ``class.toml``. If the file does not exist, nothing is weighted or left out.
 
     Args:
         directory: The class.
         cells: The cells with points, by assignment.
 
     Raises:
-        GradingError: The file cannot be used; the message says what to write.
+        GradingError: The file cannot be used. The message says what to write.
     """
     path = directory.path / NAME
     if not path.exists():

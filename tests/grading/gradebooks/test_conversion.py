@@ -229,7 +229,7 @@ def test_a_timestamp_that_is_a_link_is_none(tiny: TinyClass, fake_engine: FakeEn
     tiny.submit("ben").with_name("timestamp.txt").write_text("yesterday\x00, I think")
     report = tiny.grade(feedback=True)
     assert not re.search("2026", everything(tiny.path)["submitted_assignment s"][0])
-    assert "holds no time" in report.problems[0]
+    assert "does not contain a time" in report.problems[0]
     assert len(list((tiny.path / "autograded" / "ada").rglob("*.txt"))) == 0
 
 
