@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import re2
 from nbclient import NotebookClient
+from nbclient.exceptions import CellExecutionComplete
+from nbclient.util import ensure_async
 from nbconvert.preprocessors import CoalesceStreamsPreprocessor
 
 from autograder import course
@@ -118,6 +120,19 @@ class _Recorder(NotebookClient):
         if display and (found := _SVG_DATA.search(content.get("data", {}).get("text/html", ""))):
             self.frames.setdefault(display, []).append(found[1])
         return super().process_message(msg, cell, cell_index)
+
+    async def _async_poll_output_msg(self, parent_msg_id: str, cell: NotebookNode, cell_index: int) -> None:
+        """Read the messages of a cell, and what live pictures of earlier cells show meanwhile: nbclient drops that."""
+        while True:
+            msg = await ensure_async(self.kc.iopub_channel.get_msg(timeout=None))
+            if (
+                msg["msg_type"] == "update_display_data"
+                or msg["parent_header"].get("msg_id") == parent_msg_id
+            ):
+                try:
+                    self.process_message(msg, cell, cell_index)
+                except CellExecutionComplete:
+                    return
 
 
 def _put_moving_pictures(notebook: NotebookNode, name: str, frames: dict[str, list[str]]) -> None:

@@ -12,7 +12,7 @@ from nbformat.v4 import new_code_cell, new_notebook, new_output
 
 from autograder import course
 from autograder.authoring.site.building import LARGEST, course_of
-from autograder.authoring.site.outputs import moving_picture, show_as_a_students
+from autograder.authoring.site.outputs import MOVING, RECORDED, _run, moving_picture, show_as_a_students
 from autograder.authoring.site.pages import CLASS, EDITIONS, SELF, SUMMARY, book_page
 from autograder.course import SOLUTION
 from autograder.masters.first_cell import NAME as SET_UP_CELL
@@ -105,6 +105,35 @@ def test_a_line_that_was_printed_in_two_pieces_is_one_line_without_the_folder_of
     cell = new_code_cell(outputs=[new_output("stream", text=piece) for piece in pieces])
     show_as_a_students(new_notebook(cells=[cell]), "/run/course-site-1/notebooks")
     assert [output.text for output in cell.outputs] == ["in /home/you/course/ros2_ws"]
+
+
+SHOW = """\
+import base64, contextvars, threading
+from IPython.display import HTML, display
+
+def picture(x):
+    drawn = f'<svg xmlns="http://www.w3.org/2000/svg"><circle cx="{x}"/></svg>'
+    return HTML(f'<img src="data:image/svg+xml;base64,{base64.b64encode(drawn.encode()).decode()}">')
+
+def move():
+    for x in range(1, 6):
+        handle.update(picture(x))
+
+handle = display(picture(0), display_id=True)
+cell = contextvars.copy_context()"""
+MEANWHILE = """\
+thread = threading.Thread(target=cell.run, args=(move,))
+thread.start()
+thread.join()"""
+
+
+@pytest.mark.slow
+def test_a_picture_that_moves_while_a_later_cell_runs_is_recorded() -> None:
+    """So the robot does: one cell shows it, and the next ones drive it."""
+    done = _run(new_notebook(cells=[new_code_cell(SHOW), new_code_cell(MEANWHILE)]), "robot", ROOT)
+    (drawn,) = done.metadata[MOVING].values()
+    assert re.findall(r'cx="(\d)"', drawn) == list("012345")
+    assert RECORDED in done.cells[0].outputs[0].data["text/html"]
 
 
 def test_a_moving_picture_is_one_drawing_of_all_frames() -> None:
