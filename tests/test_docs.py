@@ -247,6 +247,7 @@ def test_the_readme_lists_each_notebook_with_its_minutes_and_points() -> None:
 def test_a_release_has_one_version_and_its_own_notes() -> None:
     version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
     assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"[Version {version}](CHANGELOG.md)" in (ROOT / "README.md").read_text(encoding="utf-8")
     changelog = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     assert f"\n## [{version}] - " in changelog
     for release in changelog.split("\n## ")[1:]:

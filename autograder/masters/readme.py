@@ -1,6 +1,6 @@
 """What a course's README says of its public repository: badges, and the address to clone.
 
-With no address known, the place of the badges stays empty, and the line to clone has a word to fill in.
+With no address known, a sentence takes the place of the badges, and the line to clone has a word to fill in.
 """
 
 from __future__ import annotations
@@ -18,6 +18,11 @@ if TYPE_CHECKING:
 NAME = "README.md"
 TO_FILL_IN = "ADDRESS_OF_THIS_REPOSITORY"
 """The word in a README for the address of a repository that is not public yet."""
+WITHOUT_ADDRESS = (
+    "This course has no public address yet. If you have its folder, leave the line with `git clone` out, and type the "
+    "others in that folder.\n"
+)
+"""What a README says before the line to clone as long as there is nothing to clone."""
 TESTS = ".github/workflows/ci.yml"
 PICTURES = {
     "Colab": "https://colab.research.google.com/assets/colab-badge.svg",
@@ -55,6 +60,6 @@ def readme(root: Path, notebook: Path) -> str | None:
     if not _BLOCK.search(text):
         return None
     address = course.repository(root)
-    shown = f"{badges(address, notebook.relative_to(root).as_posix())}\n" if address else ""
+    shown = f"{badges(address, notebook.relative_to(root).as_posix())}\n" if address else WITHOUT_ADDRESS
     text = _BLOCK.sub(lambda found: f"{found[1]}{shown}{found[2]}", text)
     return str(_CLONE.sub(lambda found: f"{found[1]}{address or TO_FILL_IN}{found[2]}", text))

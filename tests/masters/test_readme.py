@@ -1,4 +1,4 @@
-"""The badges of a README, which lead to the public repository where there is one."""
+"""The badges of a README, which lead to its public repository, and what it says without one."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from urllib.parse import parse_qs, urlsplit
 
 from autograder.course import repository
 from autograder.masters.chapters import build
-from autograder.masters.readme import NAME
+from autograder.masters.readme import NAME, WITHOUT_ADDRESS
 
 if TYPE_CHECKING:
     from autograder.masters.source import Points
 
 ROOT = Path(__file__).parents[2]
-TEXT = """\
+TEXT = f"""\
 # A course
 
 <!-- badges -->
-<!-- end of badges -->
+{WITHOUT_ADDRESS}<!-- end of badges -->
 
 $ git clone ADDRESS_OF_THIS_REPOSITORY course && cd course
 """
@@ -29,7 +29,7 @@ NOTEBOOK = "chapters/01_first/lab_9_1.ipynb"
 BADGE = re.compile(r"^\[!\[[^\]]+\]\((\S+)\)\]\((\S+)\)$", re.MULTILINE)
 
 
-def test_with_an_address_a_build_writes_the_badges_and_without_one_it_takes_them_back(
+def test_with_an_address_a_build_writes_the_badges_and_without_one_what_to_type(
     course: Path, ten_points: Points
 ) -> None:
     readme, settings = course / NAME, course / "pyproject.toml"
@@ -39,6 +39,7 @@ def test_with_an_address_a_build_writes_the_badges_and_without_one_it_takes_them
     assert readme in build(course, check=True, points=ten_points).stale
     assert readme in build(course, points=ten_points).written
     written = readme.read_text()
+    assert WITHOUT_ADDRESS not in written
     assert "$ git clone https://github.com/ada/ros-2.x course && cd course" in written
     pictures, links = zip(*BADGE.findall(written), strict=True)
     assert pictures[0] == "https://github.com/ada/ros-2.x/actions/workflows/ci.yml/badge.svg"
@@ -69,4 +70,5 @@ def test_the_workflows_name_the_repository_if_nobody_has(tmp_path: Path) -> None
         assert repository(tmp_path) == "https://github.com/ada/ros"
     for name in ("site", "release"):
         workflow = (ROOT / ".github" / "workflows" / f"{name}.yml").read_text()
-        assert '.ci/address "$GITHUB_SERVER_URL/$GITHUB_REPOSITORY"' in workflow
+        _, _, after = workflow.partition('.ci/address "$GITHUB_SERVER_URL/$GITHUB_REPOSITORY"')
+        assert 0 < after.find("./course build") < after.find("./course site")
