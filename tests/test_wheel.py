@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -133,6 +134,14 @@ def test_an_exercise_is_made_tried_checked_and_a_class_of_two_is_graded(installe
     assert "Solution (click to expand)" in page
     assert "10 of 10 points" in page
     assert "battery" in (mine / "site" / "index.html").read_text()
+
+
+def test_the_wheel_has_each_file_of_the_package(wheel: Path) -> None:
+    """A folder with a dot in its name was missing, so ``autograder lab`` had no course page."""
+    package = ROOT / "autograder"
+    files = [path for path in package.rglob("*") if path.is_file() and "__pycache__" not in path.parts]
+    names = set(zipfile.ZipFile(wheel).namelist())
+    assert not [str(path) for path in files if str(path.relative_to(ROOT)) not in names]
 
 
 def test_a_folder_of_a_student_is_no_course_to_a_command_for_a_class(tmp_path: Path) -> None:
