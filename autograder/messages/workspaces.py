@@ -143,7 +143,7 @@ class NotBuilt(Message, frozen=True, tag="no"):
 
 
 class BuildFailed(Message, frozen=True, tag="failed"):
-    """The fields are those of :class:`autograder.workspaces.colcon.Build`."""
+    """The fields are those of :class:`autograder.workspaces.builds.colcon.Build`."""
 
     seconds: float
     trouble: str

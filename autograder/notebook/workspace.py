@@ -17,18 +17,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.workspaces.colcon import look
-from autograder.workspaces.install_folder import (
+from autograder.workspaces.builds.colcon import look
+from autograder.workspaces.builds.install_folder import (
     CannotPlace,
     package_prefixes,
     place,
     python_folders,
     with_prefixes,
 )
-from autograder.workspaces.own_builds import OwnBuilds
+from autograder.workspaces.builds.own_builds import OwnBuilds
 
 if TYPE_CHECKING:
-    from autograder.workspaces.colcon import Build
+    from autograder.workspaces.builds.colcon import Build
 
 MAX_LOG = 4_000
 """The maximum length of the log of a failed build, in characters."""

@@ -20,11 +20,11 @@ from typing import TYPE_CHECKING
 from autograder import exercises
 from autograder.kit.runners import Launches, LaunchesFromPackage, RunsPrograms
 from autograder.process_trees import die_with_parent
-from autograder.workspaces.own_builds import StudentsBuilds
+from autograder.workspaces.builds.own_builds import StudentsBuilds
 from autograder.workspaces.packages import workspace_of
 from autograder.workspaces.preparation import Preparation
-from autograder.workspaces.processes import tell, watched
 from autograder.workspaces.program_plans import alone, plan_for, ros2
+from autograder.workspaces.running.processes import tell, watched
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

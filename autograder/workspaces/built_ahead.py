@@ -17,10 +17,10 @@ import msgspec
 from autograder import course
 from autograder.messages.workspaces import Source
 from autograder.temporary_folders import HeldFolder
-from autograder.workspaces.builds import BuildTookTooLong
-from autograder.workspaces.colcon import look
+from autograder.workspaces.builds.builds import BuildTookTooLong
+from autograder.workspaces.builds.colcon import look
+from autograder.workspaces.builds.interface_packages import holds_only_interfaces, simplified
 from autograder.workspaces.graded_builds import GradedBuilds
-from autograder.workspaces.interface_packages import holds_only_interfaces, simplified
 from autograder.workspaces.preparation import COURSE
 from autograder.workspaces.program_plans import reference_workspace
 from autograder.workspaces.sources import Tree
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from autograder.workspaces.colcon import Build
-    from autograder.workspaces.jobs import Jobs
+    from autograder.workspaces.builds.colcon import Build
+    from autograder.workspaces.running.jobs import Jobs
 
 FILE = "built_ahead.json"
 Files = dict[str, str | None]
@@ -51,7 +51,7 @@ def build_ahead(folder: Path, jobs: Jobs) -> None:
     """Build every shared package that is missing, once in the life of this process.
 
     Args:
-        folder: The folder for these builds; see :func:`autograder.workspaces.cache.graders_root`.
+        folder: The folder for these builds; see :func:`autograder.workspaces.builds.cache.graders_root`.
         jobs: Runs colcon.
     """
     if folder in _done:

@@ -11,19 +11,19 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from autograder.workspaces import artefacts, cache
-from autograder.workspaces.builds import Builds, state
-from autograder.workspaces.colcon import failed
-from autograder.workspaces.interface_packages import holds_only_interfaces, simplified
+from autograder.workspaces.builds import artefacts, cache
+from autograder.workspaces.builds.builds import Builds, state
+from autograder.workspaces.builds.colcon import failed
+from autograder.workspaces.builds.interface_packages import holds_only_interfaces, simplified
 from autograder.workspaces.program_plans import course_interfaces
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from autograder.workspaces.colcon import Build
-    from autograder.workspaces.jobs import BuildOrder, Jobs
+    from autograder.workspaces.builds.colcon import Build
     from autograder.workspaces.packages import Package
+    from autograder.workspaces.running.jobs import BuildOrder, Jobs
 
 ROOM = 32_000_000
 """The maximum size in bytes of all builds of a notebook. An interface package takes two million, a Python package

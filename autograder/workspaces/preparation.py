@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from autograder.workspaces.colcon import look
-from autograder.workspaces.install_folder import relocated, with_prefixes
+from autograder.workspaces.builds.colcon import look
+from autograder.workspaces.builds.install_folder import relocated, with_prefixes
 from autograder.workspaces.packages import WORKSPACE
 from autograder.workspaces.program_plans import lacks_programs, launch_targets, reference_workspace
 from autograder.workspaces.reporting import report_line
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
-    from autograder.workspaces.builds import Builds
-    from autograder.workspaces.colcon import Build, Targets
+    from autograder.workspaces.builds.builds import Builds
+    from autograder.workspaces.builds.colcon import Build, Targets
     from autograder.workspaces.program_plans import Plan
 
 COURSE = "course_ws"

@@ -13,7 +13,7 @@ from autograder.workspaces.packages import MAX_LOOK, launch_files
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from autograder.workspaces.colcon import Build
+    from autograder.workspaces.builds.colcon import Build
     from autograder.workspaces.packages import Package
     from autograder.workspaces.program_plans import Plan
 

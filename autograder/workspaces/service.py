@@ -22,9 +22,9 @@ from typing import TYPE_CHECKING, Self
 from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, Lines, NotUnderstood, listen
 from autograder.temporary_folders import fresh_folder
-from autograder.workspaces.artefacts import pack
-from autograder.workspaces.builds import BuildTookTooLong
-from autograder.workspaces.colcon import look
+from autograder.workspaces.builds.artefacts import pack
+from autograder.workspaces.builds.builds import BuildTookTooLong
+from autograder.workspaces.builds.colcon import look
 from autograder.workspaces.graded_builds import GradedBuilds
 from autograder.workspaces.packages import WORKSPACE
 from autograder.workspaces.session import Session
@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from pathlib import Path
 
-    from autograder.workspaces.colcon import Build
-    from autograder.workspaces.jobs import Jobs
+    from autograder.workspaces.builds.colcon import Build
+    from autograder.workspaces.running.jobs import Jobs
 
 MAX_BUILDS = 20
 """The maximum number of builds that one notebook may request. After that, colcon itself works in the box."""
@@ -144,7 +144,7 @@ class WorkspaceService:
             session.serve()
 
     def _serve_notebook(self, lines: Lines, folder: Path) -> None:
-        """Answer one request for a build (:mod:`autograder.workspaces.own_builds`)."""
+        """Answer one request for a build (:mod:`autograder.workspaces.builds.own_builds`)."""
         if not self._left.acquire(blocking=False):
             lines.say(messages.NotBuilt("this notebook has had enough builds"))
             return

@@ -11,12 +11,12 @@ from autograder import exercises
 from autograder.kit.runners import Launches, LaunchesFromPackage, ServesInterface
 from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, NotUnderstood
-from autograder.workspaces.jobs import ProgramJob, output_lines
 from autograder.workspaces.packages import workspace_of
 from autograder.workspaces.preparation import Preparation
-from autograder.workspaces.processes import watched
 from autograder.workspaces.program_plans import alone, course_interfaces, plan_for, ros2
 from autograder.workspaces.reporting import no_sources_line
+from autograder.workspaces.running.jobs import ProgramJob, output_lines
+from autograder.workspaces.running.processes import watched
 from autograder.workspaces.sources import BadSources, receive
 
 if TYPE_CHECKING:
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from autograder.kit.runners import Runner
     from autograder.messages.lines import Lines
     from autograder.workspaces.graded_builds import GradedBuilds
-    from autograder.workspaces.jobs import Program
     from autograder.workspaces.preparation import Prepared
+    from autograder.workspaces.running.jobs import Program
 
 MAX_OUTPUT = 2_000_000
 """The maximum number of characters of a run's output to pass on."""

@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     import argparse
 
     from autograder.boxes.fork_server import Addresses
-    from autograder.workspaces.colcon import Build
-    from autograder.workspaces.jobs import BuildOrder
+    from autograder.workspaces.builds.colcon import Build
+    from autograder.workspaces.running.jobs import BuildOrder
     from autograder.workspaces.sources import Tree
 
 

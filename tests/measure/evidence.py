@@ -27,7 +27,7 @@ from autograder.authoring.judging import Turn, judge_all, warm_up
 from autograder.judge.verdicts import reference
 from autograder.judge.verdicts.keeping import Kept, evidence_of, packed, plain, restored, unpack
 from autograder.verdict import State, to_json
-from autograder.workspaces import cache
+from autograder.workspaces.builds import cache
 from tests.cards import sweep
 from tests.judge import quoting
 from tests.measure import bank, stimulus

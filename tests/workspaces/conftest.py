@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from autograder.workspaces import cache
+from autograder.workspaces.builds import cache
 
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import python_package

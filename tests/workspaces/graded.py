@@ -19,7 +19,7 @@ from autograder.judge.settings import subject_environment
 from autograder.messages.checks import Check, Collect, Judged
 from autograder.messages.lines import Lines
 from autograder.notebook.checking.path_run import send_sources
-from autograder.workspaces.plain_jobs import PlainJobs
+from autograder.workspaces.running.plain_jobs import PlainJobs
 from autograder.workspaces.service import ServiceSockets, WorkspaceService
 from tests.tiers import BUILT
 

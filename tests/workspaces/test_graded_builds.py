@@ -15,8 +15,8 @@ from autograder.grading.classes.sample_class import _without_markers
 from autograder.masters.layout import masters
 from autograder.masters.source import source_notebook
 from autograder.workspaces import built_ahead
+from autograder.workspaces.builds.colcon import look
 from autograder.workspaces.built_ahead import FILE, build_ahead, recorded
-from autograder.workspaces.colcon import look
 from autograder.workspaces.graded_builds import GradedBuilds
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -26,7 +26,7 @@ from test_service import FakeJobs
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from autograder.workspaces.colcon import Build
+    from autograder.workspaces.builds.colcon import Build
 
 
 @pytest.fixture

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from autograder.workspaces import builds, packages
-from autograder.workspaces.interface_packages import holds_only_interfaces, simple_package_xml
+from autograder.workspaces import packages
+from autograder.workspaces.builds import builds
+from autograder.workspaces.builds.interface_packages import holds_only_interfaces, simple_package_xml
 from autograder.workspaces.sources import BadSources
 
 sys.path.insert(0, str(Path(__file__).parent))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.kit.runners import ALONE, LaunchesFromPackage
-from autograder.workspaces.colcon import Build
+from autograder.workspaces.builds.colcon import Build
 from autograder.workspaces.packages import Package
 from autograder.workspaces.program_plans import lacks_programs, launch_targets, plan_for
 

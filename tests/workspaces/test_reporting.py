@@ -20,8 +20,8 @@ from autograder.kit.workspace_report import (
     as_line,
     report_of,
 )
-from autograder.workspaces.colcon import Build
-from autograder.workspaces.install_folder import LIBRARY
+from autograder.workspaces.builds.colcon import Build
+from autograder.workspaces.builds.install_folder import LIBRARY
 from autograder.workspaces.packages import Package
 from autograder.workspaces.program_plans import Plan
 from autograder.workspaces.reporting import report_line

@@ -20,10 +20,11 @@ from autograder.kit.evidence import REPORTS
 from autograder.kit.runners import ALONE
 from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, Lines
-from autograder.workspaces import colcon_in_class, own_builds, packages, service, session, sources
-from autograder.workspaces.install_folder import LIBRARY
-from autograder.workspaces.jobs import BuildOrder, Built, ProgramJob
-from autograder.workspaces.plain_jobs import PlainProgram
+from autograder.workspaces import packages, service, session, sources
+from autograder.workspaces.builds import colcon_in_class, own_builds
+from autograder.workspaces.builds.install_folder import LIBRARY
+from autograder.workspaces.running.jobs import BuildOrder, Built, ProgramJob
+from autograder.workspaces.running.plain_jobs import PlainProgram
 from autograder.workspaces.service import ServiceSockets, WorkspaceService
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -32,7 +33,7 @@ from made_workspaces import interface_package, python_package
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from autograder.workspaces.cache import CachedBuild
+    from autograder.workspaces.builds.cache import CachedBuild
 
 
 FORGED = f'{REPORTS[0]}{{"phase": "built", "built": true}}'

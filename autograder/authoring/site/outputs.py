@@ -123,6 +123,7 @@ class _Recorder(NotebookClient):
 
     async def _async_poll_output_msg(self, parent_msg_id: str, cell: NotebookNode, cell_index: int) -> None:
         """Read the messages of a cell, and what live pictures of earlier cells show meanwhile: nbclient drops that."""
+        assert self.kc is not None
         while True:
             msg = await ensure_async(self.kc.iopub_channel.get_msg(timeout=None))
             if (

@@ -11,10 +11,10 @@ from autograder import exercises
 from autograder.boxes.environment import kernel_environment
 from autograder.boxes.notebook_boxes import SHARED_FOLDER, BoxedPlace
 from autograder.judge.settings import boxed_ros_environment, ros_environment
-from autograder.workspaces import cache, own_builds
-from autograder.workspaces.boxed_jobs import BoxedJobs
+from autograder.workspaces.builds import cache, own_builds
 from autograder.workspaces.built_ahead import build_ahead
-from autograder.workspaces.plain_jobs import PlainJobs
+from autograder.workspaces.running.boxed_jobs import BoxedJobs
+from autograder.workspaces.running.plain_jobs import PlainJobs
 from autograder.workspaces.service import ServiceSockets, WorkspaceService
 from environment.python_child import python_child
 
@@ -114,6 +114,6 @@ def _furnish(shared: Path) -> None:
     programs = shared / _PROGRAMS
     programs.mkdir()
     colcon = programs / "colcon"
-    stand_in = python_child("-m", "autograder.workspaces.colcon_in_class").command
+    stand_in = python_child("-m", "autograder.workspaces.builds.colcon_in_class").command
     colcon.write_text(f'#!/bin/sh\nexec {shlex.join(stand_in)} "$@"\n')
     colcon.chmod(0o755)

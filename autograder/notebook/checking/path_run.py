@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.messages.checks import Exited, Output, Sources
 from autograder.messages.workspaces import Source
-from autograder.workspaces.jobs import output_lines
-from autograder.workspaces.own_session import OwnSession
 from autograder.workspaces.packages import workspace_of
+from autograder.workspaces.running.jobs import output_lines
+from autograder.workspaces.running.own_session import OwnSession
 from autograder.workspaces.sources import BadSources, collect_launch, collect_workspace
 from environment.python_child import python_child
 

@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.workspaces import own_builds
-from autograder.workspaces.colcon import look
-from autograder.workspaces.install_folder import CannotPlace, place, with_prefixes
+from autograder.workspaces.builds import own_builds
+from autograder.workspaces.builds.colcon import look
+from autograder.workspaces.builds.install_folder import CannotPlace, place, with_prefixes
 
 sys.path.insert(0, str(Path(__file__).parent))
 from made_workspaces import interface_package, python_package
 
 if TYPE_CHECKING:
-    from autograder.workspaces.colcon import Build, Targets
+    from autograder.workspaces.builds.colcon import Build, Targets
 
 
 def build(workspace: Path, targets: Targets | None = None) -> Build:

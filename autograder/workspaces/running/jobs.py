@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from autograder.workspaces.cache import CachedBuild
+    from autograder.workspaces.builds.cache import CachedBuild
     from autograder.workspaces.packages import Package
     from autograder.workspaces.sources import Tree
 
@@ -151,7 +151,7 @@ def _as_text(line: bytes) -> str:
 
 
 class Jobs(Protocol):
-    """Runs builds and programs, as processes (:mod:`autograder.workspaces.plain_jobs`) or in boxes (``boxed_jobs``)."""
+    """Runs builds and programs, as processes (``plain_jobs.py``) or in boxes (``boxed_jobs.py``)."""
 
     @property
     def environment(self) -> Mapping[str, str]:

@@ -9,7 +9,7 @@ import pytest
 from rosidl_adapter.parser import InvalidSpecification, parse_service_string
 
 from autograder.messages.workspaces import Source
-from autograder.workspaces.interface_packages import (
+from autograder.workspaces.builds.interface_packages import (
     holds_only_interfaces,
     simple_cmake,
     simple_definition,

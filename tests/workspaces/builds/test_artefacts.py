@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.workspaces import artefacts, cache
-from autograder.workspaces.artefacts import BadArtefacts, unpack
+from autograder.workspaces.builds import artefacts, cache
+from autograder.workspaces.builds.artefacts import BadArtefacts, unpack
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -12,16 +12,16 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.workspaces.colcon import look
-from autograder.workspaces.install_folder import BESIDE, CannotPlace, place
-from autograder.workspaces.own_builds import GRADERS, OwnBuilds
+from autograder.workspaces.builds.colcon import look
+from autograder.workspaces.builds.install_folder import BESIDE, CannotPlace, place
+from autograder.workspaces.builds.own_builds import GRADERS, OwnBuilds
 from autograder.workspaces.packages import needed
 from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from autograder.workspaces.colcon import Build, Targets
+    from autograder.workspaces.builds.colcon import Build, Targets
 
 UP_TO = "--packages-up-to"
 

@@ -23,7 +23,7 @@ from typing import IO, TYPE_CHECKING
 import platformdirs
 
 from autograder.temporary_folders import fresh_folder
-from autograder.workspaces.artefacts import BLOCK
+from autograder.workspaces.builds.artefacts import BLOCK
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

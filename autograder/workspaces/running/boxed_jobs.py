@@ -18,16 +18,16 @@ from autograder.boxes.limits import BUILD_LIMITS, Limits
 from autograder.boxes.mounts import HOME, WORK
 from autograder.boxes.sandbox import Bind, Enclosure
 from autograder.temporary_folders import fresh_folder
-from autograder.workspaces import cache
-from autograder.workspaces.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES, Built
+from autograder.workspaces.builds import cache
 from autograder.workspaces.program_plans import ros2
+from autograder.workspaces.running.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES, Built
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from autograder.boxes.boxed_processes import Running, WarmCommand
-    from autograder.workspaces.cache import CachedBuild
-    from autograder.workspaces.jobs import BuildOrder, ProgramJob
+    from autograder.workspaces.builds.cache import CachedBuild
+    from autograder.workspaces.running.jobs import BuildOrder, ProgramJob
 
 PROGRAM_LIMITS = Limits(cpu_seconds=200.0, memory_bytes=1_500_000_000, processes=400)
 """The limits for the box of a program, if the system does not enforce the limits of the whole submission."""
@@ -38,7 +38,7 @@ LOOK_EVERY = 0.5
 
 
 class BoxedJobs:
-    """Implements :class:`autograder.workspaces.jobs.Jobs`.
+    """Implements :class:`autograder.workspaces.running.jobs.Jobs`.
 
     Args:
         supervisors: The socket address of the fork server that starts the boxes' supervisors.
@@ -154,7 +154,7 @@ class BoxedJobs:
 
 
 class BoxedProgram:
-    """Implements :class:`autograder.workspaces.jobs.Program`."""
+    """Implements :class:`autograder.workspaces.running.jobs.Program`."""
 
     def __init__(self, running: Running | WarmCommand) -> None:
         self._running = running

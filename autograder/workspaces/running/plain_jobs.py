@@ -10,24 +10,24 @@ import sys
 from typing import TYPE_CHECKING
 
 from autograder.temporary_folders import HeldFolder
-from autograder.workspaces.artefacts import pack
-from autograder.workspaces.install_folder import BESIDE, without_workspaces
-from autograder.workspaces.jobs import BUILD_SECONDS, MAX_LOG_BYTES, Built
-from autograder.workspaces.own_session import OwnSession
+from autograder.workspaces.builds.artefacts import pack
+from autograder.workspaces.builds.install_folder import BESIDE, without_workspaces
+from autograder.workspaces.running.jobs import BUILD_SECONDS, MAX_LOG_BYTES, Built
+from autograder.workspaces.running.own_session import OwnSession
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from autograder.workspaces.cache import CachedBuild
-    from autograder.workspaces.jobs import BuildOrder, ProgramJob
+    from autograder.workspaces.builds.cache import CachedBuild
+    from autograder.workspaces.running.jobs import BuildOrder, ProgramJob
 
 OWN_BUILD_SECONDS = 300.0
 """The time limit of a build of the student's own workspace, in seconds of wall time."""
 
 
 class PlainJobs:
-    """Implements :class:`autograder.workspaces.jobs.Jobs`.
+    """Implements :class:`autograder.workspaces.running.jobs.Jobs`.
 
     Args:
         environment: The environment of the jobs.
@@ -72,7 +72,7 @@ class PlainJobs:
 
 
 class PlainProgram(OwnSession):
-    """Implements :class:`autograder.workspaces.jobs.Program`, with separate home and temporary folders."""
+    """Implements :class:`autograder.workspaces.running.jobs.Program`, with separate home and temporary folders."""
 
     def __init__(
         self, command: Sequence[str], environment: Mapping[str, str], cwd: Path, holds: Sequence[int] = ()

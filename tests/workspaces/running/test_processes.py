@@ -12,10 +12,10 @@ import pytest
 
 from autograder.kit.launch_report import MARK
 from autograder.process_trees import descendants, kill, known
-from autograder.workspaces import processes
 from autograder.workspaces.__main__ import _run
 from autograder.workspaces.preparation import Prepared
-from autograder.workspaces.processes import watched
+from autograder.workspaces.running import processes
+from autograder.workspaces.running.processes import watched
 
 RENAMES_ITSELF = """
 import ctypes, time

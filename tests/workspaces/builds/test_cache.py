@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from autograder.workspaces import cache
-from autograder.workspaces.artefacts import BLOCK
+from autograder.workspaces.builds import cache
+from autograder.workspaces.builds.artefacts import BLOCK
 
 
 def fill(key: str, size: int = 10) -> None:
@@ -54,8 +54,8 @@ def test_the_build_of_a_killed_builder_is_ended_before_another_begins(empty_cach
     """As where JupyterLab restarts a kernel in a check: colcon has a session of its own, and would go on."""
     program = """
 import os, signal
-from autograder.workspaces import cache
-from autograder.workspaces.own_session import OwnSession
+from autograder.workspaces.builds import cache
+from autograder.workspaces.running.own_session import OwnSession
 # The session's first process is gone, and one that it has started goes on writing.
 below = "while true; do mkdir -p half; echo x > half/$$; done"
 command = ["/bin/sh", "-c", f"({below}) & echo $!; wait"]
@@ -204,7 +204,7 @@ def test_who_waited_for_a_lock_that_was_removed_takes_the_one_that_is_there(empt
 def test_the_folder_in_the_place_of_a_cache_goes_with_its_process(empty_cache: Path) -> None:
     empty_cache.mkdir()
     empty_cache.chmod(0o777)
-    code = "import os; from autograder.workspaces import cache; print(cache.root(), flush=True); os.fork()"
+    code = "import os; from autograder.workspaces.builds import cache; print(cache.root(), flush=True); os.fork()"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     folder = Path(done.stdout.strip())
     assert folder != empty_cache

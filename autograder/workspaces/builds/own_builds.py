@@ -14,21 +14,21 @@ from typing import TYPE_CHECKING
 
 from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, Lines, NotUnderstood
-from autograder.workspaces import artefacts, cache
-from autograder.workspaces.builds import Builds, BuildTookTooLong
-from autograder.workspaces.install_folder import rename_paths
-from autograder.workspaces.own_install import changed_since, is_current
+from autograder.workspaces.builds import artefacts, cache
+from autograder.workspaces.builds.builds import Builds, BuildTookTooLong
+from autograder.workspaces.builds.install_folder import rename_paths
+from autograder.workspaces.builds.own_install import changed_since, is_current
 from autograder.workspaces.packages import WORKSPACE
-from autograder.workspaces.plain_jobs import PlainJobs
+from autograder.workspaces.running.plain_jobs import PlainJobs
 from autograder.workspaces.sources import BadSources, collect_workspace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
     from pathlib import Path
 
-    from autograder.workspaces.colcon import Build, Targets
-    from autograder.workspaces.jobs import BuildOrder
+    from autograder.workspaces.builds.colcon import Build, Targets
     from autograder.workspaces.packages import Package
+    from autograder.workspaces.running.jobs import BuildOrder
 
 GRADERS = "AUTOGRADER_BUILDS"
 """The environment variable that, in a graded notebook, contains the path of the grader's socket."""
@@ -88,7 +88,7 @@ def _ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) ->
 
     Args:
         socket: The path of the grader's socket.
-        found: The workspace, after :func:`autograder.workspaces.colcon.look`.
+        found: The workspace, after :func:`autograder.workspaces.builds.colcon.look`.
         chosen: The packages.
         install: The folder to create for the build. It must not exist yet.
 

@@ -16,18 +16,18 @@ import pytest
 
 from autograder.boxes.fork_server import BESIDE, SUPERVISOR_MODULE, ForkServer
 from autograder.boxes.sandbox import Enclosure, why_impossible
-from autograder.workspaces.boxed_jobs import BoxedJobs, BoxedProgram
-from autograder.workspaces.colcon import look
+from autograder.workspaces.builds.colcon import look
 from autograder.workspaces.graded_builds import GradedBuilds
-from autograder.workspaces.jobs import Built, ProgramJob
 from autograder.workspaces.program_plans import course_interfaces
+from autograder.workspaces.running.boxed_jobs import BoxedJobs, BoxedProgram
+from autograder.workspaces.running.jobs import Built, ProgramJob
 
 sys.path.insert(0, str(Path(__file__).parent))
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from autograder.workspaces.colcon import Build
+    from autograder.workspaces.builds.colcon import Build
 
 pytestmark = pytest.mark.skipif(bool(why_impossible()), reason=f"no boxes here: {why_impossible()}")
 

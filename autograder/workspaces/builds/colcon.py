@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.workspaces.failures import telling_line
-from autograder.workspaces.install_folder import entry_points, package_prefixes, programs
+from autograder.workspaces.builds.failures import telling_line
+from autograder.workspaces.builds.install_folder import entry_points, package_prefixes, programs
 from autograder.workspaces.packages import find_packages, launch_files, needed
 from environment.python_child import INTERPRETER, python_child
 

@@ -1,6 +1,6 @@
 """A program that serves an interface type from a workspace, so that the judge can see the type on the wire.
 
-Usage: ``python -m autograder.workspaces.probe PACKAGE/srv/NAME SERVICE``
+Usage: ``python -m autograder.workspaces.running.probe PACKAGE/srv/NAME SERVICE``
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 The sources are read once. A build depends only on these bytes and on the tools; a hash of both is the key under which
 the build is stored. Builds in a student's kernel, in a terminal and for a class differ only in the process that makes
-them (:class:`autograder.workspaces.jobs.Jobs`).
+them (:class:`autograder.workspaces.running.jobs.Jobs`).
 """
 
 from __future__ import annotations
@@ -18,20 +18,20 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from autograder.workspaces import artefacts, cache
-from autograder.workspaces.colcon import choose, command, failed, moved
-from autograder.workspaces.interface_packages import holds_only_interfaces
-from autograder.workspaces.jobs import BuildOrder
+from autograder.workspaces.builds import artefacts, cache
+from autograder.workspaces.builds.colcon import choose, command, failed, moved
+from autograder.workspaces.builds.interface_packages import holds_only_interfaces
 from autograder.workspaces.packages import WORKSPACE, sources_of
+from autograder.workspaces.running.jobs import BuildOrder
 from autograder.workspaces.sources import BadSources
 from environment.interface_packages import ONLY_PYTHON, ONLY_PYTHON_FILE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from autograder.workspaces.colcon import Build, Targets
-    from autograder.workspaces.jobs import Built, Jobs
+    from autograder.workspaces.builds.colcon import Build, Targets
     from autograder.workspaces.packages import Package
+    from autograder.workspaces.running.jobs import Built, Jobs
     from autograder.workspaces.sources import Tree
 
 FORMAT = "3"
@@ -94,10 +94,10 @@ class Builds:
         missing.
 
         Args:
-            found: The workspace, after :func:`autograder.workspaces.colcon.look`.
+            found: The workspace, after :func:`autograder.workspaces.builds.colcon.look`.
             targets: Returns the needed packages. They are built with their dependencies, or without one if only that
                 one fails. None for all packages.
-            name: The kind of workspace; see :meth:`autograder.workspaces.jobs.Jobs.place`.
+            name: The kind of workspace; see :meth:`autograder.workspaces.running.jobs.Jobs.place`.
             cancelled: Returns True when the build is no longer needed.
 
         Returns:

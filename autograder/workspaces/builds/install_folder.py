@@ -19,8 +19,8 @@ from autograder.temporary_folders import scratch_folder
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from autograder.workspaces.builds.colcon import Build
     from autograder.workspaces.byte_budget import ByteBudget
-    from autograder.workspaces.colcon import Build
 
 LIBRARY = f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
 BESIDE = ("build", "log")

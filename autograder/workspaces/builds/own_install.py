@@ -19,14 +19,14 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.workspaces.byte_budget import ByteBudget
-from autograder.workspaces.install_folder import (
+from autograder.workspaces.builds.install_folder import (
     entry_points,
     is_isolated,
     linked_build,
     programs,
     python_folders,
 )
+from autograder.workspaces.byte_budget import ByteBudget
 from autograder.workspaces.packages import DEFINITIONS, launch_files
 from autograder.workspaces.sources import is_source
 
@@ -46,7 +46,7 @@ _RECORDS = ("install.log", "install_manifest.txt")
 """Files in a package's build folder that list what its last build installed: setuptools' list and CMake's."""
 _OPTIMIZED = re2.compile(r"(?m)^CMAKE_BUILD_TYPE:\w+=(?:Release|RelWithDebInfo|MinSizeRel)$")
 """Matches a build type in CMakeCache.txt that defines NDEBUG. Without NDEBUG, a value of the wrong type ends the
-process, which does not happen when a class is graded (:func:`autograder.workspaces.colcon.command`).
+process, which does not happen when a class is graded (:func:`autograder.workspaces.builds.colcon.command`).
 """
 
 
