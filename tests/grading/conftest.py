@@ -17,12 +17,10 @@ sys.path.insert(0, str(Path(__file__).parent))
 sys.path.insert(0, str(Path(__file__).parent / "collecting"))
 sys.path.insert(0, str(Path(__file__).parent / "day"))
 from downloads import ROSTER
-from tiny_class import LISTENER, MASTER, QUIET, TALKER, FakeEngine, TinyClass, make_tiny_class, write_master
+from tiny_class import FakeEngine, TinyClass, make_tiny_class
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-
-__all__ = ["LISTENER", "MASTER", "QUIET", "TALKER", "FakeEngine", "TinyClass", "write_master"]
 
 
 @pytest.fixture(scope="session")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from click.testing import CliRunner
-from conftest import QUIET
+from tiny_class import QUIET
 
 from autograder import exercises
 from autograder.appeals import appeal_file
@@ -27,7 +27,7 @@ from autograder.messages.orders import Report
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from conftest import FakeEngine, TinyClass
+    from tiny_class import FakeEngine, TinyClass
 
 ID = "lab_1_2.talker"
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import nbformat
 import pytest
-from conftest import LISTENER, TALKER, FakeEngine, TinyClass
 from nbgrader.api import Gradebook
+from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from click.testing import CliRunner
-from conftest import TALKER, FakeEngine, TinyClass
+from tiny_class import TALKER, FakeEngine, TinyClass
 
 from autograder.boxes.execution import Cell, CellCheck, CellRun, Ended, Execution
 from autograder.boxes.limits import Limits

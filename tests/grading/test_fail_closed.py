@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from conftest import LISTENER, TALKER, FakeEngine, TinyClass
+from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.grading.errors import DiskFull, GradebookTrouble
 

@@ -16,7 +16,7 @@ import pytest
 from environment.python_child import installed_program
 
 if TYPE_CHECKING:
-    from conftest import TinyClass
+    from tiny_class import TinyClass
 
 ROOT = Path(__file__).resolve().parents[2]
 # Read by Python, Jupyter, nbgrader, jupytext, pytest and colcon in one folder or another.

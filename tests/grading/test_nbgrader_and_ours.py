@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 import nbformat
 import pytest
 from click.testing import CliRunner
-from conftest import LISTENER, TALKER, FakeEngine, TinyClass
 from nbgrader.api import Gradebook
 from nbgrader.converters import Autograde, GenerateFeedback, NbGraderException
 from nbgrader.coursedir import CourseDirectory
+from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.cli import cli
 from autograder.grading.class_store import ClassStore

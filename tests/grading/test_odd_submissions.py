@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from conftest import LISTENER, TALKER, FakeEngine, TinyClass
 from nbgrader.api import Gradebook
 from nbgrader.converters import NbGraderException
 from rich.console import Console
 from test_nbgrader_and_ours import nbgrader_autograde
+from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.grading.rebuilding import submission
 from autograder.grading.rebuilding.desk import read_notebook

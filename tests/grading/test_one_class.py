@@ -8,7 +8,7 @@ import sys
 import threading
 from typing import TYPE_CHECKING, Any
 
-from conftest import TALKER, TinyClass
+from tiny_class import TALKER, TinyClass
 
 from autograder import course
 from autograder.grading.batch import grade

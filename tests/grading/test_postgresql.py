@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from conftest import LISTENER, TALKER, FakeEngine, TinyClass, make_tiny_class
 from nbgrader.api import Gradebook
+from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass, make_tiny_class
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release

@@ -15,7 +15,7 @@ from autograder.grading.reporting.report import report_json
 from autograder.grading.reporting.report_table import show
 
 if TYPE_CHECKING:
-    from conftest import FakeEngine, TinyClass
+    from tiny_class import FakeEngine, TinyClass
 
     from autograder.grading.reporting.report import GradeReport
 

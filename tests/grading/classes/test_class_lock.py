@@ -11,10 +11,9 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from conftest import LISTENER, TALKER, FakeEngine, TinyClass
 from nbgrader.converters import NbGraderException
 from test_nbgrader_and_ours import nbgrader_autograde, nbgrader_generate_feedback
-from tiny_class import GRADE
+from tiny_class import GRADE, LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.errors import ClassBusy

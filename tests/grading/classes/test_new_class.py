@@ -8,8 +8,8 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from conftest import MASTER, TinyClass, write_master
 from nbgrader import api
+from tiny_class import MASTER, TinyClass, write_master
 
 from autograder.course import root
 from autograder.grading.classes.class_directory import ClassDirectory

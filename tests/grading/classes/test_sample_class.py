@@ -9,8 +9,8 @@ import sys
 from typing import TYPE_CHECKING
 
 import pytest
-from conftest import QUIET
 from nbgrader.api import Gradebook
+from tiny_class import QUIET
 
 from autograder import exercises
 from autograder.appeals import appeal_file, replaying

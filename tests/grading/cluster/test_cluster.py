@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import psutil
 import pytest
-from conftest import LISTENER, TALKER, TinyClass
 from dask_cluster import UNBOXED, VERSION, DaskCluster, end, until
 from rich.console import Console
+from tiny_class import LISTENER, TALKER, TinyClass
 
 from autograder import course
 from autograder.boxes.sandbox import why_impossible

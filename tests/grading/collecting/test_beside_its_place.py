@@ -6,15 +6,15 @@ import unicodedata
 from typing import TYPE_CHECKING
 
 import pytest
-from conftest import LISTENER, TALKER
 from downloads import zipped
+from tiny_class import LISTENER, TALKER
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
 from autograder.grading.errors import MasterUnusable
 
 if TYPE_CHECKING:
-    from conftest import FakeEngine, TinyClass
+    from tiny_class import FakeEngine, TinyClass
 
     from autograder.grading.reporting.report import GradeReport
 

@@ -18,7 +18,7 @@ from autograder.grading.reporting.rows import remarks_on
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from conftest import FakeEngine, TinyClass
+    from tiny_class import FakeEngine, TinyClass
 
 
 NAMES = {

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from datetime import datetime
     from pathlib import Path
 
-    from conftest import TinyClass
+    from tiny_class import TinyClass
 
 IN_BOTH = "mallory_777_5003_x_ben_attempt_2031-01-01-10-00-00_lab_1_2.ipynb"
 """Canvas's name of a file of somebody whom nobody knows; its end, which she chose, looks like Blackboard's."""

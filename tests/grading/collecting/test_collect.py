@@ -31,7 +31,7 @@ from autograder.grading.errors import GradingError
 from autograder.grading.table.roster import RosterError
 
 if TYPE_CHECKING:
-    from conftest import FakeEngine, TinyClass
+    from tiny_class import FakeEngine, TinyClass
 
 BERLIN = ZoneInfo("Europe/Berlin")
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from conftest import TinyClass
+    from tiny_class import TinyClass
 
 Lines = list[dict[str, str]]
 

@@ -9,9 +9,9 @@ import time
 from typing import TYPE_CHECKING
 
 import pytest
-from conftest import LISTENER, TALKER
 from downloads import write_zip, zipped
 from test_collect import placed, why, work
+from tiny_class import LISTENER, TALKER
 
 from autograder.grading.collecting import archives
 from autograder.grading.collecting.collect import collect
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from conftest import FakeEngine, TinyClass
+    from tiny_class import FakeEngine, TinyClass
 
 NO_TEXT = os.fsdecode(b"lab_1_2 \xff.ipynb")
 MB = 1_000_000

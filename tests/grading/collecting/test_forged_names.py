@@ -14,7 +14,7 @@ from autograder.grading.collecting.collect import collect
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from conftest import TinyClass
+    from tiny_class import TinyClass
 
 ROSTER = """\
 id,first_name,last_name,email,canvas,github

@@ -15,7 +15,7 @@ from autograder.grading.collecting.outcomes import CollectReport, State
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from conftest import TinyClass
+    from tiny_class import TinyClass
 
 COPY = "lab_1_2 (your copy, 2026-11-21).ipynb"
 

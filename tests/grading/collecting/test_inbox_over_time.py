@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 import pytest
-from conftest import LISTENER, TALKER
 from downloads import ROSTER, write_zip
 from test_collect import lies, placed, stamp, why, work
 from test_collected_table import edit, read, save
 from test_where_it_goes import other_lab, outcome
+from tiny_class import LISTENER, TALKER
 
 from autograder.boxes import syscalls
 from autograder.boxes.sandbox import why_impossible
@@ -31,7 +31,7 @@ from autograder.grading.errors import ClassBusy, GradingError
 if TYPE_CHECKING:
     from types import ModuleType
 
-    from conftest import FakeEngine, TinyClass
+    from tiny_class import FakeEngine, TinyClass
 
 DAY = "Lab_{}_attempt_2025-10-0{}-14-00-00_lab_1_2.ipynb"
 

@@ -20,7 +20,7 @@ from autograder.grading.collecting.outcomes import CollectReport, State
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from conftest import TinyClass
+    from tiny_class import TinyClass
 
 UTC = ZoneInfo("UTC")
 

@@ -13,7 +13,7 @@ from autograder.grading.collecting.outcomes import State
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from conftest import TinyClass
+    from tiny_class import TinyClass
 
 WORKSHEET = "Identifier,Full name,Email address,Grade\nParticipant 556,Guest,jose@uni.example,\n"
 

@@ -17,7 +17,7 @@ from autograder.grading.collecting.records import CollectedRecords
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from conftest import TinyClass
+    from tiny_class import TinyClass
 
 
 def test_a_students_zip_is_no_download_whose_names_are_believed(klass: TinyClass, tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from autograder.grading.collecting.outcomes import CollectReport, State
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from conftest import TinyClass
+    from tiny_class import TinyClass
 
 NAME = "Ada Lovelace_1_assignsubmission_file_{}"
 

@@ -47,7 +47,7 @@ from autograder.grading.table.roster import read_students_csv
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from conftest import TinyClass
+    from tiny_class import TinyClass
 
 UTC = ZoneInfo("UTC")
 METADATA = """\

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from conftest import TinyClass
+    from tiny_class import TinyClass
 
     from autograder.grading.collecting.outcomes import CollectReport
 

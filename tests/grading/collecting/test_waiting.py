@@ -17,7 +17,7 @@ from autograder.grading.collecting.table import Table
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from conftest import TinyClass
+    from tiny_class import TinyClass
 
     from autograder.grading.collecting.outcomes import CollectReport
     from autograder.grading.collecting.table import Waiting

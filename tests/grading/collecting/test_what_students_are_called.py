@@ -15,7 +15,7 @@ from autograder.grading.collecting.collect import collect
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from conftest import TinyClass
+    from tiny_class import TinyClass
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from autograder.grading.collecting.outcomes import State
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from conftest import TinyClass
+    from tiny_class import TinyClass
 
 
 def test_times_are_cells_also_of_what_a_person_has_put_there(klass: TinyClass, tmp_path: Path) -> None:

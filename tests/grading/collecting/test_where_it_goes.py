@@ -13,11 +13,11 @@ from zoneinfo import ZoneInfo
 import nbformat
 import pytest
 from click.testing import CliRunner
-from conftest import TinyClass
 from downloads import write_zip, zipped
 from test_collect import kept, lies, stamp, why, work
 from test_collected_table import edit
 from test_lms_file_names import add_assignment
+from tiny_class import TinyClass
 
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
@@ -32,7 +32,7 @@ from autograder.regular_files import write_whole
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from conftest import FakeEngine
+    from tiny_class import FakeEngine
 
 UTC = ZoneInfo("UTC")
 MOODLE = "{}_1_assignsubmission_file_{}"

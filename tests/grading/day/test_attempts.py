@@ -13,7 +13,7 @@ from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 
 if TYPE_CHECKING:
-    from conftest import FakeEngine, TinyClass
+    from tiny_class import FakeEngine, TinyClass
 
     from autograder.grading.class_records import Attempt
 

@@ -6,9 +6,9 @@ import json
 from typing import TYPE_CHECKING
 
 from click.testing import CliRunner
-from conftest import LISTENER, TALKER
 from instructor import by_person, due, penalty
 from test_true_table import DUE, EARLY, LATE, shown, total
+from tiny_class import LISTENER, TALKER
 
 from autograder.cli import cli
 from autograder.grading import batch
@@ -18,7 +18,7 @@ from autograder.grading.rebuilding import task_making
 
 if TYPE_CHECKING:
     import pytest
-    from conftest import FakeEngine, TinyClass
+    from tiny_class import FakeEngine, TinyClass
 
 
 def files(tiny: TinyClass) -> dict[str, bytes]:

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 import pytest
 import yaml
 from click.testing import CliRunner
-from conftest import TALKER
 from downloads import write_zip
 from instructor import by_person
+from tiny_class import TALKER
 
 from autograder import exercises
 from autograder.boxes.execution import Execution
@@ -28,7 +28,7 @@ from autograder.judge.verdicts import keeping, reference, trial
 from autograder.kit.evidence import Evidence
 
 if TYPE_CHECKING:
-    from conftest import FakeEngine, TinyClass
+    from tiny_class import FakeEngine, TinyClass
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 GUIDE = Path(__file__).parents[3] / "docs" / "instructors-guide.md"

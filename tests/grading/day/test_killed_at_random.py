@@ -32,7 +32,7 @@ from autograder.regular_files import write_whole
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from conftest import FakeEngine, TinyClass
+    from tiny_class import FakeEngine, TinyClass
 
 STUDENTS = [f"s{place:02}" for place in range(24)]
 FEW, MANY = 3, 20

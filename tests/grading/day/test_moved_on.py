@@ -9,8 +9,8 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from conftest import LISTENER, MASTER, TALKER, FakeEngine, TinyClass, write_master
 from rich.console import Console
+from tiny_class import LISTENER, MASTER, TALKER, FakeEngine, TinyClass, write_master
 
 from autograder.grading.classes import origins
 from autograder.grading.classes.new_class import new_class, renew

@@ -17,7 +17,7 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
 
 if TYPE_CHECKING:
-    from conftest import TinyClass
+    from tiny_class import TinyClass
 
 pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 

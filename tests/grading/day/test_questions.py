@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import nbformat
 import pytest
 from bs4 import BeautifulSoup
-from conftest import MASTER, FakeEngine, TinyClass, write_master
 from instructor import by_person
 from test_true_table import page, rows, total
+from tiny_class import MASTER, FakeEngine, TinyClass, write_master
 
 from autograder.grading.classes.new_class import new_class
 from autograder.grading.returning.page_head import without_dead_links

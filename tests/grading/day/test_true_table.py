@@ -9,11 +9,11 @@ from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from conftest import LISTENER, TALKER, FakeEngine, TinyClass
 from instructor import add_question, book, by_person, due, penalty
 from nbgrader.apps.api import NbGraderAPI
 from nbgrader.coursedir import CourseDirectory
 from rich.console import Console
+from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.grading.classes import timestamps
 from autograder.grading.classes.class_directory import ClassDirectory

@@ -28,7 +28,7 @@ from autograder.grading.running import engine
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from conftest import FakeEngine, TinyClass
+    from tiny_class import FakeEngine, TinyClass
 
 TALKER = "lab_1_2-talker"
 STUDENTS = ("ada", "ben", "eve", "jose", "zoe")

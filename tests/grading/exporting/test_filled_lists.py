@@ -21,7 +21,7 @@ from autograder.verdict import not_checked
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from conftest import TinyClass
+    from tiny_class import TinyClass
 
 WORKSHEET = (
     "Identifier,Full name,Email address,Grade,Maximum Grade\n"

@@ -8,10 +8,10 @@ import zipfile
 from typing import TYPE_CHECKING
 
 import pytest
-from conftest import TALKER
 from downloads import ROSTER, write_zip
 from instructor import by_person
 from test_collect import work
+from tiny_class import TALKER
 
 from autograder.grading.collecting.collect import collect
 from autograder.grading.exporting.export_files import export
@@ -19,7 +19,7 @@ from autograder.grading.exporting.export_files import export
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from conftest import FakeEngine, TinyClass
+    from tiny_class import FakeEngine, TinyClass
 
 FILES = {
     "blackboard": "Lab_ada_attempt_2025-10-03-14-00-00_lab_1_2.ipynb",

@@ -12,7 +12,7 @@ from autograder.cli import cli
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from conftest import FakeEngine, TinyClass
+    from tiny_class import FakeEngine, TinyClass
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from autograder.grading.running import engine
 from autograder.verdict import not_checked
 
 if TYPE_CHECKING:
-    from conftest import TinyClass
+    from tiny_class import TinyClass
 
 
 def students(klass: TinyClass) -> dict[str, dict[str, str]]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from conftest import LISTENER, TALKER, FakeEngine, TinyClass
+from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.boxes.channel import ChannelClosed
 from autograder.boxes.sandbox import why_impossible

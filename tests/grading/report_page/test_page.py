@@ -28,7 +28,7 @@ from autograder.verdict import CriterionResult, Diagnosis, Verdict
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from conftest import FakeEngine, TinyClass
+    from tiny_class import FakeEngine, TinyClass
 
 GIVEN = {"ada": (10, 10), "ben": (4, 0), "eve": (2, 1), "jose": ("1/0", 10)}
 

@@ -16,7 +16,7 @@ from autograder.grading.reporting.report_table import show, tables
 from autograder.grading.reporting.rows import Row, columns
 
 if TYPE_CHECKING:
-    from conftest import FakeEngine, TinyClass
+    from tiny_class import FakeEngine, TinyClass
 
 STUDENTS = ("ada", "a-student-with-quite-a-long-id", "zoe")
 EXERCISES = {

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 import pytest
-from conftest import FakeEngine, TinyClass
+from tiny_class import FakeEngine, TinyClass
 
 from autograder.boxes.execution import CellRun, Ended, Execution
 from autograder.grading.classes.class_directory import ClassDirectory

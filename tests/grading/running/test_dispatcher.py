@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 import pytest
-from conftest import FakeEngine, TinyClass
 from fake_link import (
     HERE,
     FakeLink,
@@ -19,6 +18,7 @@ from fake_link import (
     tasks_of_six,
     troubled,
 )
+from tiny_class import FakeEngine, TinyClass
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.running import dispatcher as dispatcher_module

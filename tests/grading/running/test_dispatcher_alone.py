@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import msgspec
 import pytest
-from conftest import FakeEngine, TinyClass
 from fake_link import FakeLink, honest, joined, make_dispatcher, students, tasks_of_six, troubled
+from tiny_class import FakeEngine, TinyClass
 
 from autograder.grading.running import dispatcher as dispatcher_module
 from autograder.grading.running.dispatcher import ATTEMPTS, NoWorkers

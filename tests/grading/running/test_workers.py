@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING
 
 import psutil
 import pytest
-from conftest import LISTENER, TALKER, FakeEngine, TinyClass
 from nbgrader.api import Gradebook
-from tiny_class import GRADE
+from tiny_class import GRADE, LISTENER, TALKER, FakeEngine, TinyClass
 
 from autograder.boxes.execution import Cell, CellCheck, CellRun, Ended, Execution
 from autograder.grading.classes.class_directory import ClassDirectory

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import nbformat
 
 if TYPE_CHECKING:
-    from conftest import TinyClass
+    from tiny_class import TinyClass
 
 STUB = """\
 class Talker(Node):

@@ -22,7 +22,7 @@ from autograder.grading.similarity.close_pairs import Similar, find_similar
 from autograder.grading.similarity.similarity_page import page
 
 if TYPE_CHECKING:
-    from conftest import TinyClass
+    from tiny_class import TinyClass
 
 
 @pytest.fixture
