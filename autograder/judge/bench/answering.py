@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from rclpy.service import Service
 
     Take = Callable[[Any, Any], Any]
-    """A service callback: it takes a request and an empty response, and returns the response or None."""
+    """A service's callback: it takes a request and an empty response."""
 
 ATTEMPTS = 30
 """The number of attempts to send an answer; in each the middleware waits about 0.1 s for the client's reader."""
