@@ -130,7 +130,7 @@ class StateRule:
             if event.kind == self.given:
                 given.append(event)
             if event.kind == "message":
-                now = _moment(event)
+                now = reported_at(event)
                 yield (
                     value(event),
                     [
@@ -140,7 +140,7 @@ class StateRule:
                 )
 
 
-def _moment(event: Event) -> float:
+def reported_at(event: Event) -> float:
     """Return the time of a report; in real time, the time at which it was sent."""
     on_its_way = float(event.data.get("arrived", event.t)) - sent_times([event])[0]
     return event.moment - (on_its_way if event.sim is None else 0.0)

@@ -97,8 +97,10 @@ class Declared:
         if words:
             self._text[words] = f"{self._text[words]} {name}" if words in self._text else name
 
-    def _knows(self, key: str, found: Callable[[Part], bool], says: str, next_step: str) -> None:
-        self._draft.knows(key, lambda seen, _: found(seen), says, next_step, certain=True)
+    def _knows(
+        self, key: str, found: Callable[[Part], object], says: str, next_step: str, *, certain: bool = True
+    ) -> None:
+        self._draft.knows(key, lambda seen, _: found(seen), says, next_step, certain=certain)
 
 
 def variant(right: Function, changed: Function | Mapping[str, Any]) -> Function | partial[Any]:

@@ -1,0 +1,128 @@
+"""A watch is judged by the state that follows from its inputs and from time, which passes by itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.recipes.watch import SILENCE, Watch
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.kit.model import Exercise
+    from autograder.kit.rules import Given
+
+INTERFACE = {"publisher": {"/alarm": "x/msg/Y"}, "subscription": {"/beat": "x/msg/Y"}}
+READY_MADE = ("too_early", "never_told", "told_too_often", "only_in_answer", "told_untruly", "told_too_late")
+Said = tuple[float, str]
+
+
+def watchdog() -> Exercise:
+    """Lost a second after a beat. The beats come at 0, 0.5 and 2 s, and the run ends 1.6 s after the last one."""
+
+    def state(beats: Sequence[Given], limit: float = 1.0) -> object:
+        return "lost" if beats and beats[-1].age >= limit else "back"
+
+    watch = Watch(
+        "a.b", "A", "B", state=state, gives=[({}, 0.5), ({}, 1.5), ({}, 1.6)], within=0.3, waits=1.5
+    )
+    watch.says("lost", "lost", 4, "Says lost")
+    watch.says("back", "back", 4, "Says back")
+    watch.once("once", 2, "Once")
+    watch.wrong("half", {"limit": 0.4}, "Half.", "Whole.")
+    watch.wrong("first", lambda beats: state(beats) if beats else SILENCE, "At the first.", "Not so.")
+    return watch.exercise()
+
+
+def run(said: Sequence[Said], *, beats: int = 3, simulated: bool = True) -> Part:
+    """Return a run in which this was said, each at a time."""
+    given: list[tuple[float, str, dict[str, str]]] = [(at, "sent", {}) for at in (0.0, 0.5, 2.0)[:beats]]
+    events = given + [(at, "message", {"data": text}) for at, text in said]
+    return Part(
+        "met",
+        {},
+        [
+            Event(at + 2.0, kind, "/any", {"fields": fields}, at + 100 if simulated and at >= 0 else None)
+            for at, kind, fields in sorted(events, key=lambda event: event[0])
+        ],
+    )
+
+
+USUAL = [(1.55, "lost"), (2.0, "back"), (3.1, "lost")]
+
+
+def judged(part: Part) -> tuple[set[str], str | None]:
+    """Return the criteria that fail, and the first mistake of the exercise's own that is recognized."""
+    exercise = watchdog()
+    evidence = Evidence([part], Reference(exercise.id, INTERFACE, [run(USUAL)]))
+    failed = {one.name for one in exercise.criteria if not one.judge(evidence).passed}
+    own = (one for one in exercise.mistakes if one.key in (*READY_MADE, "half", "first"))
+    return failed, next((one.key for one in own if one.recognise(evidence)), None)
+
+
+@pytest.mark.parametrize(
+    ("said", "failed", "told"),
+    [
+        (USUAL, set(), None),
+        ([(1.5, "lost"), (2.05, "back"), (3.29, "lost")], set(), None),
+        ([(1.5, "lost"), (1.9, "lost"), (2.0, "back"), (3.1, "lost")], {"once"}, "told_too_often"),
+        ([(1.5, "lost"), (3.1, "lost")], {"back"}, "never_told"),
+        ([(1.5, "Lost"), (2.0, "Back"), (3.1, "Lost")], {"lost", "back", "once"}, "never_told"),
+        ([(2.0, "lost"), (2.0, "back")], {"lost"}, "only_in_answer"),
+        ([(1.5, "lost"), (2.0, "back"), (3.5, "lost")], {"lost"}, "told_too_late"),
+        ([(1.2, "lost"), (2.0, "back"), (3.0, "lost")], {"lost", "once"}, "told_untruly"),
+        ([(-0.5, "lost"), *USUAL], {"once"}, "too_early"),
+        ([(0.0, "back"), *USUAL], {"once"}, "first"),
+        (
+            [(0.4, "lost"), (0.5, "back"), (0.9, "lost"), (2.0, "back"), (2.4, "lost")],
+            {"lost", "once"},
+            "half",
+        ),
+        ([], {"lost", "back", "once"}, None),
+    ],
+)
+def test_a_watch_says_each_change_once_and_in_time(
+    said: Sequence[Said], failed: set[str], told: str | None
+) -> None:
+    assert judged(run(said)) == (failed, told)
+
+
+def test_a_run_that_was_cut_short_fulfils_nothing() -> None:
+    assert judged(run(USUAL[:1], beats=2))[0] == {"lost", "back", "once"}
+
+
+def test_a_state_after_one_that_was_not_said_costs_nothing_more() -> None:
+    assert judged(run([(3.1, "lost")]))[0] == {"lost", "back"}
+    assert judged(run([(1.5, "lost")]))[0] == {"back"}
+
+
+def test_in_real_time_a_busy_machine_may_hold_a_message_up() -> None:
+    late = [(1.95, "lost"), (2.4, "back"), (3.5, "lost")]
+    assert judged(run(late, simulated=False)) == (set(), None)
+    assert judged(run(late))[0] == {"lost", "back"}
+
+
+def test_a_state_that_ends_before_it_must_be_said_need_not_be_said() -> None:
+    """The beat at 2 s comes, for a machine that held it up, when the heartbeat was lost for a tenth of a second."""
+    watch = Watch(
+        "a.b",
+        "A",
+        "B",
+        state=lambda beats: "lost" if beats and beats[-1].age >= 1.4 else "back",
+        gives=[({}, 0.5), ({}, 1.5), ({}, 1.6)],
+        within=0.3,
+    )
+    watch.says("lost", "lost", 1, "Lost")
+    (lost,) = watch.exercise().criteria
+    evidence = Evidence([run([(3.5, "lost")])], Reference("a.b", INTERFACE, [run([(3.5, "lost")])]))
+    assert lost.judge(evidence).passed
+
+
+def test_the_ready_made_mistakes_are_explained_to_students() -> None:
+    page = (Path(__file__).parents[2] / "docs/mistakes.md").read_text(encoding="utf-8")
+    for key in READY_MADE:
+        assert f"### `{key}`\n" in page
