@@ -41,6 +41,8 @@ _ENDS = {
 }
 
 
+_Said = tuple[float, str]
+"""Seconds, and the label of a message."""
 _QUOTED = re2.compile(r"“([^”…]*\w[^”…]*)")
 
 
@@ -242,14 +244,36 @@ def _missed(part: Part, reference: Reference, title: str, start: float | None) -
         number = int(part.of("message", topic)[0].data.get("number", 1)) if came else 1
         due = due[min(number, len(due)) - 1 :]
         first = came or [(_time(event, start), "") for event in part.of("log")]
-        shift = (first[0][0] if first else 0.0) - due[0][0]
-        missed = [
-            (t + shift, label)
-            for t, label in due
-            if not any(label == told and abs(t + shift - at) < near for at, told in came)
-        ]
+        missed = _not_come(due, came, (first[0][0] if first else 0.0) - due[0][0], near)
         for place, (t, label) in enumerate(missed[:EXPECTED]):
             yield Moment(round(t, 3), topic, "expected", label, title, start is not None, key=place == 0)
+
+
+def _not_come(due: Sequence[_Said], came: Sequence[_Said], shift: float, near: float) -> list[_Said]:
+    """Return the due messages that did not come, each at its time, counted from the last one that came.
+
+    A message has come if it is at its time, or if it follows the one before it as it should: after one that is
+    missing, late or too much, the next ones are not missing, too.
+
+    Args:
+        due: Time and label of each message of the reference solution.
+        came: Time and label of each message of the subject.
+        shift: Seconds from the reference's first message to the subject's.
+        near: Seconds by which a message at its time may be off.
+    """
+    missed = []
+    last = -1
+    for place, (at, label) in enumerate(due):
+        later = [k for k in range(last + 1, len(came)) if came[k][1] == label]
+        found = next((k for k in later if abs(came[k][0] - at - shift) < near), None)
+        if found is None and place and later and later[0]:
+            after = came[later[0]][0] - came[later[0] - 1][0]
+            found = later[0] if abs(after - (at - due[place - 1][0])) < near else None
+        if found is None:
+            missed.append((at + shift, label))
+        else:
+            last, shift = found, came[found][0] - at
+    return missed
 
 
 def _fields(data: Mapping[str, Any]) -> str:

@@ -170,6 +170,25 @@ def test_messages_that_did_not_come_are_told_where_they_belong() -> None:
     assert ghosts(*wrong, missed=False) == [], "on a card with full marks nothing is missing"
 
 
+def hellos(*said: tuple[float, int]) -> list[tuple[float, str, int]]:
+    """Messages of a talker: when, and which number it tells."""
+    return [(t, f"Hello, world! {told}", number) for number, (t, told) in enumerate(said, 1)]
+
+
+def test_after_one_that_did_not_come_the_next_ones_are_not_missing_too() -> None:
+    count = [0, 1, 2, 4, 5, 6, 7, 8, 9]
+    skipped = [(n / 2, told) for n, told in enumerate(count)]
+    assert ghosts(*hellos(*skipped)) == [(1.5, "Hello, world! 3")]
+    lost = [(told / 2, told) for told in count]
+    assert ghosts(*hellos(*lost)) == [(1.5, "Hello, world! 3")]
+    stopped = [(n / 2 + (3 if n > 2 else 0), n) for n in range(10)]
+    assert ghosts(*hellos(*stopped)) == [(1.5, "Hello, world! 3")]
+    twice = [(n / 2, told) for n, told in enumerate([0, 1, 2, 2, 3, 4, 5, 6, 7, 8, 9])]
+    assert ghosts(*hellos(*twice)) == []
+    by_two = [(n / 2, 2 * n) for n in range(5)]
+    assert [label[-1] for _, label in ghosts(*hellos(*by_two))] == ["1", "3", "5", "7", "9"]
+
+
 def test_where_inputs_are_random_no_message_is_expected() -> None:
     said = [Event(0.0, "message", "/a", {"fields": HELLO}, n / 2) for n in range(4)]
     reference = Reference("an exercise", {}, [Part("talking", {"text": "one"}, said)])
