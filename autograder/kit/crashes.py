@@ -80,6 +80,8 @@ def raised(how: str, traceback: str) -> Advice:
 
 _EXECUTOR = "rclpy/executors.py"
 """The file of rclpy that calls callbacks. Student's code that a traceback shows below this file ran in a callback."""
+_LOGGING = "/logging/__init__.py"
+"""The file of Python's ``logging``. A traceback that begins in it replaces a log line and ends nothing."""
 _FRAME = re2.compile(r'(?m)^ +File "(?P<file>[^"\n]*)", line (?P<line>\d+), in (?P<function>[^\n]*)$')
 
 
@@ -87,6 +89,9 @@ def _crashed(evidence: Evidence) -> Advice | None:
     traceback = traceback_of(evidence)
     if not traceback:
         return None
+    outermost = _FRAME.search(traceback)
+    if outermost and outermost["file"].endswith(_LOGGING):
+        return raised("A line could not be logged", traceback)
     spun = _was_spun(evidence) or _EXECUTOR in traceback
     return raised(
         "Spinning the node ended with an exception" if spun else "The program stopped with an exception",

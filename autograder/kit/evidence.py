@@ -151,11 +151,21 @@ For example, if a Python program ends while one of its threads still spins, the 
 (``terminate called without an active exception``), and faulthandler then prints the stacks.
 """
 _FRAME = re2.compile(r'\s+File ".*", line \d+')
+_LOGGING_ERROR = "--- Logging error ---"
+_OF_A_LOGGING_ERROR = ("Call stack:", "    ", "Message: ", "Arguments: ")
+"""The beginnings of lines with which Python's ``logging`` says, after a traceback, what it could not log.
+
+The last one ends the block.
+"""
 
 
 def without_tracebacks(events: Sequence[Event]) -> Iterator[tuple[int, Event]]:
-    """Yield all events with their indexes, without the lines of tracebacks, which are not the program's own."""
+    """Yield all events with their indexes, without the lines of tracebacks, which are not the program's own.
+
+    Lines of ``logging`` about a message that it could not log are left out as well.
+    """
     inside: dict[str, bool] = {}
+    failed_to_log: set[str] = set()
     for place, event in enumerate(events):
         if event.kind == "output":
             stream, line = _stream_and_line(event)
@@ -163,6 +173,12 @@ def without_tracebacks(events: Sequence[Event]) -> Iterator[tuple[int, Event]]:
                 continue
             if inside.get(stream) or line.startswith(_TRACEBACK):
                 inside[stream] = line.startswith(("Traceback", " ", "\t")) or not line
+                continue
+            if line.startswith(_LOGGING_ERROR):
+                failed_to_log.add(stream)
+            if stream in failed_to_log and line.startswith(_OF_A_LOGGING_ERROR):
+                if line.startswith(_OF_A_LOGGING_ERROR[-1]):
+                    failed_to_log.remove(stream)
                 continue
         yield place, event
 

@@ -3,6 +3,9 @@
 An exercise declares its outcomes, such as ``REJECTED = Outcome("rejected")``, and its task names the same words. One
 rule holds for all of them. An outcome is reported if, in its run, the program logs, prints, raises or returns a line
 with the word, and if this line, apart from numbers, does not also appear in runs with other outcomes.
+
+A program passes if it says all words in each run, in a line with a word that it draws. One run of each outcome cannot
+tell such a line from ``canceled: True`` beside ``canceled: False``, which is a report.
 """
 
 from __future__ import annotations

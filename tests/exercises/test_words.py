@@ -41,6 +41,24 @@ def test_what_ros_itself_says_is_not_the_subjects_word(event: Event, words: list
     assert Part("part", {}, [event]).said() == words
 
 
+def test_what_logging_says_of_a_line_that_it_could_not_log_is_not_the_subjects_word() -> None:
+    failed = (
+        "--- Logging error ---",
+        "Traceback (most recent call last):",
+        '  File "/usr/lib/python3.12/logging/__init__.py", line 1110, in emit',
+        "    msg = self.format(record)",
+        "TypeError: not all arguments converted during string formatting",
+        "Call stack:",
+        '  File "mine.py", line 9, in <module>',
+        "    main()",
+        "Message: 'I heard: a text'",
+        "Arguments: ('listener',)",
+    )
+    own = ("Message: my own", "I heard: a text", "Arguments: my own")
+    part = Part("run", {}, [output(line) for line in (own[0], *failed, *own[1:])])
+    assert [line for line in part.said() if line != failed[0]] == list(own)
+
+
 def test_lines_of_one_stream_may_come_between_those_of_the_other() -> None:
     lines = [
         ("stderr", "Traceback (most recent call last):"),
