@@ -16,8 +16,10 @@ from autograder import exercises
 from autograder.authoring.answer_tables import KINDS
 from autograder.authoring.answers import answers, folder_of
 
+ROOT = Path(__file__).parents[1]
 NOTEBOOKS = Path(__file__).parent / "submissions" / "notebooks"
-MISTAKES = Path(__file__).parents[1] / "docs" / "mistakes.md"
+MISTAKES = ROOT / "docs" / "mistakes.md"
+"""Written by hand: its sections, tables and order are for readers, and a key may have several recognizers."""
 FOLDERS = [folder_of(exercise_id) for exercise_id in exercises.all_ids()]
 CELL = re.compile(r"^# %% (solution \w+|extra)$", re.MULTILINE)
 PROGRAMS = list(answers())
@@ -103,7 +105,15 @@ def test_what_fails_has_a_diagnosis_and_what_passes_has_none() -> None:
 def test_every_diagnosis_is_explained_to_students() -> None:
     used = {key for answer in PROGRAMS for key in answer.diagnoses}
     used |= {key for answer in IN_NOTEBOOKS for key in answer.keys}
+    used |= {mistake.key for one in exercises.all_ids() for mistake in exercises.get(one).mistakes}
     assert used - explained() == set()
+
+
+def test_every_explained_diagnosis_is_one_that_a_card_can_have() -> None:
+    files = [*(ROOT / "autograder").rglob("*.py"), *(ROOT / "solutions").glob("*/*/*.py")]
+    key = re.compile(r'(?:"|^def )(\w+)(?:"|\()', re.MULTILINE)
+    written = {found for file in files for found in key.findall(file.read_text(encoding="utf-8"))}
+    assert explained() - written == set()
 
 
 def test_a_wrong_program_is_named_after_its_diagnosis() -> None:
