@@ -47,6 +47,17 @@ SENT = values("sent")
 """Returns the contents of the messages that the judge published."""
 
 
+def got_through(seen: Part, expected: Part, *kinds: str) -> bool:
+    """True if the subject was given as much as the reference solution: otherwise it ended or hung on its way.
+
+    Args:
+        seen: The record of the subject.
+        expected: The record of the reference solution.
+        kinds: The kinds of events in which it is given something, such as ``"sent"`` and ``"asked"``.
+    """
+    return all(len(seen.of(kind)) >= len(expected.of(kind)) for kind in kinds)
+
+
 class Given(NamedTuple):
     """An input of the subject: its age in seconds of the subject's time, its :func:`value`, and its name."""
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from autograder.kit.draft import Draft
 from autograder.kit.model import Finding
 from autograder.kit.recipes.own_scenario import OwnScenario
-from autograder.kit.rules import in_words, same
+from autograder.kit.rules import got_through, in_words, same
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Part
@@ -90,8 +90,7 @@ class Declared:
         self._judges(name, words)
 
     def _got_through(self, seen: Part, expected: Part) -> bool:
-        """Return True if the subject received as many inputs as the reference solution."""
-        return len(seen.of(self._given)) >= len(expected.of(self._given))
+        return got_through(seen, expected, self._given)
 
     def _judges(self, name: str, words: str) -> None:
         if words:
