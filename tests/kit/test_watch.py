@@ -74,6 +74,8 @@ def judged(part: Part) -> tuple[set[str], str | None]:
         ([(1.5, "Lost"), (2.0, "Back"), (3.1, "Lost")], {"lost", "back", "once"}, "never_told"),
         ([(2.0, "lost"), (2.0, "back")], {"lost"}, "only_in_answer"),
         ([(1.5, "lost"), (2.0, "back"), (3.5, "lost")], {"lost"}, "told_too_late"),
+        ([(3.1, "lost")], {"lost", "back"}, "never_told"),
+        ([(1.5, "lost"), (2.0, "back")], {"lost"}, "told_too_late"),
         ([(1.2, "lost"), (2.0, "back"), (3.0, "lost")], {"lost", "once"}, "told_untruly"),
         ([(-0.5, "lost"), *USUAL], {"once"}, "too_early"),
         ([(0.0, "back"), *USUAL], {"once"}, "first"),

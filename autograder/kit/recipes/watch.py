@@ -61,7 +61,8 @@ class Watch(Declared):
             nothing is said.
         gives: The messages, each with the seconds until the next one or the end. A dictionary is a whole message,
             anything else its field ``data``. In real time these seconds grow on a busy machine: choose them at least
-            a quarter of a second off every limit.
+            a quarter of a second off every limit. A node that looks only once a second is late at some change if
+            changes are due in different thirds of a second.
         within: Seconds in which a change must be said; the task states them.
         waits: Seconds of wall time before the first message, in which nothing may be said.
         field: The path of the field of a message that has the state.
@@ -190,7 +191,7 @@ class Watch(Declared):
         yield (
             "told_too_late",
             self._too_late,
-            "Your node says {} late.",
+            "Your node says {}.",
             "Count the time from the last message on, and look often: let a timer call every 0.1 s, or reset it with "
             "each message.",
             False,
@@ -279,10 +280,12 @@ class Watch(Declared):
         return f"{never}, but {in_words(told[:6])}" if told and never is not None else ""
 
     def _too_late(self, seen: Part) -> str:
-        """Return what was said too late, and by how much."""
+        """Return what was said too late, and by how much, or was missed; nothing if nothing was said at all."""
         spans, _ = self._matched(seen, self._state)
-        told = [(span.state, span.said - span.begin) for span in spans if span.said is not None]
-        return next((f"{one} {after:.1f} s" for one, after in told if after > self._late(seen)), "")
+        after = [(span.state, span.said - span.begin) for span in spans if span.said is not None]
+        late = [f"{state} {seconds:.1f} s late" for state, seconds in after if seconds > self._late(seen)]
+        missed = [f"{span.state} too late, or not at all" for span in spans if not self._in_time(span, seen)]
+        return next(iter([*late, *missed] if after else []), "")
 
     def _untrue(self, seen: Part) -> str:
         """Return what was said while another state held."""

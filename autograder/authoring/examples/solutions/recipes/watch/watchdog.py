@@ -11,12 +11,15 @@ def state(beats: Sequence[Given], limit: float = 1.0) -> object:
     return "lost" if beats and beats[-1].age >= limit else "back"
 
 
+SECONDS = (0.3, 0.75, 0.45, 1.65, 0.4, 0.57, 2.95, 0.42, 0.25, 2.3)
+"""Until the next heartbeat. The heartbeat is lost three times, each time in another third of a second."""
+
 task = Watch(
     "watch.watchdog",
     "A watch · The watchdog",
     "Say once when the heartbeat is lost, and once when it is back.",
     state=state,
-    gives=[({}, seconds) for seconds in (0.3, 0.75, 0.45, 1.65, 0.6, 0.75, 2.95, 0.45, 0.3, 2.3)],
+    gives=[({}, seconds) for seconds in SECONDS],
     within=0.3,
     waits=1.5,
 )
