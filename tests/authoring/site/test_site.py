@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import gzip
 import re
 import subprocess
+from functools import cache
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -26,6 +28,7 @@ ROOT = Path(__file__).resolve().parents[3]
 ELSEWHERE = re.compile(
     r"""<(?:script|img|iframe|source)\b[^>]*\bsrc=["'](?:https?:)?//|<link\b(?=[^>]*stylesheet|[^>]*preload)[^>]*href=["'](?:https?:)?//"""
 )
+LOADED = re.compile(r'(?:src|href)="([^"#?]+\.(?:js|css|png|gif|svg))\b')
 
 
 @pytest.fixture(scope="module", params=EDITIONS)
@@ -51,6 +54,30 @@ def test_every_lab_has_a_page_and_every_page_is_small_and_loads_nothing(book: tu
     } <= names
     assert not [page.name for page in pages if page.stat().st_size > LARGEST]
     assert not [page.name for page in pages if ELSEWHERE.search(page.read_text(encoding="utf-8"))]
+
+
+def test_a_page_with_all_that_it_loads_is_small_for_a_phone(book: tuple[str, Path]) -> None:
+    """As a web server sends it: the film of README is half of the largest page."""
+
+    @cache
+    def sent(file: Path) -> int:
+        return len(gzip.compress(file.read_bytes()))
+
+    sizes = {}
+    for page in book[1].rglob("*.html"):
+        files = {(page.parent / name).resolve() for name in LOADED.findall(page.read_text(encoding="utf-8"))}
+        sizes[page.name] = sent(page) + sum(map(sent, files))
+    assert max(sizes.values()) < LARGEST, sizes
+    icons = (book[1] / "_static/scripts/fontawesome.js").read_text(encoding="utf-8")
+    assert {
+        name
+        for name in ("magnifying-glass", "bars", "xmark", "rocket")
+        if f'{name}":[' in icons or f"{name}:[" in icons
+    } == {
+        "magnifying-glass",
+        "bars",
+        "xmark",
+    }
 
 
 def test_a_table_that_is_wider_than_a_phone_is_moved_by_the_keyboard(book: tuple[str, Path]) -> None:
