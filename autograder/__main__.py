@@ -12,7 +12,7 @@ from pathlib import Path
 import re2
 
 from autograder import course
-from environment.installation import COMMAND, PACKAGE
+from environment.installation import COMMAND, PACKAGE, installing
 from environment.python_child import SAFE_PATH
 
 TERMINATED = 143
@@ -49,7 +49,7 @@ def why_missing(error: ImportError) -> str:
     if top == "autograder" and not Path(__file__).with_name("grading").is_dir():
         return "this is the students' part of the course: that command is not in it"
     if top == "rclpy":
-        return f"ROS 2 was not found: source a Jazzy, or type: pip install '{PACKAGE}[ros]'"
+        return f"ROS 2 was not found: source a Jazzy, or type: {installing('ros')}"
     with contextlib.suppress(metadata.PackageNotFoundError):
         for line in metadata.requires(PACKAGE) or ():
             name, _, marker = line.partition(";")

@@ -50,15 +50,15 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """An environment with the wheel and ROS, and no notebooks."""
+    """An environment with the wheel alone: no ROS, no notebooks."""
     folder = tmp_path_factory.mktemp("empty")
     subprocess.run([UV, "venv", "--python", sys.executable, folder / "venv"], check=True, capture_output=True)
-    add(folder, wheel, "ros")
+    add(folder, wheel)
     return folder
 
 
-def add(folder: Path, wheel: Path, extra: str) -> None:
-    """Install the wheel with an extra, with the versions of the locks."""
+def add(folder: Path, wheel: Path, extra: str = "") -> None:
+    """Install the wheel, or what an extra of it adds, with the versions of the locks."""
     locks = ROOT / "environment" / "requirements"
     constraints = folder / "constraints.txt"
     constraints.write_text(
@@ -69,7 +69,16 @@ def add(folder: Path, wheel: Path, extra: str) -> None:
             if "==" in line and not line.startswith((" ", "#"))
         )
     )
-    command = [UV, "pip", "install", "--python", folder / "venv", "-c", constraints, f"{wheel}[{extra}]"]
+    command = [
+        UV,
+        "pip",
+        "install",
+        "--python",
+        folder / "venv",
+        "-c",
+        constraints,
+        f"{wheel}[{extra}]" if extra else wheel,
+    ]
     done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
 
@@ -97,6 +106,16 @@ def test_an_exercise_is_made_tried_checked_and_a_class_of_two_is_graded(installe
     assert "no course was found here" in run(autograder, "check", cwd=installed, code=2)
     (mine / "solutions").mkdir(parents=True)
     run(autograder, "new-exercise", "lab_1_1.battery", "--chapter", "01_first", cwd=mine)
+    for words in (
+        ("try-exercise", "lab_1_1.battery"),
+        ("check", "lab_1_1.battery", "--", "python3", "my.py"),
+    ):
+        said = run(autograder, *words, cwd=mine, code=2)
+        assert said.count("\n") == 1
+        assert (
+            "ROS 2 was not found: source a Jazzy, or type: pip install 'ros2-course-autograder[ros]'" in said
+        )
+    add(installed, wheel, "ros")
     assert "6 answers, none not as expected" in run(autograder, "try-exercise", "lab_1_1.battery", cwd=mine)
     program = mine / "solutions/01_first/lab_1_1/battery.answers/right/usual.py"
     inside = mine / "solutions" / "01_first"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from autograder.cli.results import NO, fail
+from autograder.cli.results import NO, fail, need_ros
 from environment.installation import COMMAND
 
 
@@ -38,6 +38,7 @@ def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) 
     from autograder.authoring.execution_plan import NothingToExecuteError
     from autograder.masters.master_errors import MasterError
 
+    need_ros()
     try:
         sys.exit(execute_command(course.root(), only=notebooks, jobs=jobs, reports=reports))
     except (NothingToExecuteError, MasterError) as error:
@@ -51,6 +52,7 @@ def record(exercises: tuple[str, ...], only_check: bool) -> None:
     """Record what the reference solutions do on the wire. The grader compares answers with it."""
     from autograder.authoring import recording
 
+    need_ros()
     try:
         changed = recording.record(exercises, only_check=only_check, tell=click.echo)
     except recording.CannotRecord as error:
@@ -114,6 +116,7 @@ def try_exercise(
     from autograder.authoring.answer_tables import BadTable
     from autograder.masters.master_errors import MasterError
 
+    need_ros()
     try:
         fits = trying.try_exercise(
             exercise,

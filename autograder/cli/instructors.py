@@ -8,7 +8,7 @@ from zoneinfo import ZoneInfo
 
 import click
 
-from autograder.cli.results import INTERRUPTED, as_json_option, fail, grading_errors, print_json
+from autograder.cli.results import INTERRUPTED, as_json_option, fail, grading_errors, need_ros, print_json
 from environment.installation import COMMAND
 
 class_folder = click.argument("folder", type=click.Path(path_type=Path))
@@ -205,6 +205,8 @@ def grade(
 
     if scheduler is not None and jobs is not None:
         fail(f"--jobs is for this machine; each worker of a cluster has its own: {COMMAND} worker --jobs")
+    if scheduler is None:
+        need_ros()
     if unsafe_no_sandbox:
         sandboxing.switch_off(folder)
     try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from contextlib import contextmanager
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
@@ -32,6 +33,16 @@ def fail(message: str) -> NoReturn:
     """End with a clear error and exit code 2."""
     click.echo(f"autograder: {message}", err=True)
     sys.exit(CANNOT)
+
+
+def need_ros() -> None:
+    """Stop a command before it starts a judge, whose process would only fail.
+
+    Raises:
+        ModuleNotFoundError: ROS cannot be imported. ``autograder/__main__.py`` then says what to type.
+    """
+    if find_spec("rclpy") is None:
+        raise ModuleNotFoundError("No module named 'rclpy'", name="rclpy")
 
 
 @contextmanager

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from autograder.cli import appeals
-from autograder.cli.results import CANNOT, NO, as_json_option, fail, print_json
+from autograder.cli.results import CANNOT, NO, as_json_option, fail, need_ros, print_json
 from environment.installation import COMMAND
 
 if TYPE_CHECKING:
@@ -78,6 +78,7 @@ def check(
         )
     if mcap is not None:
         appeals.check_name(mcap)
+    need_ros()
     from autograder.judge.subjects.command import CommandNotFound, check_and_keep
     from autograder.standard_output import stray_lines_on_stderr
 
