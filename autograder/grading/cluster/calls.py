@@ -1,6 +1,7 @@
-"""Functions that a Dask worker calls by name: bytes in, bytes out.
+"""Functions that a Dask worker calls by name. Their arguments and results are bytes.
 
-It has no imports at the top, because the client process also imports it, and should load little else.
+This module has no imports at the top, because the client process also imports it, and should load as little as
+possible.
 """
 
 from __future__ import annotations
@@ -10,7 +11,8 @@ def offer_as_json(slots: int) -> bytes:
     """Return the worker's offer, as JSON of an :class:`autograder.grading.running.orders.Offer`.
 
     Args:
-        slots: The number of notebooks at once: the threads that Dask gives the worker.
+        slots: The number of notebooks that the worker executes at the same time, which is the number of its Dask
+            threads.
     """
     import msgspec
 

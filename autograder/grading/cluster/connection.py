@@ -33,7 +33,7 @@ def check_dask() -> None:
 
 
 def check_address(address: str) -> None:
-    """Check that a text can be the address of a scheduler.
+    """Check that a text can be the address of a Dask scheduler.
 
     Raises:
         GradingError: The text is not such an address.
@@ -49,17 +49,19 @@ def check_address(address: str) -> None:
 def connected(
     address: str, *, judge: str, boxed: bool, tell: Callable[[str], None] = lambda _: None
 ) -> Iterator[Dispatcher]:
-    """Give access to the acceptable workers of a cluster. Leaving the context cancels queued tasks, within seconds.
+    """Give access to the workers of a cluster that can be given work.
+
+    At the end of the block, queued tasks are canceled within seconds.
 
     Args:
         address: The scheduler's address, such as ``tcp://host:8786`` or ``tls://host:8786``.
         judge: The class that makes a judge, as ``module:class``.
-        boxed: True if tasks are executed in boxes; then a worker that cannot make boxes is refused.
+        boxed: True to execute tasks in boxes. Then a worker that cannot make boxes is rejected.
         tell: Called with a sentence for the instructor.
 
     Raises:
         GradingError: Dask is not installed.
-        SchedulerGone: No scheduler answers at that address.
+        SchedulerGone: No scheduler answers at this address.
         NoWorkers: The scheduler has no worker that can be given work.
     """
     with ClientLink(address) as link:

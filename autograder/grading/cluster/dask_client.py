@@ -1,10 +1,12 @@
-"""A process that talks to a Dask cluster for the grader, and to the grader in lines of JSON on its standard input.
+"""A process that communicates with a Dask cluster for the grader.
 
-There are four reasons for a separate process. Dask's client unpickles workers' messages, and in this process nothing in
-a pickle can run (see inert_pickle.py). A limit on memory stops an answer that is too large. The grader stays free of
-Dask's threads and event loop. And if the process is killed, the scheduler cancels its queued tasks.
+It exchanges lines of JSON with the grader on its standard input, which is a socket.
 
-The process knows nothing about the class: it passes orders to the workers that the grader names, and reports answers
+There are four reasons for a separate process. Dask's client unpickles messages from workers, and in this process
+nothing in a pickle can run (see inert_pickle.py). A memory limit stops an answer that is too large. The grader stays
+free of Dask's threads and event loop. And if this process is killed, the scheduler cancels the tasks that it queued.
+
+The process knows nothing about the class. It passes orders to the workers that the grader names, and reports answers
 and which workers come and go.
 """
 
@@ -42,16 +44,16 @@ from autograder.grading.running.orders import (  # noqa: E402
 from autograder.messages.lines import Hangup, Lines  # noqa: E402
 
 _MEMORY = 3 << 30
-"""Bytes of address space. 0.2 GB of them are Python and Dask."""
+"""The limit of address space in bytes. Python and Dask take 0.2 GB of it."""
 _CONNECT_SECONDS = 10
 _OFFER_SECONDS = 60.0
-"""Seconds for a worker's offer; its first try to make a box takes a second on a busy machine."""
+"""Time limit in seconds for a worker's offer. Its first attempt to make a box takes a second on a busy machine."""
 _LINK_SECONDS = 5.0
-"""Seconds of silence after which the connection to the scheduler is checked."""
+"""After this many seconds of silence, the connection to the scheduler is checked."""
 
 
 def main(address: str) -> None:
-    """Serve until the grader closes the connection or the scheduler is gone.
+    """Serve until the grader closes the connection or the scheduler ends.
 
     Args:
         address: The scheduler's address, such as ``tcp://host:8786``.
@@ -67,7 +69,7 @@ async def _serve(address: str, grader: Lines) -> None:
         client = await Client(
             address,
             asynchronous=True,
-            deserializers=["msgpack"],  # asks workers for plain bytes in the first place
+            deserializers=["msgpack"],  # so that workers send plain bytes in the first place
             timeout=_CONNECT_SECONDS,
             name="autograder",
         )
@@ -82,7 +84,7 @@ async def _serve(address: str, grader: Lines) -> None:
     with contextlib.suppress(Exception):
         client.unsubscribe_topic("all")
         await client.close(timeout=1)
-    grader.close()  # ends the thread that listens
+    grader.close()  # this ends the thread that listens to the grader
 
 
 class _Carrier:
@@ -109,7 +111,7 @@ class _Carrier:
                 self._drop(command.number)
 
     async def watch_workers(self) -> None:
-        """Report workers that come and go. The scheduler's events only tell when to check."""
+        """Report workers that come and go. The scheduler's events only trigger the check."""
         self._client.subscribe_topic("all", self._on_event)
         try:
             await asyncio.gather(*(self._introduce(*who) for who in await self._look()))
@@ -124,7 +126,7 @@ class _Carrier:
             _tell(self._grader, Broken(f"the scheduler is gone: {_first_line(error)}"))
 
     async def _look(self) -> list[tuple[str, str, int]]:
-        """Report workers that left. Return address, name and threads of new ones."""
+        """Report workers that have left. Return address, name and number of threads of each new one."""
         known = (await self._client.scheduler.identity())["workers"]
         for address in self._workers - known.keys():
             for number, worker_address in list(self._given.items()):
@@ -145,7 +147,7 @@ class _Carrier:
 
     async def _introduce(self, address: str, name: str, threads: int) -> None:
         try:
-            # Outside the worker's threads, so that a busy worker can answer.
+            # This does not use the worker's threads, so a busy worker can answer as well.
             asking = self._client.run(calls.offer_as_json, threads, workers=[address])
             said = (await asyncio.wait_for(asking, _OFFER_SECONDS))[address]
         except TimeoutError:
@@ -185,13 +187,16 @@ class _Carrier:
         await wait([future])
         if future.status == "error":
             return Failed(number, _first_line(await future.exception()))
-        # The size that the worker reported to the scheduler: an answer that is too large is not fetched.
+        # This is the size that the worker reported to the scheduler. An answer that is too large is not fetched.
         size = (await self._client.nbytes(keys=[key], summary=False)).get(key, 0)
         if size > 2 * LARGEST_ANSWER:
             return Failed(number, f"its answer has {size} bytes", forged=True)
         try:
             data = await future
-        except (TypeError, MemoryError) as error:  # the answer is not plain bytes, or claims a wrong size
+        except (
+            TypeError,
+            MemoryError,
+        ) as error:  # the answer is not plain bytes, or its declared size is wrong
             return Failed(number, _first_line(error), forged=True)
         if not isinstance(data, bytes):
             return Failed(number, "its answer is not bytes", forged=True)
@@ -215,7 +220,7 @@ def _first_line(error: BaseException) -> str:
 
 
 def _tell(grader: Lines, news: News) -> None:
-    with contextlib.suppress(Hangup):  # the grader is gone, and this process will end
+    with contextlib.suppress(Hangup):  # the grader is gone, and this process is about to end
         grader.say_json(msgspec.json.encode(news))
 
 

@@ -1,6 +1,6 @@
-"""Execute orders in a Dask worker, as on the instructor's machine.
+"""Executes orders in a Dask worker, as on the instructor's machine.
 
-A worker gets one task at a time and nothing else: no class, no secret, no name of a student.
+A worker gets one task at a time and nothing else: not the class, no secret, and not the student's name.
 """
 
 from __future__ import annotations
@@ -36,15 +36,15 @@ def execute(data: bytes) -> bytes:
 
 
 class _Watch(WorkerPlugin):
-    """Ends what a canceled order runs, because Dask itself lets it go on."""
+    """Ends the processes of a canceled order, because Dask itself would let them go on."""
 
     def transition(self, key: Any, start: str, finish: str, **_: Any) -> None:
-        """End an order that was canceled; Dask calls this when a task of the worker changes its state."""
+        """End an order that was canceled. Dask calls this when a task of the worker changes its state."""
         if start == "executing" and finish == "released" and _processes is not None:
             _processes.cancel(key)
 
     def teardown(self, worker: Worker) -> None:  # noqa: ARG002  (Dask's signature)
-        """End every process and what it runs; Dask calls this when the worker ends."""
+        """End every worker process and what it runs. Dask calls this when the worker ends."""
         if _processes is not None:
             _processes.stop()
         if _scratch is not None:

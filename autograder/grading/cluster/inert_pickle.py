@@ -1,8 +1,8 @@
-"""A replacement for ``pickle.loads`` that makes plain values and inert exceptions, and runs nothing.
+"""A replacement for ``pickle.loads`` that makes only plain values and inert exceptions, and runs no code.
 
-Dask's client unpickles more than results: the type of each result, errors, warnings. The writer of a pickle
-chooses which function is called with which arguments. :func:`install` prevents that for the whole process; use it only
-in a process that does nothing but communicate with a cluster.
+Dask's client unpickles more than results: also the type of each result, errors and warnings. The writer of a pickle
+chooses which function is called with which arguments. :func:`install` prevents such calls in the whole process. Use
+it only in a process that does nothing but communicate with a cluster.
 
 The method is described in the documentation of :mod:`pickle` under "Restricting Globals".
 """
@@ -22,7 +22,7 @@ _PLAIN |= {"set", "str", "tuple"}
 
 
 class Inert(Exception):
-    """A replacement for an object whose class is not loaded. The replacement's class has the same name."""
+    """A stand-in for an object whose class is not loaded. The class of the stand-in has the same name."""
 
     def __call__(self, *_: Any, **__: Any) -> Any:
         """Do nothing."""
@@ -31,10 +31,10 @@ class Inert(Exception):
 
 class _InertUnpickler(pickle.Unpickler):
     def find_class(self, module: str, name: str) -> Any:
-        """Return a plain type, or a harmless replacement with that name; nothing is imported."""
+        """Return a plain type, or an inert stand-in with this name. Nothing is imported."""
         if module == "builtins" and name in _PLAIN:
             return getattr(builtins, name)
-        # tblib, which Dask uses, writes errors under these two names.
+        # tblib, which Dask uses, stores errors under these two names.
         if name == "unpickle_traceback":
             return _no_traceback
         if name.startswith("unpickle_exception"):
@@ -42,21 +42,21 @@ class _InertUnpickler(pickle.Unpickler):
         return type(name, (Inert,), {"__module__": module})
 
     def persistent_load(self, _: Any) -> Any:
-        """Return None: no object refers to one outside the pickle."""
+        """Return None: references to objects outside the pickle are not supported."""
         return None
 
 
 def loads(data: Any, /, *, buffers: Iterable[Any] | None = None, **_: Any) -> Any:
-    """Read a pickle without running anything; takes the arguments of :func:`pickle.loads`.
+    """Read a pickle without running anything from it. The arguments are those of :func:`pickle.loads`.
 
     Raises:
-        Exception: The data is not a pickle, or needs more than plain values and inert objects.
+        Exception: The data is not a pickle, or needs more than plain values and inert stand-ins.
     """
     return _InertUnpickler(io.BytesIO(data), buffers=buffers).load()
 
 
 def install() -> None:
-    """Replace pickle's own functions in this process; call it before other modules import them."""
+    """Replace pickle's own functions in this process. Call this before other modules import them."""
     replaced: Any = pickle
     replaced.loads = loads
     replaced.load = lambda file, **options: loads(file.read(), **options)

@@ -24,7 +24,7 @@ _GOODBYE_SECONDS = 1.5
 
 
 class ClientLink:
-    """A running client process; leaving the context ends it.
+    """A running client process. At the end of the ``with`` block, the process is ended.
 
     Args:
         address: The scheduler's address.
@@ -38,13 +38,13 @@ class ClientLink:
         self._log = unnamed_file()
         own, its_own = socket.socketpair()
         self._lines = Lines(own, sys.maxsize)
-        # In the folder of this process: the settings of Dask may name certificates by relative paths.
+        # It starts in the folder of this process, because Dask's settings may name certificates by relative paths.
         client = python_child("-m", "autograder.grading.cluster.dask_client", self._address, folder=None)
         self._client = client.start(
             stdin=its_own.fileno(),
             stdout=self._log,
             stderr=self._log,
-            start_new_session=True,  # Ctrl-C goes to the grader, which then ends the client process
+            start_new_session=True,  # Ctrl-C reaches only the grader, which then ends the client process
         )
         its_own.close()
         threading.Thread(target=self._listen, daemon=True).start()
@@ -53,7 +53,7 @@ class ClientLink:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End the client process, at once after an error. The scheduler then cancels its tasks."""
+        """End the client process; after an error, at once. The scheduler then cancels its tasks."""
         if kind is not None:
             self._client.kill()
         self._lines.finish()
@@ -62,15 +62,15 @@ class ClientLink:
         self._log.close()
 
     def say(self, command: Command) -> None:
-        """Send a command to the client process. If it is gone, :meth:`hear` reports it."""
+        """Send a command to the client process. If the process has ended, :meth:`hear` reports that."""
         with contextlib.suppress(Hangup):
             self._lines.say_json(msgspec.json.encode(command))
 
     def hear(self, within: float | None) -> News | None:
-        """Return the next message; None if none came in time.
+        """Return the next message; None if no message came in time.
 
         Args:
-            within: Seconds to wait; None for no limit.
+            within: The number of seconds to wait; None to wait without limit.
         """
         try:
             return self._news.get(timeout=None if within is None else max(0.0, within))
@@ -78,7 +78,7 @@ class ClientLink:
             return None
 
     def _listen(self) -> None:
-        """Read the client's messages all the time: a client that waits for us would not read our commands."""
+        """Read the client's messages continuously: a client that waits for us to read would not read our commands."""
         try:
             while True:
                 self._news.put(msgspec.json.decode(self._lines.hear_json(), type=News))

@@ -1,4 +1,4 @@
-"""``autograder worker``: starts a Dask worker on this machine, after checking what the machine can do."""
+"""``autograder worker``: checks what this machine can do, then starts a Dask worker on it."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 _CONNECT_SECONDS = 30
 _GOODBYE_SECONDS = 2.0
 
-# Dask watches only the memory of its own process, but submissions run in other processes with limits of their own.
+# Dask watches only the memory of its own process, but submissions run in other processes, with their own limits.
 _SETTINGS = {
     "distributed.worker.profile.enabled": False,
     "distributed.admin.system-monitor.gil.enabled": False,
@@ -35,10 +35,10 @@ _SETTINGS = {
 
 
 def offer(slots: int) -> Offer:
-    """Return this machine's offer to a cluster: its version of the course, and whether it can execute in boxes.
+    """Return this machine's offer to a cluster: the version of its course, and whether it can execute in boxes.
 
     Args:
-        slots: The number of notebooks at once.
+        slots: The number of notebooks to execute at the same time.
     """
     return Offer(course_version(), slots, why_impossible())
 
@@ -46,13 +46,13 @@ def offer(slots: int) -> Offer:
 def start_worker(
     address: str | None, *, jobs: int | None, name: str | None, sandbox: bool, tell: Callable[[str], None]
 ) -> None:
-    """Work for a scheduler until it ends or this process is asked to end.
+    """Work for a scheduler until the scheduler ends or this process is asked to end.
 
     Args:
-        address: The scheduler's address; by default Dask's own setting, which its deployments set.
-        jobs: The number of notebooks at once; as many as there are processors by default.
-        name: The worker's name in messages; Dask's setting, or host and process, by default.
-        sandbox: True to start only if boxes are possible.
+        address: The scheduler's address; by default the one in Dask's own settings.
+        jobs: The number of notebooks to execute at the same time; by default the number of processors.
+        name: The worker's name in messages; by default from Dask's settings, or else made of host and process.
+        sandbox: True to start only if boxes are possible on this machine.
         tell: Called with a line about the offer.
 
     Raises:

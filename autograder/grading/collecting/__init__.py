@@ -1,1 +1,1 @@
-"""From the download of a learning management system to notebooks in ``submitted``."""
+"""From the download of a learning management system (LMS) to notebooks in ``submitted``."""

@@ -1,6 +1,6 @@
-"""Brings ``submitted`` into the decided state.
+"""Makes ``submitted`` contain exactly the files that the decisions say.
 
-Only files that ``collect`` itself wrote are ever replaced or removed.
+It never replaces or removes files other than those that ``collect`` itself wrote.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Submitted:
     """The folder ``submitted`` of a class.
 
     Args:
-        directory: The class, locked by this process.
+        directory: The class, which this process has locked.
         inbox: The inbox of the class.
     """
 
@@ -45,7 +45,7 @@ class Submitted:
         return self._directory.path / "submitted" / student / assignment / f"{notebook}{SUFFIX}"
 
     def content(self, place: Place) -> str:
-        """Return the hash of the bytes at a place; empty if there is no readable file."""
+        """Return the hash of the file at a place; empty if there is no readable file."""
         try:
             data = _existing_file(self.path(place))
         except UnreadableSubmission:
@@ -53,7 +53,7 @@ class Submitted:
         return hashlib.sha256(data).hexdigest() if data is not None else ""
 
     def take_in(self) -> None:
-        """Put into the inbox what a person has put into ``submitted``.
+        """Put into the inbox what a person has put directly into ``submitted``.
 
         Raises:
             OSError: A file could not be written.
@@ -77,10 +77,11 @@ class Submitted:
     def bring(
         self, counts: Mapping[Place, Line], decisions: Iterable[Decision]
     ) -> Iterator[tuple[Place, State, str]]:
-        """Put each notebook that counts into its place, and remove those that no longer count.
+        """Put each notebook that counts at its place, and remove notebooks that no longer count.
 
         Returns:
-            The places with ``PLACED``, ``UNCHANGED``, ``EARLIER`` (removed) or ``NOT_PLACED``, and the reason.
+            For each changed or checked place, a state and the reason. The state is ``PLACED``, ``UNCHANGED``,
+            ``EARLIER`` (removed) or ``NOT_PLACED``.
 
         Raises:
             OSError: A file could not be written.
@@ -140,7 +141,7 @@ class Submitted:
             if line.content != now[notebook].content
         )
         history = History(now, earlier)
-        # The record is written first: if this is interrupted, `collect` still recognizes the files as its own.
+        # The record is written first. If this is interrupted, `collect` still recognizes the files as its own.
         passing = {place[2]: content for place, _, content in changes if content}
         if changes:
             self._records.put(assignment, student, replace(history, replaced=passing))
@@ -176,7 +177,7 @@ class Submitted:
 
 
 def _record(line: Line) -> Collected:
-    """Return the record of a notebook."""
+    """Return the record of a notebook that was placed."""
     return Collected(
         line.notebook,
         line.content,
@@ -192,10 +193,10 @@ def _record(line: Line) -> Collected:
 
 
 def _existing_file(path: Path) -> bytes | None:
-    """Return the content of the file at a notebook's place; None if there is none.
+    """Return the content of the file at a notebook's place; None if there is no file.
 
     Raises:
-        UnreadableSubmission: The place is occupied by something other than a file.
+        UnreadableSubmission: Something other than an ordinary file is at that place.
     """
     for place in (path.parent.parent, path.parent, path):
         if place.is_symlink():

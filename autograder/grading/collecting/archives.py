@@ -1,7 +1,8 @@
-"""The files of zips and folders. Archives are unpacked in a box with limits; here only what comes out of it is read.
+"""The files in zips and folders. An archive is unpacked in a box with limits; this module reads only the box's output.
 
-In a box, :mod:`autograder.grading.collecting.unpack` writes all files of an archive into one file on the disk. Here a
-name is only text, bytes are read up to the limit of a notebook, and whatever cannot be taken has a reason.
+In the box, :mod:`autograder.grading.collecting.unpack` writes all files of an archive into one file on the disk.
+Here, a name is only text, bytes are read up to the size limit of a notebook, and each file that cannot be taken gets
+a reason.
 """
 
 from __future__ import annotations
@@ -33,33 +34,35 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 MOST_FILES = 20_000
-"""The limit of the files in one student's folder of a download. It is counted for each folder, so that a folder with a
-whole repository takes nothing from other students.
+"""The maximum number of files in one student's folder of a download. It is counted per folder, so that a folder with a
+whole repository does not affect other students.
 """
 _DEEPEST = 3
-"""Archives in an archive that a student has handed in, one in the other."""
+"""The maximum nesting of archives: an archive that a student handed in, one inside it, and so on."""
 _DEEPEST_FOLDER = 100
-"""Folders in each other; Python looks into no more than some hundreds."""
+"""The maximum nesting of folders. Python can follow no more than some hundreds."""
 _LIMITS = Limits(processes=20, scratch_bytes=1 << 40)
-"""Limits of the box of one archive. The program in the box sets itself stricter limits before it reads a byte."""
+"""The limits of the box that unpacks one archive. The program in the box sets itself stricter limits before it reads a
+byte.
+"""
 _LEADS_OUT = "its name leads out of the archive"
 _TOO_LONG = f"its name has more than {LONGEST_NAME} characters"
 
 
 class NotTaken(ValueError):
-    """A file or archive cannot be taken; the message says why."""
+    """A file or archive cannot be taken. The message gives the reason."""
 
 
 @dataclass(frozen=True)
 class File:
-    """A file of an archive or folder.
+    """A file in an archive or folder.
 
     Attributes:
-        source: The archive, or the folder that the named folder or file is in.
-        parts: Its path in there, without anything that leads upwards; of what is in an archive that a student has
-            handed in, the path of that archive.
-        read: Reads it, up to the limit of a notebook; raises :class:`NotTaken`.
-        inner: The path within an archive that a student has handed in: the student chose it.
+        source: The archive, or the folder that contains the named folder or file.
+        parts: The path in ``source``, without anything that leads upwards. For a file inside a student's archive, the
+            path of that archive.
+        read: Reads the file, up to the size limit of a notebook. Raises :class:`NotTaken`.
+        inner: The path within the archive that a student has handed in; the student chose this path.
     """
 
     source: Path
@@ -69,17 +72,17 @@ class File:
 
     @property
     def name(self) -> str:
-        """The name of the file itself."""
+        """The name of the file without its path."""
         return (self.source.name, *self.parts, *self.inner)[-1]
 
 
 @dataclass
 class Room:
-    """Limits of unpacking. The defaults hold for all archives of one student in a download together.
+    """Limits on unpacking. The defaults apply to the total of one student's archives in a download.
 
     Attributes:
-        files: The number of files.
-        unpacked: The number of bytes.
+        files: The maximum number of files.
+        unpacked: The maximum number of bytes.
     """
 
     files: int = 5_000
@@ -88,7 +91,7 @@ class Room:
 
 @dataclass(frozen=True)
 class _Unpacked:
-    """A line that the box has written; see :mod:`autograder.grading.collecting.unpack`."""
+    """A line of the box's output. :mod:`autograder.grading.collecting.unpack` describes it."""
 
     names: tuple[str, ...]
     size: int
@@ -96,13 +99,13 @@ class _Unpacked:
 
 
 class Boxes:
-    """Boxes that unpack archives. The first archive makes what they need; what they wrote is there until the end.
+    """Boxes that unpack archives. They are set up for the first archive; what they wrote is kept until the end.
 
     Args:
-        disk: A folder on the disk that has room for what is unpacked.
+        disk: A folder on a disk with enough space for what is unpacked.
 
     Attributes:
-        has_unpacked: Whether there was an archive.
+        has_unpacked: True if there was an archive to unpack.
     """
 
     def __init__(self, disk: Path) -> None:
@@ -121,11 +124,12 @@ class Boxes:
         return self._stack.enter_context(HeldFolder("autograder-unpack-")).path
 
     def files_of(self, source: Path, *, opened: bool = True) -> Iterator[File]:
-        """The files of an archive, of a folder, or the file itself; one that cannot be read says so when it is read.
+        """Yield the files in an archive or folder, or the file itself. An unreadable file raises only when it is read.
 
         Args:
-            source: A file or folder that the instructor named. It may be a link; nothing below it may.
-            opened: Whether an archive is opened here; otherwise it is a file, as in a download.
+            source: A file or folder that the instructor named. It may itself be a link, but links below it are not
+                followed.
+            opened: True to open an archive here; False to treat it as a file, as inside a download.
         """
         counts: Counter[tuple[str, ...]] = Counter()
         levels = 2 + _has_one_folder_around_all(source)
@@ -151,12 +155,12 @@ class Boxes:
             yield File(source.parent, (name_as_text(source.name),), functools.partial(_read_file, source))
 
     def within(self, file: File, data: bytes, room: Room) -> Iterator[File]:
-        """The files of an archive that a student has handed in, those of archives in it, too; read each at once.
+        """Yield the files in a student's archive, also those in archives inside it. Read each at once.
 
         Args:
-            file: The archive.
-            data: Its bytes.
-            room: The limits that are left to the archives of the student; it gets less.
+            file: The archive, as a file of the download.
+            data: The bytes of the archive.
+            room: What is left of the limits for this student's archives. It is reduced.
         """
         path = self._folder / "archive"
         path.write_bytes(data)
@@ -171,7 +175,7 @@ class Boxes:
     def _unpack(
         self, path: Path, room: Room, depth: int, out: IO[bytes]
     ) -> Iterator[tuple[tuple[str, ...], Callable[[], bytes]]]:
-        """Unpack an archive; the names that lead to each file, and what reads it."""
+        """Unpack an archive. Yield, for each file, the names that lead to it and a function that reads it."""
         words = [*map(str, (depth, room.files, room.unpacked, MAX_BYTES))]
         try:
             code = self._run(path.resolve(), words, out)
@@ -190,7 +194,7 @@ class Boxes:
             yield line.names, _refusing(line.reason) if line.reason else read
 
     def _run(self, path: Path, words: list[str], out: IO[bytes]) -> int:
-        """Unpack an archive into a file. Return the exit code, which is negative if a limit ended the program."""
+        """Unpack an archive into a file, in a box. Return the exit code, negative if a limit ended the program."""
         path.open("rb").close()
         program = ("-I", "-S", str(Path(unpack.__file__)))
         self.has_unpacked = True
@@ -202,7 +206,7 @@ class Boxes:
 
 
 def _lines(out: IO[bytes]) -> Iterator[tuple[_Unpacked, int]]:
-    """The lines that a box has written, each with the offset of the bytes behind it."""
+    """Yield the lines that a box has written, each with the offset of the bytes that follow it."""
     place, end = 0, os.fstat(out.fileno()).st_size
     while place < end:
         line, mark, _ = os.pread(out.fileno(), LONGEST_LINE, place).partition(b"\n")
@@ -217,22 +221,22 @@ def _lines(out: IO[bytes]) -> Iterator[tuple[_Unpacked, int]]:
 
 
 def _path(name: str, read: Callable[[], bytes]) -> tuple[tuple[str, ...], Callable[[], bytes]]:
-    """The path that a name in an archive means, and what reads the file: nothing, if it leads out or is too long."""
+    """Return the path that a name in an archive means, and what reads the file; reading a forbidden name fails."""
     parts = tuple(part for part in name.replace("\\", "/").split("/") if part not in ("", "."))
     is_out = not parts or ".." in parts or name.startswith(("/", "\\")) or parts[0].endswith(":")
     if not is_out and len(name) <= LONGEST_NAME:
         return parts, read
-    # The system's own folders in front of it stay what they are.
+    # The folders in front, which the system made, stay unchanged.
     above = itertools.takewhile(lambda part: part != "..", parts[:-1][:2])
     shown = (*(part[:LONGEST_NAME] for part in above), name[:LONGEST_NAME])
     return shown, _refusing(_TOO_LONG if len(name) > LONGEST_NAME else _LEADS_OUT)
 
 
 def _has_one_folder_around_all(source: Path) -> bool:
-    """True of a folder with a single folder in it: an archive is often unpacked into one of its own name."""
+    """Return True if a folder contains only one folder: archives are often unpacked into a folder of their own name."""
     try:
         inside = [path for path in source.iterdir() if not is_left_by_a_program(path.name)]
-    except OSError:  # such as a file
+    except OSError:  # for example because it is a file
         return False
     return len(inside) == 1 and inside[0].is_dir()
 

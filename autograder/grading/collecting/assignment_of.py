@@ -1,4 +1,4 @@
-"""Finds the notebook and the assignment of a file, from its cells or else from its name."""
+"""Finds the notebook and the assignment of a file from its cells, or else from its name."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ _UNDER = "under assignment in collected.csv"
 
 
 class NoTarget(ValueError):
-    """The notebook of a file is unclear, or was not asked for; the message says what to do.
+    """The notebook of a file is unclear, or is not one to collect now. The message says what to do.
 
     Args:
         message: The reason, and what to type.
-        assignment: The assignment that its cells belong to; empty if they do not show it.
-        is_left_out: True if it is not to be collected: the instructor asked for another assignment, or the class has
-            no assignment with its cells.
+        assignment: The assignment to which its cells belong; empty if they do not show it.
+        is_left_out: True if the file is not to be collected, because the instructor asked for another assignment, or
+            because the class has no assignment with its cells.
     """
 
     def __init__(self, message: str, assignment: str = "", *, is_left_out: bool = False) -> None:
@@ -38,24 +38,24 @@ class NoTarget(ValueError):
 
 
 def is_notebook(name: str, data: bytes) -> bool:
-    """True if a file is a notebook, by its name or by its content."""
+    """Return True if a file is a notebook, judged by its name or its content."""
     head = data[:1000].lstrip(b"\xef\xbb\xbf \t\r\n")
     held = head[:1] == b"{" and b'"nbformat"' in data and (b'"cells"' in data or b'"worksheets"' in data)
     return held or name.lower().endswith(SUFFIX)
 
 
 def stem_of(name: str) -> tuple[str, int]:
-    """Return the name of a notebook without what programs add at the end, and the number that they added."""
+    """Return the name of a notebook without the suffix that programs add, and the number in that suffix."""
     end = name.lower().find(SUFFIX)
     return base_and_number(name[:end] if end > 0 else name.rpartition(".")[0] or name)
 
 
 class AssignmentOf:
-    """Knows the notebooks of a class by their names and by their cells.
+    """Finds notebooks of a class by their names and their cells.
 
     Args:
         directory: The class.
-        asked: The assignment that the instructor named for all files; empty to find it from each file.
+        asked: The assignment that the instructor named for all files; empty to find it for each file.
     """
 
     def __init__(self, directory: ClassDirectory, asked: str = "") -> None:
@@ -64,29 +64,29 @@ class AssignmentOf:
 
     @property
     def notes(self) -> list[str]:
-        """A sentence about each source of the class that cannot be read."""
+        """Return a sentence about each source of the class that cannot be read."""
         return self._directory.named_cells.notes
 
     def is_notebook(self, file: str) -> bool:
-        """True if a file of this name is a notebook of the class."""
+        """Return True if a file with this name is a notebook of the class."""
         return stem_of(file)[0].casefold() in self._notebooks
 
     def named(self, name: str) -> str:
-        """Return the assignment in the name of any file, or the one that the instructor named; empty without one."""
+        """Return the assignment that a file's name contains, or that the instructor named; empty if there is none."""
         stem = base_and_number(name.partition(".")[0])[0]
         assignments = {assignment for assignment, _ in self._notebooks.get(stem.casefold(), ())}
         return self._asked or (assignments.pop() if len(assignments) == 1 else "")
 
     def target(self, name: str, data: bytes) -> tuple[Target, bool]:
-        """Return the notebook of a file, and whether the file's name agrees.
+        """Return the notebook to which a file belongs, and whether the file's name agrees.
 
         Args:
             name: The name that the student gave the file.
-            data: The content.
+            data: The content of the file.
 
         Raises:
-            NoTarget: The notebook is unclear; or the cells belong to several notebooks, or to one that differs from the
-                name or the instructor says.
+            NoTarget: The notebook is unclear; or the cells belong to several notebooks, or to one that contradicts
+                the file's name or the instructor.
         """
         named = self._notebooks.get(stem_of(name)[0].casefold(), [])
         cells = _cells(data)
@@ -114,12 +114,13 @@ class AssignmentOf:
         if self._asked and not here:
             here = [(self._asked, one) for one in self._directory.notebooks(self._asked)]
         if len(here) != 1:
-            # Named cells, but none of this class: another notebook of the course, such as its summary.
+            # The file has named cells, but none from this class: it is another notebook of the course, such as its
+            # summary.
             raise NoTarget(self._unclear(meant), is_left_out=not meant and bool(names))
         return here[0], here[0] in named
 
     def _unclear(self, meant: list[Target]) -> str:
-        """Return why the notebook is unclear, given the possible ones (all if empty)."""
+        """Return why the notebook is unclear, given the possible notebooks (all, if the list is empty)."""
         assignments = sorted({self._asked} if self._asked else {assignment for assignment, _ in meant})
         if len(assignments) == 1:
             names = ", ".join(self._directory.notebooks(assignments[0]))
@@ -134,7 +135,7 @@ class AssignmentOf:
 
     @functools.cached_property
     def _notebooks(self) -> dict[str, list[Target]]:
-        """Assignments and notebooks by the notebook's name, which several assignments may share."""
+        """The targets by the name of the notebook, because several assignments may have a notebook with that name."""
         found: dict[str, list[Target]] = defaultdict(list)
         for assignment in self._directory.assignments():
             for name in self._directory.notebooks(assignment):
@@ -143,7 +144,7 @@ class AssignmentOf:
 
 
 def _cells(data: bytes) -> Sequence[SubmittedCell]:
-    """A notebook's cells; none of what cannot be read."""
+    """Return a notebook's cells; none if it cannot be read."""
     try:
         return read_notebook(data)[0]
     except UnreadableSubmission:

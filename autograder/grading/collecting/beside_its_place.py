@@ -1,4 +1,4 @@
-"""Files in ``submitted`` that are not graded at their path: a browser's number is removed, others are reported."""
+"""Notebooks in ``submitted`` that are not at their right path: some are renamed, the others are reported."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 def put_right(directory: ClassDirectory) -> Iterator[str]:
     """Rename what can be renamed without asking, and yield a sentence about each.
 
-    They are a student's folder whose accents a Mac has stored decomposed, because both names look the same, and the
-    only notebook of a folder, if a browser has added a number to its name.
+    Two things are renamed: a student's folder whose accents a Mac has stored in decomposed form, because both names
+    look the same; and the only notebook of a folder, if a browser has added a number to its name.
     """
     for folder in _folders(directory.path / "submitted"):
         composed = folder.with_name(unicodedata.normalize("NFC", folder.name))
@@ -37,7 +37,7 @@ def put_right(directory: ClassDirectory) -> Iterator[str]:
 
 
 def beside_their_place(directory: ClassDirectory) -> tuple[list[RefusedFile], list[str]]:
-    """Return what a person has to move, and sentences for the instructor; one for each folder."""
+    """Return the files that a person has to move, and sentences for the instructor. There is one for each folder."""
     submitted = directory.path / "submitted"
     refused = _refused(
         submitted, f"put it into {submitted}/STUDENT/ASSIGNMENT, or hand it to `{COMMAND} collect`"
@@ -63,7 +63,7 @@ def beside_their_place(directory: ClassDirectory) -> tuple[list[RefusedFile], li
 
 
 def _of_assignments(directory: ClassDirectory) -> Iterator[tuple[Path, list[Path]]]:
-    """Yield the folders of submissions, with the paths of the notebooks in each."""
+    """Yield the folder of each submission, with the paths at which its notebooks should be."""
     notebooks = {name: directory.notebooks(name) for name in directory.assignments()}
     for student in _folders(directory.path / "submitted"):
         for folder in _folders(student):
@@ -72,7 +72,7 @@ def _of_assignments(directory: ClassDirectory) -> Iterator[tuple[Path, list[Path
 
 
 def _refused(folder: Path, what_to_do: str, places: Container[Path] = ()) -> list[RefusedFile]:
-    """Return one line for all notebooks and archives in a folder, except those at the right path."""
+    """Return one line for all notebooks and archives in a folder, except those at the right paths."""
     others = _work(folder, places)
     more = f", nor are {len(others) - 1} more files here" if others[1:] else ""
     return [RefusedFile(others[0], f"it is not graded in this place{more}: {what_to_do}")] if others else []

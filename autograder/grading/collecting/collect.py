@@ -1,4 +1,4 @@
-"""Takes files into the inbox of a class, decides what becomes of each, and brings ``submitted`` to that."""
+"""Takes files into the inbox of a class, decides about each, and changes ``submitted`` accordingly."""
 
 from __future__ import annotations
 
@@ -50,19 +50,20 @@ def collect(
     names: str = "",
     handed_in: datetime | None = None,
 ) -> CollectReport:
-    """Take files into a class, and apply what a person has written into its table.
+    """Take files into a class, and apply what a person has written into the class's table.
 
     Args:
         path: The class directory.
-        sources: Zips, folders, notebooks, and a system's lists that say who a number is, and when work was handed in.
-        assignment: The assignment that all of it is for; told from names and contents by default.
-        zone: The time zone of times in names and lists; the time zone of the class by default.
-        form: The system that it is from, as in ``--from``; told from the names by default.
-        names: What the names say, as in ``--names``.
-        handed_in: The time of all work for which nothing else says one; in ``zone`` if it has no zone.
+        sources: Zips, folders, notebooks; and lists from an LMS, which map numbers to students and contain times of
+            handing in.
+        assignment: The assignment for which all files are; by default found from names and contents.
+        zone: The time zone of times in names and lists; by default that of the class.
+        form: The system from which the files are, as in ``--from``; by default found from the names.
+        names: The pattern of the file names, as in ``--names``.
+        handed_in: The time of handing in for all work that has none; in ``zone`` if it has no time zone.
 
     Raises:
-        GradingError: There is no such class, assignment or file, or a list cannot be used.
+        GradingError: The class, the assignment or a file does not exist, or a list cannot be used.
     """
     directory = ClassDirectory(path)
     check_known([assignment] if assignment else [], directory.assignments(), "assignment")
@@ -95,7 +96,7 @@ class _Collecting:
         self._rooms: dict[object, Room] = defaultdict(Room)
 
     def run(self, sources: Sequence[Path]) -> CollectReport:
-        """Take everything in, decide, and write down what was decided."""
+        """Take all files in, decide, and write down the decisions."""
         edits, notes = self._table.read()
         self._table.put_edits(edits)
         self._submitted.take_in()
@@ -111,10 +112,10 @@ class _Collecting:
         lines = Proposals(self._directory, self._inbox, self._roster, edits).lines()
         return decide(lines, self)
 
-    # -- what is asked of the bytes of a file
+    # -- questions about the content of a file
 
     def has_work(self, line: Line) -> bool:
-        """Return True if the notebook has more than what was handed out."""
+        """Return True if the notebook contains more than what was handed out."""
         return self._handed_out.has_work(line.assignment, line.notebook, self._inbox.read(line.content))
 
     def why_unreadable(self, line: Line) -> str:
@@ -122,19 +123,19 @@ class _Collecting:
         return why_unreadable(self._inbox.read(line.content))
 
     def is_there(self, line: Line, place: Place) -> bool:
-        """Return True if these bytes are at their place in ``submitted``."""
+        """Return True if the file with these bytes is at its place in ``submitted``."""
         return self._submitted.content(place) == line.content
 
     # -- taking in
 
     def _receive(self, paths: Sequence[Path]) -> Delivery:
-        """Take the files that were named into the inbox."""
+        """Take the named files into the inbox."""
         options = self._options
         with self._inbox.receiving() as receiving, Boxes(self._directory.state) as boxes:
             student_of = self._knowing([])
             own = own_of(paths, student_of)
             tables = [path for path in paths if path.suffix.lower() == ".csv" and path.is_file()]
-            # In Google's names nothing tells a list of the instructor's from a student's.
+            # In Google's names, nothing distinguishes an instructor's list from a student's file.
             lists = [path for path in tables if path not in own and options.form != "google"]
             arrivals = [self._list(file, receiving) for path in lists for file in boxes.files_of(path)]
             others = [path for path in paths if path not in lists]
@@ -153,7 +154,7 @@ class _Collecting:
         return receiving.delivery
 
     def _knowing(self, entries: Iterable[Entry]) -> StudentOf:
-        """Return what is known of students: from the roster, the lists in the inbox, and the lists that come now."""
+        """Return what is known about students: from students.csv, lists in the inbox, and lists that come now."""
         options, own = self._options, list(entries)
         known = [entry for entries in entries_of(self._inbox).values() for entry in entries]
         is_notebook = AssignmentOf(self._directory).is_notebook
@@ -188,13 +189,13 @@ class _Collecting:
 
     @property
     def _entries(self) -> list[Entry]:
-        """The entries of the lists that come now."""
+        """Return the entries of the lists that come now."""
         return [entry for entries in self._lists.values() for entry in entries]
 
     # -- what became of it
 
     def _with_trouble(self, one: Decision, results: dict[Place, tuple[State, str]]) -> Decision:
-        """Return the decision; if something else is in the place of the file, return a decision that waits."""
+        """Return the decision; if something other than a file is at the place, one that waits for a person."""
         place = (one.student, one.line.assignment, one.line.notebook)
         state, reason = results.get(place, (State.UNCHANGED, ""))
         is_hindered = one.state == State.PLACED and state == State.NOT_PLACED
@@ -263,13 +264,13 @@ def _waits(one: Decision) -> bool:
 
 
 def _arrival(file: File, *, levels: int = 1, is_own: bool = False, is_list: bool = False) -> Arrival:
-    """Return the arrival of a file whose bytes were not read yet."""
+    """Return the arrival of a file whose bytes have not been read yet."""
     source = "" if file.source.is_dir() else name_as_text(file.source.name)
     return Arrival(source, file.parts, file.inner, levels=levels, is_own=is_own, is_list=is_list)
 
 
 def _taken(arrival: Arrival, file: File, receiving: Receiving) -> tuple[Arrival, bytes]:
-    """The arrival of a file whose bytes were read and are kept, or the reason why not; and the bytes."""
+    """Return the arrival of a file after reading and keeping its bytes, or with the reason why not; and the bytes."""
     try:
         data = file.read()
     except NotTaken as error:
@@ -278,5 +279,5 @@ def _taken(arrival: Arrival, file: File, receiving: Receiving) -> tuple[Arrival,
 
 
 def _some(names: Sequence[str]) -> str:
-    """The first of these names."""
+    """Return the first few of these names as text."""
     return ", ".join(names[:_MOST_NAMED]) + (" …" if names[_MOST_NAMED:] else "")

@@ -1,4 +1,4 @@
-"""Decides which file of a student counts: a pure function, so the order in which files came does not matter."""
+"""Decides which file of a student counts. The result does not depend on the order in which the files came."""
 
 from __future__ import annotations
 
@@ -14,32 +14,32 @@ if TYPE_CHECKING:
     from autograder.grading.collecting.proposals import Line
 
 Place = tuple[str, str, str]
-"""Student, assignment and notebook."""
+"""The place of a notebook: student, assignment and notebook."""
 _Why = tuple["Line", State, str]
 
 
 class Looks(Protocol):
-    """Questions about the bytes of a file; asked only if more than one file may count."""
+    """Questions about the content of a file. They are asked only if more than one file may count."""
 
     def has_work(self, line: Line) -> bool:
-        """Return True if the notebook has more than what was handed out."""
+        """Return True if the notebook contains more than what was handed out."""
 
     def why_unreadable(self, line: Line) -> str:
         """Return why the notebook cannot be read; empty if it can."""
 
     def is_there(self, line: Line, place: Place) -> bool:
-        """Return True if these bytes are at their place in ``submitted``."""
+        """Return True if the file with these bytes is at its place in ``submitted``."""
 
 
 @dataclass(frozen=True)
 class Decision:
-    """The outcome of a file for one student.
+    """The decision about a file for one student.
 
     Attributes:
-        line: The file.
-        student: The id of the student; empty if it is not known, or if the file belongs to a group.
-        state: ``PLACED`` if it counts.
-        reason: The reason, for every other state.
+        line: The file, with everything that is known about it.
+        student: The id of the student; empty if it is unknown, or if the file belongs to a group.
+        state: The state of the file: ``PLACED`` if it counts.
+        reason: The reason, for every state except ``PLACED``.
     """
 
     line: Line
@@ -49,10 +49,10 @@ class Decision:
 
 
 def decide(lines: Iterable[Line], looks: Looks) -> tuple[list[Decision], dict[Place, Line]]:
-    """Decide the outcome of each file.
+    """Decide about all files.
 
     Returns:
-        A decision for each file and student, and the file that counts for each notebook.
+        A decision for each file and student; and the file that counts, for each notebook.
     """
     decisions: list[Decision] = []
     soft: list[Line] = []
@@ -89,7 +89,7 @@ def decide(lines: Iterable[Line], looks: Looks) -> tuple[list[Decision], dict[Pl
 
 
 def _beside(line: Line, came: set[tuple[str, str]]) -> Decision:
-    """Return the outcome of a file that needs no attention once its student's notebook has come."""
+    """Return the decision about a file that needs no attention once its student's notebook has come."""
     student = line.students[0] if len(line.students) == 1 else ""
     if line.lms == "list" or (student and (student, line.assignment) in came):
         return Decision(line, student, State.BESIDE, line.reason)
@@ -106,7 +106,7 @@ def _of_group(place: Place, group: list[Line], looks: Looks) -> Iterator[_Why]:
         best, others = _best(chosen, _time, place, looks)
         yield from others
         if best:
-            # A later correction of a file does not change the time at which its student handed in.
+            # A later correction of a file does not change the time at which its student handed it in.
             times = [one.when for one in group if one.when and lying]
             yield replace(best, when=best.when or max(times, default=None)), State.PLACED, ""
         why = "was put there by hand and counts" if lying else "counts, since yes is written under use"
@@ -130,9 +130,9 @@ def _of_group(place: Place, group: list[Line], looks: Looks) -> Iterator[_Why]:
 
 
 def _people(place: Place, pool: Sequence[Line], _: Looks) -> list[tuple[Line, str]]:
-    """Return the files that only a name assigns to a student, if several people or repositories share that name.
+    """Return the files that only a name assigns to a student, if several people or repositories have that name.
 
-    In Canvas a person has one number; elsewhere one number in each download.
+    In Canvas each person has one number; in other systems, one number per download.
     """
     numbers: dict[str, set[str]] = defaultdict(set)
     for one in pool:
@@ -156,7 +156,7 @@ def _people(place: Place, pool: Sequence[Line], _: Looks) -> list[tuple[Line, st
 
 
 def _unreadable(place: Place, pool: Sequence[Line], looks: Looks) -> list[tuple[Line, str]]:
-    """Return the unreadable files; none if all are. An incomplete file must not replace readable work."""
+    """Return the unreadable files; none if all are unreadable. An incomplete file must not replace readable work."""
     if len({one.content for one in pool}) < 2:
         return []
     reasons = [(one, reason) for one in pool if (reason := looks.why_unreadable(one))]
@@ -165,10 +165,11 @@ def _unreadable(place: Place, pool: Sequence[Line], looks: Looks) -> list[tuple[
 
 
 def _newest(place: Place, pool: list[Line], looks: Looks) -> tuple[Line | None, list[_Why]]:
-    """Return the file that counts, and why the others do not; None if the newest one is unclear.
+    """Return the file that counts, and why the others do not; None if it is unclear which is the newest.
 
-    Of files that were handed in together, one with work takes precedence over an unchanged one, and then the exact
-    name counts. Between attempts the time decides, or else the system's order.
+    Of files that were handed in together, a file with work takes precedence over one that is unchanged since it was
+    handed out; after that, the exact name decides. Between attempts, the time decides, or else the system's
+    numbering.
     """
     is_several = len({one.content for one in pool}) > 1
     work = {one.key: not is_several or looks.has_work(one) for one in pool}
@@ -220,7 +221,7 @@ def _time(one: Line) -> tuple[float, ...]:
 
 
 def _without_time(one: Line, best: Line | None, work: dict[str, bool]) -> tuple[State, str]:
-    """Return the outcome of a file of unknown time next to one whose time is known."""
+    """Return the decision about a file whose time is unknown, given the best file whose time is known."""
     if best is None:
         return State.NOT_PLACED, "nothing says when it was handed in: write the time under handed_in"
     if one.content == best.content:
@@ -240,9 +241,9 @@ def _best(
     looks: Looks,
     work: dict[str, bool] | None = None,
 ) -> tuple[Line | None, list[_Why]]:
-    """Return the file of the highest rank, and the outcomes of the others.
+    """Return the file with the highest rank, and the decisions about the others.
 
-    If several different files have that rank, the one that counted before stays; None if none did.
+    If several different files have that rank, the one that counted before still counts; None if none did.
     """
     best = max(files, key=lambda one: (rank(one), one.when is not None, bool(one.lms)), default=None)
     if best is None:

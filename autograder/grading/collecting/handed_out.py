@@ -1,4 +1,4 @@
-"""A notebook as the class hands it out, to tell it from a student's work: a student with two files may send both."""
+"""Tells a student's work from a notebook that is as it was handed out, because a student may send both."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class HandedOut:
-    """Distinguishes the class's parts of a notebook from a student's.
+    """Knows the parts of notebooks that the class itself provides.
 
     Args:
         directory: The class.
@@ -28,9 +28,10 @@ class HandedOut:
         self._texts = functools.cache(self._read)
 
     def has_work(self, assignment: str, notebook: str, data: bytes) -> bool:
-        """True if a file has an answer, or an added cell, that was not handed out.
+        """Return True if a file has an answer, or an added cell, that was not handed out.
 
-        If the class's notebook cannot be read, every notebook may contain work. An unreadable file contains none.
+        If the class's own notebook cannot be read, every notebook counts as containing work. An unreadable file
+        contains none.
         """
         try:
             cells, _ = read_notebook(data)
@@ -42,7 +43,7 @@ class HandedOut:
         )
 
     def _read(self, assignment: str, notebook: str) -> tuple[set[str], set[str]]:
-        """Return the texts of its cells, and the names of the cells that students do not change."""
+        """Return the texts of the class's own cells, and the names of the cells that students do not change."""
         try:
             cells = self._directory.master(assignment, notebook).cells
         except GradingError:
@@ -51,7 +52,7 @@ class HandedOut:
         return given, {grade_id(cell) for cell in cells if not is_answer(cell)} - {""}
 
     def _released(self, assignment: str, notebook: str) -> set[str]:
-        """Return the texts of the notebook in ``release``, which may be older than its source."""
+        """Return the texts of the cells in ``release``, which may be older than the source."""
         path = self._directory.path / "release" / assignment / f"{notebook}{SUFFIX}"
         try:
             return {cell.source.strip() for cell in parse(read_bytes(path))[0]}

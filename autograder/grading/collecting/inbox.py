@@ -1,7 +1,7 @@
-"""The inbox of a class: every file that ``collect`` was given, by the hash of its bytes, with its origin.
+"""The inbox of a class: every file that ``collect`` was given, stored by the hash of its bytes, with its origin.
 
-One command is one delivery, and one file on the disk: a zip with the new bytes and a list of what came. It is written
-completely or not at all, and never changes. If a delivery comes again, it is the same file.
+Each command makes one delivery, which is one file on the disk: a zip with the new bytes and a list of what came. It
+is written completely or not at all, and never changes. If the same delivery comes again, it is the same file.
 """
 
 from __future__ import annotations
@@ -24,25 +24,25 @@ if TYPE_CHECKING:
 
 FOLDER = "inbox"
 BY_HAND = "by hand"
-"""The form of files that a person has put into ``submitted``."""
+"""The value of ``form`` for files that a person has put into ``submitted``."""
 _LIST = "delivery.json"
 _KEY_LENGTH = 10
 
 
 @dataclass(frozen=True)
 class Arrival:
-    """A file that came.
+    """A file that came in a delivery.
 
     Attributes:
-        source: The name of the zip that it came in; empty for a folder or a single file.
-        parts: The path inside the zip. For a file in a student's archive, the path of that archive.
-        inner: The path in a student's archive, which the student chose.
+        source: The name of the zip in which it came; empty for a folder or a single file.
+        parts: The path inside the zip. For a file inside a student's archive, the path of that archive.
+        inner: The path inside the student's archive; the student chose this path.
         content: The hash of the bytes; empty if they could not be read.
         refused: Why the bytes could not be read; empty if they were.
-        levels: The number of names at the top of the path that may name a student.
+        levels: The number of names, from the top of the path, that may name a student.
         is_own: True if the instructor named this file or folder as the work of one student.
-        is_list: True if it is a list of the system, not work.
-        is_archive: True if it is a student's archive; the files in it have arrivals of their own.
+        is_list: True if it is a list made by the system and not a student's work.
+        is_archive: True if it is a student's archive. The files in it have arrivals of their own.
     """
 
     source: str
@@ -57,37 +57,37 @@ class Arrival:
 
     @property
     def name(self) -> str:
-        """The name of the file itself."""
+        """The name of the file without its path."""
         return (self.source, *self.parts, *self.inner)[-1]
 
     @property
     def path(self) -> str:
-        """The path without the zip around it."""
+        """The path of the file without the name of the zip."""
         return "/".join((*self.parts, *self.inner))
 
     @property
     def label(self) -> str:
-        """The name of the file in messages."""
+        """The name of the file for messages."""
         return "/".join(part for part in (self.source, self.path) if part)
 
     @property
     def key(self) -> str:
-        """The key of the file in the table: the same bytes under the same name, from any download."""
+        """The key of the file in the table. Equal bytes under an equal name have the same key in any download."""
         named = f"{self.content}\0{self.path or self.source}".encode("utf-8", "replace")
         return f"#{hashlib.sha256(named).hexdigest()[:_KEY_LENGTH]}"
 
 
 @dataclass(frozen=True)
 class Delivery:
-    """The files of one command, with its options.
+    """The files that one command took in, with its options.
 
     Attributes:
         arrivals: The files.
         form: The system that the instructor named, or :data:`BY_HAND`; empty if the names show it.
-        names: The pattern of ``--names``.
-        zone: The time zone of ``--timezone``; empty for that of the class.
-        assignment: The assignment of ``--assignment``.
-        handed_in: The time of ``--handed-in``.
+        names: The pattern given with ``--names``.
+        zone: The time zone given with ``--timezone``; empty for that of the class.
+        assignment: The assignment given with ``--assignment``.
+        handed_in: The time given with ``--handed-in``.
     """
 
     arrivals: tuple[Arrival, ...]
@@ -99,7 +99,7 @@ class Delivery:
 
     @property
     def id(self) -> str:
-        """The id: equal for the same files and options, in any order."""
+        """Return the id of the delivery, which is equal for equal files and options in any order."""
         return hashlib.sha256(msgspec.json.encode(self)).hexdigest()[:16]
 
 
@@ -121,24 +121,24 @@ class Inbox:
 
     @property
     def deliveries(self) -> dict[str, Delivery]:
-        """All deliveries by their ids, in an order that does not depend on when they came."""
+        """Return all deliveries by their ids, in an order that does not depend on when they came."""
         return dict(sorted(self._deliveries.items()))
 
     def __contains__(self, content: str) -> bool:
         return content in self._where
 
     def read(self, content: str) -> bytes:
-        """Return the bytes of this hash.
+        """Return the bytes with this hash.
 
         Raises:
-            KeyError: The inbox does not have them.
+            KeyError: The inbox does not contain them.
         """
         with zipfile.ZipFile(self._where[content]) as archive:
             return archive.read(content)
 
     @contextlib.contextmanager
     def receiving(self) -> Iterator[Receiving]:
-        """Take in a delivery: nothing of it is kept until the block has ended.
+        """Take in a delivery. Nothing of it is kept until the block has ended.
 
         Raises:
             OSError: The delivery could not be written.
@@ -161,11 +161,11 @@ class Inbox:
 
 
 class Receiving:
-    """A delivery that is being taken in.
+    """A delivery while it is being taken in.
 
     Attributes:
-        delivery: The files with their options; set before the delivery ends.
-        new: The hashes of the bytes that the inbox did not have.
+        delivery: The files with the options of the command. Set this before the block ends.
+        new: The hashes of bytes that the inbox did not have before.
     """
 
     def __init__(self, inbox: Inbox, archive: zipfile.ZipFile) -> None:

@@ -19,23 +19,23 @@ if TYPE_CHECKING:
     from datetime import datetime
 
 GRADESCOPE = "submission_metadata.yml"
-"""The list that Gradescope puts into its export."""
+"""The name of the list that Gradescope puts into its export."""
 LARGEST_OF_GRADESCOPE = 4_000_000
-"""The limit in bytes of Gradescope's list: two thousand for each of two thousand students. To parse a byte takes a
-hundred bytes of memory.
+"""The maximum size of Gradescope's list in bytes: two thousand for each of two thousand students. Each byte takes a
+hundred bytes of memory when parsed.
 """
 _NUMBER = re2.compile(r"(\d+)(?:\.\w+)?$")
 
 
 @dataclass(frozen=True)
 class Entry:
-    """A list's entry about one submission, or one person.
+    """An entry of a list, about one submission or one person.
 
     Attributes:
         lms: The system that made the list.
-        number: The number or login that is also in file names; empty if they have none.
-        members: The names of each member of the group that handed in, the most certain first.
-        when: The time of handing in, in the LMS's own time if it has no zone; None if the list does not have it.
+        number: The number or user name that file names contain as well; empty if they contain none.
+        members: For each member of the group that handed in, the names of this member, the most certain first.
+        when: The time of handing in, in the LMS's own time if it has no time zone; None if the list has no time.
     """
 
     lms: str
@@ -46,15 +46,15 @@ class Entry:
 
 @dataclass(frozen=True)
 class _Form:
-    """A form of list, by the names of its columns, in lower case.
+    """A kind of list, described by the names of its columns in lower case.
 
     Attributes:
-        lms: The system that writes it.
-        has: The columns by which it is recognized.
-        number: The column of :attr:`Entry.number`.
-        logins: Columns with user names and addresses.
-        names: The columns that together are the name.
-        time: The column with the time.
+        lms: The system that writes the list.
+        has: The columns by which the list is recognized.
+        number: The column that contains :attr:`Entry.number`.
+        logins: The columns with user names and addresses.
+        names: The columns that together contain the name.
+        time: The column that contains the time.
     """
 
     lms: str
@@ -66,7 +66,7 @@ class _Form:
 
 
 _FORMS = (
-    # Moodle's grading worksheet; its identifiers are "Participant 12345", and other words in other languages.
+    # Moodle's grading worksheet. Its identifiers are "Participant 12345", with other words in other languages.
     _Form(
         "moodle",
         ("identifier", "grade"),
@@ -92,7 +92,7 @@ _FORMS = (
         "dernière modification (travail remis)",
     ),
     _Form("canvas", ("student", "id", "section"), "id", ("sis user id", "sis login id"), ("student",)),
-    # Canvas's submissions, with the names that its interface for programs gives them.
+    # Canvas's submissions, with the column names of its programming interface.
     _Form(
         "canvas",
         ("user_id", "submitted_at"),
@@ -109,7 +109,7 @@ _FORMS = (
         ("roster_identifier",),
         "submission_timestamp",
     ),
-    # The scores of an assignment of Gradescope's.
+    # The scores of an assignment in Gradescope.
     _Form(
         "gradescope",
         ("sid", "submission time"),
@@ -122,10 +122,10 @@ _FORMS = (
 
 
 def read_list(name: str, data: bytes) -> list[Entry] | None:
-    """Read a list; return None if its form is unknown.
+    """Return the entries of a list; None if the kind of list is unknown.
 
     Args:
-        name: The file's name.
+        name: The name of the file.
         data: The bytes of the file.
     """
     try:
@@ -158,9 +158,9 @@ def _entries(form: _Form, records: list[dict[str, str]]) -> Iterator[Entry]:
 
 
 def _of_gradescope(text: str) -> list[Entry] | None:
-    """Read ``submission_metadata.yml``, which has for each submission's folder the student and the time."""
+    """Read ``submission_metadata.yml``, which contains the student and the time for the folder of each submission."""
     try:
-        # Every value stays text: no number loses its zeros, and no text gets longer than it was typed.
+        # Every value stays text, so that no number loses its zeros, and no text becomes longer than it was typed.
         found = yaml.load(text, Loader=getattr(yaml, "CBaseLoader", yaml.BaseLoader))
     except (yaml.YAMLError, ValueError, RecursionError):
         return None
@@ -184,5 +184,5 @@ def _member(submitter: Mapping[str, Any]) -> tuple[Identity, ...]:
 
 
 def _word(value: object) -> str:
-    """Return a word of the list; empty for a list in its place, which a few bytes can make longer than any memory."""
+    """Return a word of the list; empty for a nested list in its place, which could be larger than any memory."""
     return value.strip() if isinstance(value, str) else ""

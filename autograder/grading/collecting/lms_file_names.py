@@ -1,4 +1,4 @@
-"""The file names in downloads of learning management systems, and the facts in such a name."""
+"""The file names in downloads from learning management systems (LMS), and what such a name says."""
 
 from __future__ import annotations
 
@@ -19,13 +19,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     _Who = Callable[[Mapping[str, str]], tuple[Identity, tuple[Identity, ...]]]
-    """From the groups of a pattern: the student, and the student by each way to read the name."""
+    """A function that returns, from the groups of a pattern, the student, and the student by each way to read the name.
+    """
     _Reader = Callable[[Sequence[str], int], "Found | None"]
-    """Returns the facts in the name at one index of a path."""
+    """A function that returns the facts in the name at one index of a path; None if it has another form."""
 
 _MOST_MARKS = 10
-"""The most ways to read a name; real names have fewer."""
-# Browsers, Canvas and Drive add this to a name that exists already, and file managers to a copy.
+"""The maximum number of ways to read a name; real names have fewer."""
+# Browsers, Canvas and Drive add this to a name that already exists, and file managers to the name of a copy.
 _COPY_OF = "Copy of "
 _MARK = r" ?\((\d{1,6})\)|-(\d{1,6})| - [Cc]opy"
 _MARKED = re2.compile(rf"^(?P<base>.+?)(?P<marks>(?:{_MARK})+)$")
@@ -37,14 +38,14 @@ class Found:
     """The facts in the path of a file.
 
     Attributes:
-        identity: The student, as named by the system.
+        identity: The student, as the system names this student.
         file: The name that the student gave the file.
-        when: The time of handing in, in the LMS's own time; None if the name has no readable time.
-        order: Increases with later files of one student, if the LMS numbers files.
-        late: True if the LMS marks it as late.
-        readings: If the name can be read in several ways, the student of each, the longest name first; the first one
-            who is in the class is meant. Empty if there is only one way.
-        assignment: The assignment, if the instructor's pattern finds one.
+        when: The time of handing in, in the LMS's own time; None if the name contains no readable time.
+        order: A number that increases with later files of one student, if the LMS numbers files.
+        late: True if the LMS marks the file as late.
+        readings: If the name can be read in several ways, the student by each, the longest name first. The first of
+            these who is in the class is meant. Empty if there is only one way.
+        assignment: The assignment, if the instructor's pattern finds one in the name.
     """
 
     identity: Identity
@@ -57,13 +58,13 @@ class Found:
 
 
 def read_at(parts: Sequence[str], place: int, form: str, is_notebook: Callable[[str], bool]) -> Found | None:
-    """Return the facts in one name of a path, of the form of one LMS; None if it has another form.
+    """Return the facts in one name of a path, if it has the form of this LMS; None if it has another form.
 
     Args:
-        parts: The path's folders and the file, none of them leads upwards; their accents are composed.
-        place: The place of the name in the path.
-        form: One of :data:`FORMS`.
-        is_notebook: True for the name of a notebook of the class, for forms that resemble other names.
+        parts: The folders of the path and the file. None leads upwards, and accents are in composed form.
+        place: The index of the name in the path.
+        form: A key of :data:`FORMS`.
+        is_notebook: Returns True for the name of a notebook of the class; needed for forms that resemble other names.
     """
     is_folder = place < len(parts) - 1
     found = _READERS[form](parts, place)
@@ -72,11 +73,11 @@ def read_at(parts: Sequence[str], place: int, form: str, is_notebook: Callable[[
     if form == "google" and is_folder:
         return None
     if found.file != parts[-1] and is_notebook(parts[-1]):
-        return None  # lab_1_2_3.ipynb and "lab_1_2 - Copy.ipynb" are a student's own names
+        return None  # lab_1_2_3.ipynb and "lab_1_2 - Copy.ipynb" are names that a student chose
     if form == "canvas" and is_folder:
-        return found if found.order >= 100 else None  # lab_1_2_submissions is an instructor's name
-    # lab_1_2_ada_attempt_...: Canvas writes names in lower case, and counts the users and files of its whole site:
-    # no student is among its first nine users and has also sent one of its first nine files.
+        return found if found.order >= 100 else None  # lab_1_2_submissions is a name that an instructor chose
+    # Not Canvas's: lab_1_2_ada_attempt_... Canvas writes names in lower case, and numbers the users and files of its
+    # whole site. No student is among its first nine users and has also sent one of its first nine files.
     login, number = found.identity.login, found.identity.number
     if form == "canvas" and (login != login.lower() or (len(number) == 1 and found.order < 10)):
         return None if _READERS["blackboard"](parts, place) else found
@@ -84,7 +85,7 @@ def read_at(parts: Sequence[str], place: int, form: str, is_notebook: Callable[[
 
 
 def base_and_number(stem: str) -> tuple[str, int]:
-    """Return a name without what was added because it existed already, and the number that was added."""
+    """Return a name without what was added because the name already existed, and the number that was added."""
     stem, number = name_as_text(stem), 0
     while stem.startswith(_COPY_OF) and stem != _COPY_OF:
         stem, number = stem.removeprefix(_COPY_OF), 1
@@ -95,33 +96,35 @@ def base_and_number(stem: str) -> tuple[str, int]:
 
 
 def plain(name: str, file: str) -> Found:
-    """Return the facts in a name that is a student's id or name, or ends with a user name on GitHub.
+    """Return the facts in a name that is a student's id or name, or that ends with a user name on GitHub.
 
-    Repositories that were downloaded one by one are called ``lab-1-2-adalove-main``; Classroom Assistant makes
-    folders with user names.
+    Repositories that were downloaded one by one have names like ``lab-1-2-adalove-main``. Classroom Assistant makes
+    folders named after users.
     """
     bare = without_branch(name)
-    # gh's folder around all repositories is called lab-1-2-submissions; but a user may be named 2-submissions.
+    # The folder that gh makes around all repositories has a name like lab-1-2-submissions. But a user may be named
+    # 2-submissions.
     ends = [] if bare.endswith("submissions") else [bare, *_ends(bare, "-")]
-    # A listed user adalove-main takes precedence over Ada's repository.
+    # A listed user named adalove-main takes precedence over Ada's repository.
     logins = dict.fromkeys((*(f"{end}{name.removeprefix(bare)}" for end in ends), *ends))
     repository = (Identity("github", number=login) for login in logins)
     return Found(Identity(), file, readings=(Identity(login=name, name=name), *repository))
 
 
 def without_branch(repository: str) -> str:
-    """The name of a repository, without the branch that GitHub adds to it in a download."""
+    """Return the name of a repository without the branch that GitHub adds in a download."""
     return next((repository.removesuffix(end) for end in _BRANCHES if repository.endswith(end)), repository)
 
 
 def read_time(text: str) -> datetime | None:
-    """Return a time from a name or a list, in whatever zone that is; None if it cannot be read.
+    """Return a time from a name or a list, without regard to its time zone; None if it cannot be read.
 
-    Besides ISO 8601, systems write what Blackboard does (``2025-10-03-14-05-06``) and dates in words, as Moodle
-    (``Friday, 3 October 2025, 2:05 PM``) and Brightspace (``Oct 3, 2025 205 PM``: a folder's name can have no colon).
+    Besides ISO 8601, it reads Blackboard's form (``2025-10-03-14-05-06``), and dates in words as Moodle (``Friday, 3
+    October 2025, 2:05 PM``) and Brightspace (``Oct 3, 2025 205 PM``, because the name of a folder cannot contain a
+    colon) write them.
     """
     text = text.strip().removesuffix(" UTC") + (" +0000" if text.strip().endswith(" UTC") else "")
-    text = text.replace(" Z", "Z")  # as YAML writes it
+    text = text.replace(" Z", "Z")  # this is how YAML writes it
     readers: list[Callable[[], datetime]] = [lambda: datetime.fromisoformat(text)]
     readers += [functools.partial(datetime.strptime, text, form) for form in _IN_NUMBERS]
     readers.append(lambda: _in_words(text.translate(_NO_MARKS).casefold()))
@@ -134,7 +137,7 @@ def read_time(text: str) -> datetime | None:
 
 
 def _in_words(text: str) -> datetime:
-    """Return a date with the month as a word, before or after the day, then the year and the time.
+    """Return the time of a date in words: the month before or after the day, then the year and the time.
 
     Raises:
         ValueError: The text is not such a date.
@@ -150,7 +153,7 @@ def _in_words(text: str) -> datetime:
 
 @functools.cache
 def _months() -> dict[str, int]:
-    """The months by their names and short forms in the languages of systems, except those that mean two."""
+    """Return the numbers of the months by name and short form, in several languages. Ambiguous words are left out."""
     meant: dict[str, set[int]] = defaultdict(set)
     for language in _LANGUAGES:
         months = Locale.parse(language).months
@@ -167,20 +170,20 @@ _IN_NUMBERS = ("%Y-%m-%d-%H-%M-%S", "%Y-%m-%d %H:%M:%S %z")
 
 
 def _ends(text: str, mark: str) -> list[str]:
-    """Return the ends of a text after each of its last few marks, the longest first."""
+    """Return the ends of a text, one after each of its last few marks, the longest end first."""
     pieces = text.rsplit(mark, _MOST_MARKS)[1:]
     return [end for start in range(len(pieces)) if (end := mark.join(pieces[start:]).strip())]
 
 
 def _moodle(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
-    # For group work, or if a group is selected, the group's name comes first: Group A-Ada Lovelace.
+    # For group work, or if a group is selected, the name of the group comes first, as in Group A-Ada Lovelace.
     names = [found["name"], *_ends(found["name"], "-")]
     readings = tuple(Identity("moodle", found["number"], name=name) for name in names)
     return readings[0], readings
 
 
 def _at_its_end(lms: str) -> _Who:
-    """Return a reader for names that end with a user name, which may contain the mark before it."""
+    """Return a reader for names that end with a user name. The user name may itself contain the mark before it."""
 
     def who(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
         whole = f"{found['item']}_{found['login']}"
@@ -212,7 +215,7 @@ def _canvas(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
 
 
 def numbers_in(name: str) -> list[str]:
-    """Return all numbers in a Canvas name that may be the student's; users' and files' names may have numbers."""
+    """Return all numbers in a Canvas name that may be the student's; names of users and files may have numbers, too."""
     pieces = name.split("_")[1:-1]
     return [one for one, file in itertools.pairwise(pieces) if f"{one}{file}".isdecimal() and len(file) >= 3]
 
@@ -223,19 +226,20 @@ def _google(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
 
 
 def _gradescope(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
-    """Only the list in the export tells the student of a number."""
+    """Return the number as the student's name. Only the list in the export says whose number it is."""
     return Identity("gradescope", found["number"]), ()
 
 
 def _in_one_part(pattern: str, who: _Who, *, says_file: bool = False) -> _Reader:
-    """Return a reader of names in which one folder, or the file, has all facts.
+    """Return a reader for names in which one folder, or the file, contains all facts.
 
     Args:
-        pattern: The name's pattern; its groups ``file``, ``when``, ``order`` and ``late`` are those of :class:`Found`.
-        who: From the groups: the student, and the students by all ways to read the name.
-        says_file: True if a name without the group ``file`` is a folder's.
+        pattern: The pattern of the name. Its groups ``file``, ``when``, ``order`` and ``late`` are the fields of
+            :class:`Found`.
+        who: Returns, from the groups, the student, and the student by each way to read the name.
+        says_file: True if a name without the group ``file`` is the name of a folder.
     """
-    expression = re2.compile(f"(?s){pattern}")  # a name may have line breaks
+    expression = re2.compile(f"(?s){pattern}")  # (?s) because a name may contain line breaks
 
     def read(parts: Sequence[str], place: int) -> Found | None:
         match = expression.match(parts[place])
@@ -253,7 +257,7 @@ def _in_one_part(pattern: str, who: _Who, *, says_file: bool = False) -> _Reader
 
 
 def _first_of(*readers: _Reader) -> _Reader:
-    """Return a reader of names in one of several forms."""
+    """Return a reader for names in one of several forms."""
 
     def read(parts: Sequence[str], place: int) -> Found | None:
         return next((found for one in readers if (found := one(parts, place))), None)
@@ -262,7 +266,7 @@ def _first_of(*readers: _Reader) -> _Reader:
 
 
 def _github(parts: Sequence[str], place: int) -> Found | None:
-    """``lab-1-2-submissions/lab-1-2-adalove/lab_1_2.ipynb``, as ``gh classroom clone`` makes it."""
+    """Read ``lab-1-2-submissions/lab-1-2-adalove/lab_1_2.ipynb``, as ``gh classroom clone`` makes it."""
     above, part = parts[place - 1] if place else "", parts[place]
     slug, dash, _ = above.rpartition("-")
     if (
@@ -273,7 +277,7 @@ def _github(parts: Sequence[str], place: int) -> Found | None:
     ):
         return None
     login = part.removeprefix(f"{slug}-")
-    # If the user already had a repository of that name, GitHub Classroom adds a number.
+    # If the user already had a repository with that name, GitHub Classroom adds a number.
     logins = dict.fromkeys((login, base_and_number(login)[0]))
     readings = tuple(Identity("github", login=one) for one in logins)
     return Found(readings[0], parts[-1], readings=readings)
@@ -281,19 +285,20 @@ def _github(parts: Sequence[str], place: int) -> Found | None:
 
 _STUDENT_NUMBER = re2.compile(r"[A-Za-z]{0,4}\d[\dA-Za-z]{2,}")
 _READERS = {
-    # Ada Lovelace_12345_assignsubmission_file_lab_1_2.ipynb: since Moodle 4.1, earlier with folders, a folder's name.
+    # Ada Lovelace_12345_assignsubmission_file_lab_1_2.ipynb. Since Moodle 4.1 (before that, if folders were chosen)
+    # this is the name of a folder.
     "moodle": _in_one_part(
         r"^(?P<name>[^_]+)_(?P<number>\d+)_assignsubmission_(?:file|onlinetext)_?(?P<file>.*)$", _moodle
     ),
-    # lab_1_2_adal_attempt_2025-10-03-14-05-06_lab_1_2.ipynb; without the file, .txt: what the student typed.
-    # The first attempt in the name is Blackboard's: what is behind it is the student's own.
+    # lab_1_2_adal_attempt_2025-10-03-14-05-06_lab_1_2.ipynb. Without the file's name it ends with .txt: what the
+    # student typed. The first "attempt" in the name is Blackboard's; everything after it was chosen by the student.
     "blackboard": _in_one_part(
         r"^(?P<item>.+?)_(?P<login>[^_]+)_attempt_(?P<when>\d{4}(?:-\d\d){5})(?:_(?P<file>.+)|\.txt)$",
         _at_its_end("blackboard"),
     ),
-    # 12345-67890 - Ada Lovelace - Oct 3, 2025 205 PM, a folder; or, with " - lab_1_2.ipynb" behind it, a file. The
-    # date is in the language of the course: 3 October, 2025 1405. Some universities have the student's own number in
-    # front of the name: 12345-67890 - N0123456 - Ada Lovelace- 3 October, 2025 205 PM - lab_1_2.ipynb
+    # 12345-67890 - Ada Lovelace - Oct 3, 2025 205 PM is a folder; with " - lab_1_2.ipynb" after it, it is a file. The
+    # date is in the language of the course: 3 October, 2025 1405. Some universities put the student's own number
+    # before the name: 12345-67890 - N0123456 - Ada Lovelace- 3 October, 2025 205 PM - lab_1_2.ipynb
     "brightspace": _in_one_part(
         r"^(?P<number>\d+)-\d+ ?- ?(?P<name>.+?) ?- ?"
         r"(?P<when>(?:[^\d\s,.-]+\.? \d\d?|\d\d?\.? (?:de )?[^\d\s,.-]+\.?),? (?:de )?\d{4} "
@@ -302,10 +307,11 @@ _READERS = {
         _brightspace,
         says_file=True,
     ),
-    # lovelaceada_LATE_123_456_lab_1_2-1.ipynb: the student's number, then the file's. Canvas leaves of the name only
-    # what is part of a word (github.com/instructure/canvas-lms, content_zipper.rb).
+    # lovelaceada_LATE_123_456_lab_1_2-1.ipynb: first the number of the student, then that of the file. Canvas keeps
+    # only the word characters of a name (github.com/instructure/canvas-lms, content_zipper.rb).
     "canvas": _first_of(
-        # A user named 🙂 has no name there: 123_456_lab_1_2.ipynb is one, as 2025_10_03_lab_1_2.zip is a date.
+        # A user named 🙂 has an empty name there: 123_456_lab_1_2.ipynb is such a name, and 2025_10_03_lab_1_2.zip is
+        # a date.
         _in_one_part(
             r"^(?P<login>[\pN_]*?)_(?:(?P<late>LATE)_)?(?P<number>\d{3,})_(?P<order>\d{3,})_(?P<file>.+)$",
             _canvas,
@@ -330,9 +336,9 @@ _READERS = {
 }
 FORMS = tuple(_READERS)
 TOLD_APART = tuple(form for form in FORMS if form not in ("google", "ilias"))
-"""The forms that names show by themselves.
+"""The forms that can be recognized from the names alone.
 
-Google's name may have been chosen by a student, and ILIAS's resembles many others: they are used only if the
-instructor names the system.
+A name from Google may have been chosen by a student, and a name from ILIAS resembles many others. So these two are
+used only if the instructor names the system.
 """
 _BRANCHES = ("-main", "-master")

@@ -1,12 +1,12 @@
-"""Decide which paths of a command are downloads, and which are the work of one student.
+"""Decides which paths of a command are downloads, and which are the work of one student.
 
-Only the names on the command line decide, never the content:
+Only the names on the command line decide, never the contents:
 
-- **One student's own**: a file or folder whose name, or whose system, identifies one student, and every file that
-  is neither a zip nor a list. Names inside it identify no student. Several folders in one place, as with
-  ``repositories/*``, and zips and folders next to a name that a student may have chosen, are one student's own, too.
-- **A download**: every other zip and folder. The names at its top identify students; if one folder contains all
-  others, so do the names in that folder. Students have chosen all names below these.
+- **One student's own**: a file or folder whose name, or whose system, identifies one student; and every file that is
+  neither a zip nor a list. Names inside it identify no student. Several folders in one place, as with
+  ``repositories/*``, and zips and folders next to a name that a student may have chosen, are also one student's own.
+- **A download**: every other zip and folder. The names at its top identify students. If a single folder contains all
+  others, the names in that folder do so, too. Students have chosen all names further down.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 
 _EXPORT = re2.compile(r"^assignment_\d+_export(?: ?\(\d+\)|-\d+)?$")
 _SUBMISSION = re2.compile(r"^submission_\d+$")
-# Names of downloads that look like those of Canvas's files: gradebook_ROS_101_2_2025-10-03-14-05-06.zip, as Blackboard
-# makes them, and lab_1_2_submissions.zip.
+# Names of downloads that look like names of files in Canvas: gradebook_ROS_101_2_2025-10-03-14-05-06.zip, as
+# Blackboard makes them, and lab_1_2_submissions.zip.
 _DOWNLOAD = re2.compile(r"^(?:gradebook_.*_\d{4}(?:-\d\d){5}(?: ?\(\d+\))?|\D+_\d_\d_[^_]+)\.zip$")
 
 
@@ -41,7 +41,7 @@ class Source:
     """A download, or the files of one student.
 
     Attributes:
-        path: The file or folder that was named.
+        path: The file or folder that the instructor named.
         files: All files in it, or the file itself.
         is_own: True if all files belong to one student.
     """
@@ -52,19 +52,19 @@ class Source:
 
     @functools.cached_property
     def levels(self) -> int:
-        """The number of names, from the top of each path, that may identify a student."""
+        """Return the number of names, from the top of each path, that may identify a student."""
         if self.is_own:
             return 1
-        above = 1 if self.path.is_dir() else 0  # the folder's own name, which identifies no student
+        above = 1 if self.path.is_dir() else 0  # the name of the folder itself, which identifies no student
         return above + (2 if len({file.parts[above : above + 1] for file in self.files} - {()}) == 1 else 1)
 
     @property
     def download(self) -> Path:
-        """The folder of what was named one by one, or the file or folder that all came in."""
+        """Return the file or folder in which everything came; for files named one by one, their folder."""
         return self.path.absolute().parent if self.is_own else self.path
 
     def is_list(self, file: File, form: str) -> bool:
-        """True if a file is the list that Gradescope puts into its export, and no student's of that name."""
+        """Return True if a file is the list in Gradescope's export, and not a student's file with that name."""
         *above, name = file.parts or ("",)
         is_said = (
             name == GRADESCOPE and len(file.parts) <= self.levels and not any(map(_SUBMISSION.match, above))
@@ -73,10 +73,10 @@ class Source:
 
 
 def own_of(paths: Sequence[Path], student_of: StudentOf) -> set[Path]:
-    """Return the paths of one command that are one student's own each."""
+    """Return those paths of one command that are each one student's own."""
     beside = {path: path.absolute().parent for path in paths}
     by_system, loose = set(filter(student_of.has_form, paths)), set(filter(_is_loose, paths))
-    # Beside a student's own file, such a name is one that a student may have chosen.
+    # Next to a student's own file, a student may have chosen such a name as well.
     downloads = {path for path in paths if _DOWNLOAD.match(name_as_text(path.name))}
     downloads -= {
         path for path in downloads if beside[path] in {beside[one] for one in (by_system | loose) - downloads}
@@ -88,12 +88,12 @@ def own_of(paths: Sequence[Path], student_of: StudentOf) -> set[Path]:
 
 
 def source_of(path: Path, boxes: Boxes, *, is_own: bool) -> Source:
-    """A file or folder with all its files."""
+    """Return a file or folder as a source, with all its files."""
     return Source(path, tuple(boxes.files_of(path, opened=not is_own)), is_own)
 
 
 def note_on(source: Source, student_of: StudentOf, form: str) -> str:
-    """Return a note on what a path was taken for, if its name leaves that open; otherwise an empty text."""
+    """Return a sentence about how a path was interpreted, if its name leaves that open; otherwise an empty text."""
     if not source.files:
         return f"{source.path} {EMPTY}"
     if not source.is_own and not form:
@@ -110,5 +110,5 @@ def note_on(source: Source, student_of: StudentOf, form: str) -> str:
 
 
 def _is_loose(path: Path) -> bool:
-    """Return True for a file that is neither a download nor a list."""
+    """Return True if a path is a file that is neither a download nor a list."""
     return path.is_file() and path.suffix.lower() not in (".zip", ".csv")

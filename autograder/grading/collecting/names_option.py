@@ -1,4 +1,4 @@
-"""An instructor's own pattern for names: ``--names '{id}-{last}_{assignment}'`` tells the parts of a name."""
+"""The option ``--names``, an instructor's pattern for names: ``--names '{id}-{last}_{assignment}'``."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ if TYPE_CHECKING:
 
 WORDS = ("id", "email", "login", "number", "name", "first", "last", "assignment", "time", "file", "any")
 _MOST_WAYS = 100
-"""The most ways to divide a name that are tried; a system's name has a few."""
+"""The maximum number of ways to divide a name that are tried; real names need a few."""
 _WORD = re2.compile(r"\{([^{}]*)\}")
 
 
 def check_names(pattern: str, columns: Collection[str]) -> None:
-    """Check a pattern of ``--names``.
+    """Check a pattern given with ``--names``.
 
     Args:
-        pattern: The pattern.
-        columns: The columns of ``students.csv`` that the pattern may use.
+        pattern: The pattern to check.
+        columns: The columns of ``students.csv`` that the pattern may contain.
 
     Raises:
-        GradingError: The pattern has an unknown word, a word twice, or no word that identifies a student.
+        GradingError: The pattern contains an unknown word, a word twice, or no word that identifies a student.
     """
     words = [word for word in _WORD.findall(pattern) if word != "any"]
     says_who = set(words) & {*WORDS[:7], *columns}
@@ -43,11 +43,11 @@ def check_names(pattern: str, columns: Collection[str]) -> None:
 
 
 def read_names(pattern: str) -> Callable[[Sequence[str]], Found | None]:
-    """Return a reader of paths for a pattern.
+    """Return a function that reads paths according to a pattern.
 
-    A pattern without a slash describes one name: a file without its suffix, or a folder around it. One with slashes
-    describes the end of a path. ``{any}`` stands for any text, and a word that is not of :data:`WORDS` for a column of
-    ``students.csv``.
+    A pattern without a slash describes a single name: a file without its suffix, or a folder around it. A pattern
+    with slashes describes the end of a path. ``{any}`` stands for any text. A word that is not in :data:`WORDS`
+    stands for a column of ``students.csv``.
     """
     words = _WORD.findall(pattern)
     literals = [unicodedata.normalize("NFC", one).casefold() for one in _WORD.split(pattern)[::2]]
@@ -66,7 +66,8 @@ def read_names(pattern: str) -> Callable[[Sequence[str]], Found | None]:
                     else []
                 )
                 if ways:
-                    # ben_b_7 may belong to ben or to ben_b: either the class has only one of them, or it is unclear.
+                    # ben_b_7 may belong to ben or to ben_b. Either only one of them is in the class, or it is
+                    # unclear.
                     found = [_found(way, parts[-1]) for way in ways]
                     return replace(found[0], readings=tuple(dict.fromkeys(one.identity for one in found)))
         return None
@@ -75,7 +76,7 @@ def read_names(pattern: str) -> Callable[[Sequence[str]], Found | None]:
 
 
 def _ways(text: str, literals: Sequence[str], words: Sequence[str]) -> Iterator[dict[str, str]]:
-    """Return all ways to divide a text into the words between these literals."""
+    """Yield all ways to divide a text into the words between these literals."""
     folded, first = text.casefold(), literals[0]
     if len(folded) != len(text) or not folded.startswith(first):
         return

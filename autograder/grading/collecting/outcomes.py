@@ -1,4 +1,4 @@
-"""The outcome of each collected file: its place, among earlier attempts, or nowhere, with the reason."""
+"""The outcome for each collected file: it is at its place, it is an earlier attempt, or it waits, with the reason."""
 
 from __future__ import annotations
 
@@ -12,18 +12,20 @@ if TYPE_CHECKING:
 
 
 class State(StrEnum):
-    """The outcome of a file; each file has one of these."""
+    """The state of a file after collecting. Each file has exactly one of these."""
 
     PLACED = "placed"
     """The file is in ``submitted``."""
     UNCHANGED = "unchanged"
-    """The same file is already there."""
+    """The same file was already in ``submitted``."""
     EARLIER = "earlier"
-    """Another file counts; this one is kept."""
+    """Another file counts. This one is kept as an earlier attempt."""
     BESIDE = "beside"
-    """The file is not a requested notebook, and its student has handed in one; or it is the LMS's own page."""
+    """The file is not one of the notebooks to collect, and its student has handed in such a notebook; or it is a page
+    of the LMS.
+    """
     NOT_PLACED = "not placed"
-    """The file waits for a person: it may be a student's work."""
+    """The file waits for a person, because it may be a student's work."""
     LEFT_OUT = "left out"
     """A person wrote ``no`` under ``use``."""
 
@@ -33,15 +35,15 @@ class Outcome:
     """The outcome of one file.
 
     Attributes:
-        label: The file's name in messages.
+        label: The name of the file in messages.
         state: The state of the file.
-        reason: Why the file is not at its place, and what to type; empty if it is there.
+        reason: Why the file is not at its place, and what to type; empty if it is at its place.
         student: The student's id; empty if unknown.
         assignment: The assignment's name; empty if unknown.
         when: The time of handing in, in UTC; None if unknown.
-        late: True if the LMS marks it as late.
-        replaced: True if another file was at its place; that file is kept.
-        key: The key of its line in the table.
+        late: True if the LMS marks the file as late.
+        replaced: True if another file was at its place before. That file is kept.
+        key: The key of the file's line in the table.
     """
 
     label: str
@@ -62,11 +64,12 @@ class CollectReport:
     Attributes:
         path: The class.
         outcomes: The outcome of each file.
-        untimed: Students with work collected now whose time of handing in is unknown; by assignment.
-        missing: Students who have handed in nothing, by assignment.
+        untimed: The students with work collected now whose time of handing in is unknown, by assignment.
+        missing: The students who have handed in nothing, by assignment.
         waiting: The number of lines in the table that wait for a person.
-        by_their_names: True if there is no list of students, so that folders have the LMS's names.
-        notes: Times that were recorded, names in a list that are not students, empty downloads.
+        by_their_names: True if there is no list of students, so that folders get the names that the LMS uses.
+        notes: Sentences for the instructor, for example about recorded times, names in a list that are not students,
+            and empty downloads.
     """
 
     path: Path
@@ -78,10 +81,10 @@ class CollectReport:
     notes: tuple[str, ...] = ()
 
     def having(self, state: State) -> tuple[Outcome, ...]:
-        """The files with this state."""
+        """Return the outcomes with this state."""
         return tuple(one for one in self.outcomes if one.state == state)
 
     @property
     def exit_code(self) -> int:
-        """0 when everything has its place; 2 if a line of these files waits for a person."""
+        """The command's exit code: 0 if every file is settled; 2 if a line of these files waits for a person."""
         return 2 if self.having(State.NOT_PLACED) else 0

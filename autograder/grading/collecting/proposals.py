@@ -1,4 +1,4 @@
-"""Finds for each file in the inbox its students, its notebook and its time, or why they are unknown."""
+"""Finds, for each file in the inbox, its students, its notebook and its time; or the reason why they are unknown."""
 
 from __future__ import annotations
 
@@ -26,22 +26,22 @@ if TYPE_CHECKING:
     from autograder.grading.rebuilding.named_cells import Target
 
 PAGES = ("index.html", "grades.csv", GRADESCOPE)
-"""Files that a system itself adds to a download."""
+"""Files that the system itself adds to a download."""
 _ONE_NUMBER = ("canvas", "moodle", "brightspace")
-"""The systems with one number for each person in a download, in which users may change their names."""
+"""The systems that give each person one number in a download, and in which users may change their names."""
 _OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".bz2", ".xz", ".zst")
 
 
 @dataclass(frozen=True)
 class Edit:
-    """A person's entries in the cells of a line; an empty cell is not an edit.
+    """What a person has written into the cells of a line. An empty cell changes nothing.
 
     Attributes:
         use: ``yes`` or ``no``.
-        student: Ids, separated by semicolons.
+        student: Student ids, separated by semicolons.
         assignment: The name of an assignment.
         notebook: The name of a notebook of that assignment.
-        handed_in: A time in the format of :meth:`datetime.isoformat`, in UTC.
+        handed_in: A time in UTC, in the format of :meth:`datetime.isoformat`.
     """
 
     use: str = ""
@@ -56,27 +56,29 @@ class Line:
     """One file, with everything known about it.
 
     Attributes:
-        key: Its key in the table.
-        label: Its name in messages.
-        content: The hash of its bytes.
-        students: The ids of its students; empty if they are not known.
-        assignment: The name of its assignment; empty if it is not known. For other files, the one that its name means.
-        notebook: The name of its notebook; empty if it is not known, or if the file is not a notebook.
+        key: The key of the file in the table.
+        label: The name of the file in messages.
+        content: The hash of the file's bytes.
+        students: The ids of the students to whom the file belongs; empty if they are unknown.
+        assignment: The name of the assignment; empty if it is unknown. For a file that is not a notebook, the
+            assignment that its name means.
+        notebook: The name of the notebook; empty if it is unknown, or if the file is not a notebook.
         when: The time of handing in, in UTC.
-        order: Increases with later files of one student, if the system numbers files.
-        late: True if the system marks it as late.
-        use: ``yes`` or ``no`` as a person wrote it.
-        reason: Why it cannot count, and what to do.
-        is_soft: True if it needs no attention once the notebook of its student counts.
-        what_to_do: The advice if that notebook does not come.
+        order: A number that increases with later files of one student, if the system numbers files.
+        late: True if the system marks the file as late.
+        use: ``yes`` or ``no``, as a person wrote it; empty if no person did.
+        reason: Why the file cannot count, and what to do.
+        is_soft: True if the file needs no attention once the notebook of its student counts.
+        what_to_do: The advice for the case that this notebook does not come.
         lms, number, name, file: The system, and its names for the student and the file.
-        number_of_copy: The number that a browser has added to the name.
-        is_named: True if the file's name is that of the notebook.
-        is_sure: True if a system's number identifies the student, not just a name that students may choose.
-        readings: The ways in which the name of the file identifies the student.
-        repository: The repository on GitHub that contained it.
-        came_in: The downloads that contained it.
-        rank: Lower if the command named the system, higher if it named the assignment; decides which line is shown.
+        number_of_copy: The number that a browser has added to the file's name.
+        is_named: True if the file has the name of the notebook.
+        is_sure: True if a number of the system identifies the student, not just a name that students may choose.
+        readings: The ways in which the name of the file can be read as a student's.
+        repository: The repository on GitHub that contained the file.
+        came_in: The downloads that contained the file.
+        rank: Lower if the command named the system, and higher if it named the assignment. It decides which line is
+            shown.
     """
 
     key: str
@@ -106,23 +108,23 @@ class Line:
 
     @property
     def is_by_hand(self) -> bool:
-        """True if a person put it into ``submitted``."""
+        """True if a person put the file into ``submitted``."""
         return self.lms == BY_HAND
 
     @property
     def is_by_name(self) -> bool:
-        """True if only a name identifies its student, although the system has a number for each person."""
+        """True if only a name identifies the student, although the system has a number for each person."""
         return self.lms in _ONE_NUMBER and not self.is_sure
 
 
 class Proposals:
-    """Interprets the inbox with the knowledge of a class.
+    """Interprets the files in the inbox, using what is known about the class.
 
     Args:
         directory: The class.
-        inbox: Its inbox.
-        roster: Its students.
-        edits: A person's entries, by the key of the line.
+        inbox: The inbox of the class.
+        roster: The students of the class.
+        edits: What people have written into the table, by the key of the line.
     """
 
     def __init__(
@@ -137,10 +139,11 @@ class Proposals:
         self._entries = entries_of(inbox)
 
     def student_of(self, delivery: Delivery, id_: str = "") -> StudentOf:
-        """Return the students' names as known for a delivery.
+        """Return what is known about students' names for the files of a delivery.
 
-        For all deliveries, lists map numbers to students. Their times apply to the files in the same delivery,
-        because a later list may be about a later file. A list that came alone applies to all files.
+        All lists, from any delivery, are used to map numbers to students. But the times in a list apply only to files
+        in the same delivery, because a later list may be about a later file. A list that came alone applies to all
+        files.
         """
         alone = (
             one for one, of in self._inbox.deliveries.items() if all(file.is_list for file in of.arrivals)
@@ -153,7 +156,7 @@ class Proposals:
         )
 
     def lines(self) -> list[Line]:
-        """Return one line for each file, with a person's entries instead of the proposed ones.
+        """Return one line for each file. What a person wrote takes precedence over what was found.
 
         A file that was collected for two assignments has two lines.
         """
@@ -189,23 +192,23 @@ class Proposals:
             yield reading.line(arrival, edit)
 
     def data(self, content: str) -> bytes:
-        """The bytes of a file."""
+        """Return the bytes of a file, given their hash."""
         return self._inbox.read(content)
 
     def target(self, name: str, content: str, asked: str) -> tuple[Target, bool]:
-        """Return the notebook of a file, and whether the file's name agrees."""
+        """Return the notebook to which a file belongs, and whether the file's name agrees."""
         return self._assignments(asked).target(name, self._inbox.read(content))
 
     def named(self, name: str, asked: str) -> str:
-        """Return the assignment that a file's name means."""
+        """Return the assignment that a file's name means; empty if it means none."""
         return self._assignments(asked).named(name)
 
     def notebooks(self, assignment: str) -> list[str]:
-        """Return the notebooks of an assignment; empty if the class has none of that name, which may be any text."""
+        """Return the notebooks of an assignment; none if the class has no assignment with this name."""
         return self._directory.notebooks(assignment) if assignment in self._names else []
 
     def known(self, written: str) -> tuple[tuple[str, ...], str]:
-        """Return the ids of the students that a person entered, or what is wrong with the cell."""
+        """Return the ids of the students that a person wrote into a cell, or what is wrong with the cell."""
         ids = []
         for one in (part.strip() for part in written.replace(",", ";").split(";") if part.strip()):
             found = self._roster.find(Identity(login=one, name=one)) or self._without_zeros(one)
@@ -218,7 +221,7 @@ class Proposals:
         return tuple(ids), ""
 
     def _without_zeros(self, written: str) -> tuple[Student, ...]:
-        """Return the student of a number whose leading zeros a spreadsheet has dropped."""
+        """Return the student whose id equals this number after a spreadsheet has dropped leading zeros."""
         plain = written.removesuffix(",0").removesuffix(".0").lstrip("0")
         alike = [one for one in self._roster.students.values() if one.id.lstrip("0") == plain]
         return tuple(alike) if plain.isdecimal() and len(alike) == 1 else ()
@@ -228,7 +231,7 @@ class _Reading:
     """Interprets the files of one delivery.
 
     Attributes:
-        given: A person's entry for a student's archive, which applies to the files in it.
+        given: What a person wrote about a student's archive, which applies to the files in it.
     """
 
     def __init__(
@@ -282,10 +285,10 @@ class _Reading:
                 readings=found.readings[:1] or (identity,),
                 repository=repository_in(identity.lms, arrival.parts, identity.number or identity.name),
             )
-            # An assignment in a name counts if the class has one of that name.
+            # An assignment in a name counts only if the class has an assignment with that name.
             asked = asked or (found.assignment if self._proposals.notebooks(found.assignment) else "")
         line = replace(line, students=ids, came_in=frozenset({f"{self._id}/{arrival.source}"}))
-        # In a student's own archive, the name identifies the notebook, but not the student.
+        # Inside a student's own archive, a name identifies the notebook but not the student.
         own_name = found.file if found and not arrival.inner else arrival.name
         named = self._proposals.named(own_name if owners.members else arrival.name, asked)
         if arrival.refused:
@@ -301,7 +304,7 @@ class _Reading:
         return self._with_target(line, own_name, edit, asked)
 
     def _with_target(self, line: Line, name: str, edit: Edit, asked: str) -> Line:
-        """Return the same line with its notebook, or the reason why that is unclear."""
+        """Return the line completed with its notebook, or with the reason why that is unclear."""
         if edit.assignment or edit.notebook:
             return self._as_written(line, name, edit, asked)
         try:
@@ -319,7 +322,7 @@ class _Reading:
         )
 
     def _as_written(self, line: Line, name: str, edit: Edit, asked: str) -> Line:
-        """Return the same line with the notebook that a person entered."""
+        """Return the line completed with the notebook that a person wrote."""
         several = self._proposals.notebooks(asked) if asked else []
         stem = stem_of(name)[0]
         notebook = (
@@ -336,7 +339,7 @@ class _Reading:
         return replace(line, assignment=asked, notebook=notebook, number_of_copy=stem_of(name)[1])
 
     def _no_notebook(self, line: Line, name: str, named: str, *, is_inner: bool) -> Line:
-        """Return the table's line for a file that is not a notebook, such as a picture, or a page of the LMS."""
+        """Return the line for a file that is not a notebook, such as a picture, or a page of the LMS."""
         if name in PAGES and not is_inner and not line.students:
             return replace(line, reason="it is a page of the LMS", is_soft=True, lms="list")
         student = line.students[0] if len(line.students) == 1 else "STUDENT"
@@ -352,7 +355,7 @@ class _Reading:
 
 
 def _by_hand(line: Line, arrival: Arrival) -> Line:
-    """The line of a file that a person has put into ``submitted``."""
+    """Return the line for a file that a person has put into ``submitted``."""
     student, assignment, name = arrival.parts
     return replace(
         line,
@@ -366,7 +369,7 @@ def _by_hand(line: Line, arrival: Arrival) -> Line:
 
 
 def in_utc(when: datetime | None, zone: tzinfo) -> datetime | None:
-    """Return a time in UTC; None for one that cannot be converted, such as a time in the year 1 or 9999."""
+    """Return a time in UTC; None for a time that cannot be converted, such as one in the year 1 or 9999."""
     if when is None:
         return None
     try:
@@ -376,7 +379,7 @@ def in_utc(when: datetime | None, zone: tzinfo) -> datetime | None:
 
 
 def entries_of(inbox: Inbox) -> dict[str, list[Entry]]:
-    """Return the entries of all lists in the inbox, by their deliveries."""
+    """Return the entries of all lists in the inbox, by delivery."""
     return {
         id_: [
             entry
@@ -389,7 +392,7 @@ def entries_of(inbox: Inbox) -> dict[str, list[Entry]]:
 
 
 def _merged(several: Iterable[Line]) -> Line:
-    """Return one line for a file that came several times: the most certain facts, and its latest time."""
+    """Return one line for a file that came several times, with the most certain facts and the latest time."""
     lines = sorted(several, key=lambda one: (bool(one.reason), one.is_soft, one.rank, one.label))
     best = lines[0]
     when = max((one.when for one in lines if one.when), default=None)

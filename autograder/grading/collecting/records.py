@@ -1,4 +1,4 @@
-"""The record of what was collected, stored with the class: only its times are trusted from then on."""
+"""The record of what was collected, stored in the class. From then on only the times in it are trusted."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ FOLDER = "collected"
 
 @dataclass(frozen=True)
 class Collected:
-    """One notebook that was collected.
+    """A notebook that was collected.
 
     Attributes:
-        notebook: The notebook's name in the class.
-        content: The hash of its bytes.
+        notebook: The name of the notebook in the class.
+        content: The hash of the file's bytes.
         when: The time of handing in, in UTC; None if unknown.
-        order: Increases with later files if there are no times.
-        late: True if the LMS marks it as late.
-        lms: The system that it came from; empty for plain folders.
-        number: The student's number there; in Moodle, another number for each assignment.
-        name: The student's name there.
-        file: The name of the file there; the feedback is returned under it.
-        by_hand: True if the instructor put it there, and only its time was collected.
+        order: A number that increases with later files, for files without times.
+        late: True if the LMS marks the file as late.
+        lms: The system from which it came; empty for plain folders.
+        number: The student's number in that system; in Moodle, a different number for each assignment.
+        name: The student's name in that system.
+        file: The name of the file in that system. Feedback is returned under this name.
+        by_hand: True if the instructor put the file into place, and only its time was collected.
     """
 
     notebook: str
@@ -48,7 +48,7 @@ class Collected:
 
 
 def repository_in(lms: str, parts: Sequence[str], end: str) -> str:
-    """Return the repository on GitHub in a file's path: the folder or zip whose name ends with the user name."""
+    """Return the GitHub repository in a file's path: the folder or zip whose name ends with the user name."""
     if lms != "github":
         return ""
     *folders, file = parts
@@ -63,9 +63,9 @@ class History:
     """The files that were collected from one student for one assignment.
 
     Attributes:
-        now: The content of ``submitted``, by notebook.
+        now: The files that are in ``submitted`` now, by notebook.
         before: The attempts that do not count.
-        replaced: The hashes of files that are being replaced, by notebook, while a command is at work.
+        replaced: While a command is at work, the hashes of the files that it replaces, by notebook.
     """
 
     now: dict[str, Collected]
@@ -74,11 +74,11 @@ class History:
 
     @property
     def when(self) -> datetime | None:
-        """The time at which the last of it was handed in, in UTC; None if unknown."""
+        """The time at which the last of these files was handed in, in UTC; None if unknown."""
         return max((one.when for one in self.now.values() if one.when is not None), default=None)
 
     def written(self, notebook: str) -> set[str]:
-        """Return the hashes of the bytes that ``collect`` wrote to a notebook's place."""
+        """Return the hashes of the files that ``collect`` has written to a notebook's place."""
         ours = self.now.get(notebook)
         return {self.replaced.get(notebook, ""), ours.content if ours and not ours.by_hand else ""} - {""}
 
@@ -95,18 +95,18 @@ class CollectedRecords:
 
     @property
     def is_used(self) -> bool:
-        """True if at least one file was ever placed in this class."""
+        """Return True if a file was ever placed in this class."""
         return any(self._folder.glob("*/*.json"))
 
     def get(self, assignment: str, student: str) -> History | None:
-        """Return the record of what was collected; None if there is none, or if it is damaged."""
+        """Return the record of a submission; None if there is none, or if it is damaged."""
         try:
             return msgspec.json.decode(self._path(assignment, student).read_bytes(), type=History)
         except (OSError, msgspec.MsgspecError):
             return None
 
     def put(self, assignment: str, student: str, history: History) -> None:
-        """Write the record of what was collected.
+        """Write the record of a submission.
 
         Raises:
             OSError: The record could not be written.
@@ -114,7 +114,7 @@ class CollectedRecords:
         write_whole(self._path(assignment, student), msgspec.json.encode(history))
 
     def all(self) -> list[tuple[str, str]]:
-        """The students and assignments that have a record."""
+        """Return pairs of a student and an assignment for which there is a record."""
         return [(path.stem, path.parent.name) for path in self._folder.glob("*/*.json")]
 
     def _path(self, assignment: str, student: str) -> Path:

@@ -1,4 +1,4 @@
-"""Prints the outcome of collecting in a terminal: a line for every file."""
+"""Prints the result of collecting in a terminal, one line for every file."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
 
 def show(report: CollectReport, console: Console | None = None) -> None:
-    """Print where files were placed, and which were not, with the reasons.
+    """Print which files were placed and which were not, with the reasons.
 
     Args:
-        report: The outcome of collecting.
-        console: Standard output by default.
+        report: The result of collecting.
+        console: The console to print on; by default standard output.
     """
     console = console or Console()
     for text in _lines(report):

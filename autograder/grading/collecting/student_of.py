@@ -1,4 +1,4 @@
-"""Finds a file's student: compares its name with the list of students and with the lists of the download."""
+"""Finds a file's student by comparing its name with the list of students and with the lists in the download."""
 
 from __future__ import annotations
 
@@ -27,12 +27,14 @@ if TYPE_CHECKING:
 _WRITE_IT = "write the id under student in collected.csv"
 _NO_ID = f"its name does not say whose it is: {_WRITE_IT}, or add a line to students.csv"
 _LIST_OF = {"moodle": "the grading worksheet (Grades-….csv)", "gradescope": GRADESCOPE}
-"""The list of a system whose numbers differ for each submission, so that only the list identifies the student."""
+"""For systems whose numbers differ in each submission, the list that says whose number it is."""
 _NOBODY = Identity()
 _BY_NUMBER, _BY_LOGIN = ("canvas", "brightspace"), ("github", "blackboard", "google", "sakai", "ilias")
-"""The systems whose names contain a person's number or user name that is the same for all assignments."""
+"""The systems whose names contain a person's number, and those whose names contain a user name. Both stay the same for
+all assignments.
+"""
 _LISTED = ("canvas", "github", "gradescope")
-"""The systems whose lists identify students. A number of Moodle or Gradescope belongs to one submission."""
+"""The systems whose lists identify students. (A number from Moodle or Gradescope belongs to one submission only.)"""
 
 
 @dataclass(frozen=True)
@@ -40,10 +42,11 @@ class Owners:
     """The students who may have handed in a file, according to its name.
 
     Attributes:
-        found: The facts in the name; None if it has no known form.
+        found: The facts in the name; None if its form is unknown.
         members: For each member of the group, the students who may be meant; empty if none is known.
-        is_sure: True if the system's number identifies them, not just a name that students may choose.
-        rivals: The systems that may have made the name, if they would mean different students or times.
+        is_sure: True if a number of the system identifies them, not just a name that students may choose.
+        rivals: If several systems may have made the name, and it would mean different students or times in them,
+            these systems.
     """
 
     found: Found | None
@@ -53,22 +56,22 @@ class Owners:
 
     @property
     def only(self) -> Student | None:
-        """The student; None if the file belongs to no student, to a group, or to one of several."""
+        """The student; None if the file belongs to no student or to a group, or if several students may be meant."""
         students = [student for members in self.members for student in members]
         return students[0] if len(students) == 1 else None
 
 
 class StudentOf:
-    """Knows all names of a class's students in the systems.
+    """Knows the names by which the systems call a class's students.
 
     Args:
         roster: The students of the class.
         is_notebook: Returns True for the name of a notebook of the class.
         form: The system that the instructor named for all files; empty to find it from the names.
-        names: The pattern of ``--names``; empty for none.
+        names: The pattern given with ``--names``; empty if none was given.
         entries: The entries of all lists, which map numbers to students.
-        own: The entries that came with the files; their times apply to the files.
-        others: The entries that came alone; their times count if the others have none.
+        own: The entries of lists that came with the files. Their times apply to the files.
+        others: The entries of lists that came alone. Their times are used if those in ``own`` have none.
     """
 
     def __init__(
@@ -88,18 +91,18 @@ class StudentOf:
         self._entries = list(entries)
         self._timed = (_times(own), _times(others))
         self._by_number = {(one.lms, one.number): one for one in self._entries if one.number}
-        self._of = functools.cache(self._who)  # many files have one folder
+        self._of = functools.cache(self._who)  # cached, because many files are in the same folder
 
     def owners(self, parts: Sequence[str], levels: int, *, is_alone: bool = False) -> Owners:
-        """Return the students of a file, by the topmost name in its path that identifies any.
+        """Return the students of a file, found by the topmost name in its path that identifies any.
 
-        Whatever a student names a file, the system's own part is above it or before it. If two systems may have made
-        a name, all of them must mean the same student by it: "no match" counts as a disagreement.
+        Whatever name a student gives a file, the system's own part of the path is above that name or before it. If
+        two systems may have made a name, both must mean the same student by it; "no match" counts as a disagreement.
 
         Args:
-            parts: The path's folders and the file.
-            levels: The number of names from the top that no student has chosen.
-            is_alone: True if the instructor named this very file, so that its name may be the student's.
+            parts: The folders of the path and the file.
+            levels: The number of names, from the top, that no student has chosen.
+            is_alone: True if the instructor named this very file, so that its name may identify the student.
         """
         parts = [unicodedata.normalize("NFC", part) for part in parts]
         if self._names is not None:
@@ -109,7 +112,7 @@ class StudentOf:
             return Owners(found, (tuple(meant.values()),) if meant else ())
         forms = [self._form] if self._form else TOLD_APART
         names = [*parts[:-1], PurePath(parts[-1]).stem if is_alone and self._form != "google" else ""]
-        # In a download from Google Classroom, students may have chosen the name of any folder, at any depth.
+        # In a download from Google Classroom, students may have chosen the name of any folder, however deep.
         for place in range(len(parts) if self._form == "google" else min(levels, len(parts))):
             if ways := [way for form in forms if (way := read_at(parts, place, form, self._is_notebook))]:
                 return self._undisputed(self._agreed(ways), parts[place])
@@ -118,13 +121,14 @@ class StudentOf:
         return Owners(None)
 
     def has_form(self, path: Path) -> bool:
-        """True if a file or folder has a name that a system makes for one student's work."""
+        """Return True if a file or folder has a name of the kind that a system makes for one student's work."""
         owners = self._of_name(path)
         lms = owners.found.identity.lms if owners.found else ""
-        return bool(owners.rivals) or lms not in ("", "google", "github")  # these have no part of their own
+        # Names from these systems have no part by which they could be recognized.
+        return bool(owners.rivals) or lms not in ("", "google", "github")
 
     def is_called(self, path: Path) -> bool:
-        """True if a file or folder has the name of a student in the list of students."""
+        """Return True if a file or folder has the name of a student in the list of students."""
         return bool(self._roster.students and self._of_name(path).members)
 
     def _of_name(self, path: Path) -> Owners:
@@ -132,7 +136,7 @@ class StudentOf:
         return self.owners((name, "") if path.is_dir() else (name,), 1, is_alone=True)
 
     def find(self, way: Found) -> Owners | None:
-        """Return the students who may be meant, by the first way to read the name that identifies one."""
+        """Return the students who may be meant, by the first way to read the name that identifies any."""
         readings = way.readings if self._roster.students and way.readings else (way.identity,)
         for identity in readings:
             members, is_sure = self._of(identity)
@@ -148,7 +152,7 @@ class StudentOf:
         return read[0]
 
     def _undisputed(self, owners: Owners, name: str) -> Owners:
-        """Return the same, or all students of a Canvas name's numbers if a student's name may be another's number."""
+        """Return ``owners``; if a name may be another student's Canvas number, all students with these numbers."""
         if owners.found is None or owners.found.identity.lms != "canvas" or not owners.members:
             return owners
         others = map(self._of, (Identity("canvas", number) for number in numbers_in(name)))
@@ -159,21 +163,23 @@ class StudentOf:
         return replace(owners, members=(tuple(meant.values()),)) if len(meant) > 1 else owners
 
     def _who(self, identity: Identity) -> tuple[tuple[tuple[Student, ...], ...], bool]:
-        """Return the students who may be meant, and if that is certain; without a list, the one in the LMS's name."""
+        """Return the students who may be meant, and whether that is certain. Without a list, use the LMS's name."""
         known = self._by_number.get((identity.lms, identity.number or identity.login))
         if known is not None:
             hits = [hit for names in known.members if (hit := self._first(names))]
             hits = [hit for hit in hits if hit[1] or not self._is_another(hit[0], identity)]
             if hits and len(hits) == len(known.members):
                 return tuple((student,) for student, _ in hits), all(is_sure for _, is_sure in hits)
-        # The number that students.csv has for Moodle differs: this one belongs to one student in one assignment.
+        # students.csv may have a different Moodle number; the number in the name belongs to one student in one
+        # assignment.
         asked = replace(identity, number="") if identity.lms == "moodle" else identity
         found = self._roster.find(asked)
-        number = asked.number.casefold()  # user names of GitHub's have capitals or not
+        number = asked.number.casefold()  # case does not matter in GitHub's user names
         is_sure = bool(found and number) and found[0].lms.get(identity.lms, "").casefold() == number
         found = tuple(one for one in found if is_sure or not self._is_another(one, identity))
         if found and (identity.login or number):
-            # A user name in the system may be the id of another student in the class, so the name has to agree.
+            # A user name in the system may equal the id of a different student in the class, so the name has to
+            # agree.
             named = self._roster.find(Identity(name=identity.name))
             found = tuple({one.id: one for one in (*found, *(named if len(named) == 1 else ()))}.values())
         called = identity.login or identity.name
@@ -182,7 +188,7 @@ class StudentOf:
         return ((found,) if found else ()), is_sure
 
     def _is_another(self, student: Student, identity: Identity) -> bool:
-        """True if the student has another number there, and so is not the one who uses the name there."""
+        """Return True if the student has a different number there, and so is not the person with this name."""
         lms = identity.lms
         by_number = lms in (*_BY_NUMBER, "gradescope")
         theirs = (by_number and identity.number) or (lms in _BY_LOGIN and identity.login) or ""
@@ -190,13 +196,13 @@ class StudentOf:
             student.lms.get(lms, "") if lms != "gradescope" else "",
             *self._listed.get((lms, student.id), ()),
         }
-        # The column of a system with numbers may have a user name.
+        # The column of a system that uses numbers may contain a user name.
         known = {one.casefold() for one in known if one and (one.isdigit() or lms not in _BY_NUMBER)}
         return bool(theirs and known) and theirs.casefold() not in known
 
     @functools.cached_property
     def _listed(self) -> dict[tuple[str, str], set[str]]:
-        """The numbers by which lists identify students with certainty, by the system and the student's id."""
+        """Return the numbers by which lists identify students with certainty, by system and student id."""
         numbers: dict[tuple[str, str], set[str]] = defaultdict(set)
         entries = (
             (entry, names) for entry in self._entries if entry.lms in _LISTED for names in entry.members
@@ -208,12 +214,12 @@ class StudentOf:
         return numbers
 
     def _first(self, names: Iterable[Identity]) -> tuple[Student, bool] | None:
-        """Return the student of the first name that belongs to only one, and whether it is more than a name."""
+        """Return the student of the first name that only one student has, and whether it is more than a name."""
         hits = ((self._roster.find(name), bool(name.login)) for name in names)
         return next(((found[0], is_sure) for found, is_sure in hits if len(found) == 1), None)
 
     def reason_against(self, owners: Owners) -> str:
-        """Return why a file cannot be assigned to a student, and what to do; empty if it can."""
+        """Return why a file cannot be assigned to a student, and what to do; empty if it can be assigned."""
         if owners.rivals:
             read = " and as ".join(form.capitalize() for form in owners.rivals)
             say = " or ".join(f"--from {form}" for form in owners.rivals)
@@ -240,14 +246,14 @@ class StudentOf:
         return f"no student in the class is called {called or number}: {what_to_do}"
 
     def time(self, identity: Identity) -> datetime | None:
-        """Return the only time of handing in that lists have for this number; None if they have none, or several."""
+        """Return the time of handing in that the lists have for this number; None if they have none, or several."""
         number = (identity.lms, identity.number or identity.login)
         times = next((known[number] for known in self._timed if number in known), set())
         return next(iter(times)) if len(times) == 1 else None
 
     @property
     def of_several_times(self) -> list[str]:
-        """Return the numbers for which lists have several times, so that none counts."""
+        """Return the numbers for which the lists have several times, so that none of these counts."""
         return sorted({number for (_, number), times in self._timed[0].items() if len(times) > 1})
 
 

@@ -1,7 +1,8 @@
-"""``collected.csv``: one line for each file, as decided by ``collect``; a person's entries take precedence.
+"""``collected.csv``: one line for each file, as ``collect`` decided. What people write into it takes precedence.
 
-A cell is a person's entry if it differs from the table that ``collect`` wrote. So a copy of each table is kept, and
-the table has the number of its copy: a table that was open during another ``collect`` is compared with its own copy.
+A cell counts as written by a person if it differs from the table that ``collect`` wrote. So a copy of each table is
+kept, and the table contains the number of its copy. A table that was open during another ``collect`` is thus compared
+with the right copy.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ _YES = frozenset(["yes", "y", "ja", "j", "x", "1", "true", "wahr", "oui", "si", 
 _NO = frozenset(["no", "n", "nein", "0", "false", "falsch", "non"])
 _KEY = re2.compile(r"#[0-9a-f]{10}$")
 _STAMP = re2.compile(r"table (\d+)")
-# Values that a spreadsheet would take for a number, a date or a boolean.
+# Matches values that a spreadsheet would take for a number, a date or a boolean.
 _TURNS = re2.compile(r"(?i)^(?:[\d.,]|[a-zäéû]{3,9}[ .-]*\d+$|(?:true|false|wahr|falsch)$)")
 _IN_NUMBERS = re2.compile(
     r"^(\d{1,4})([./-])(\d{1,2})[./-](\d{2,4})(?:[ T,]+(\d{1,2}):(\d\d)(?::(\d\d))?)?( ?[AaPp][Mm])?$"
@@ -57,14 +58,14 @@ _IN_NUMBERS = re2.compile(
 
 @dataclass(frozen=True)
 class Waiting:
-    """A line that waits for a person.
+    """A line of the table that waits for a person.
 
     Attributes:
-        label: The file, with the key of its line.
-        reason: Why it waits, and what to do.
-        student: The id of its student; empty if unknown.
-        assignment: The name of its assignment; empty if unknown.
-        line: The number of the line in the table.
+        label: The name of the file, with the key of its line.
+        reason: Why the line waits, and what to do.
+        student: The id of the student; empty if unknown.
+        assignment: The name of the assignment; empty if unknown.
+        line: The line number in the table.
     """
 
     label: str
@@ -75,18 +76,18 @@ class Waiting:
 
     @property
     def cell(self) -> str:
-        """The cell that a person edits; empty if the table has no such line."""
+        """Return which cell a person has to edit; empty if the table has no such line."""
         column = "student" if not self.student else "assignment" if not self.assignment else "use"
-        return f" ({NAME}, line {self.line}, cell {column})" if self.line else ""
+        return f'"  ({NAME}, line {self.line}, cell {column})' if self.line else ""
 
     @property
     def sentence(self) -> str:
-        """Why the file waits, and which cell to edit."""
+        """Return a sentence that says why the file waits, and which cell to edit."""
         return f"{self.student}{': ' if self.student else ''}{self.reason}{self.cell}"
 
 
 class Table:
-    """The table of a class.
+    """The table ``collected.csv`` of a class.
 
     Args:
         directory: The class.
@@ -100,14 +101,14 @@ class Table:
         self._locale = _locale_of(self._zone.key)
 
     def edits(self) -> dict[str, Edit]:
-        """Return the entries of people that ``collect`` has read so far."""
+        """Return what people have written, as far as ``collect`` has read it."""
         try:
             return msgspec.json.decode(self._edits_file.read_bytes(), type=dict[str, Edit])
         except (OSError, msgspec.MsgspecError):
             return {}
 
     def put_edits(self, edits: Mapping[str, Edit]) -> None:
-        """Store the entries of people.
+        """Store what people have written.
 
         Raises:
             OSError: They could not be written.
@@ -118,14 +119,14 @@ class Table:
 
     @property
     def is_edited(self) -> bool:
-        """True if the table was changed after ``collect`` wrote it."""
+        """Return True if the table was changed after ``collect`` wrote it."""
         try:
             return self.path.read_bytes() != self._copy(self._newest).read_bytes()
         except OSError:
             return False
 
     def read(self) -> tuple[dict[str, Edit], list[str]]:
-        """Return the present entries of people, and a sentence about each unclear cell."""
+        """Return what people have written into the table, and a sentence about each unclear cell."""
         edits = self.edits()
         try:
             data = self.path.read_bytes()
@@ -190,13 +191,13 @@ class Table:
         return written, ""
 
     def _time(self, written: str) -> str:
-        """Return a person's or a spreadsheet's time in UTC; empty if it is not a time."""
+        """Return a time written by a person or a spreadsheet, in UTC; empty if it is not a time."""
         when = read_time(self._in_order(written))
         found = in_utc(when, self._zone)
         return found.isoformat() if found else ""
 
     def _in_order(self, written: str) -> str:
-        """Return a date such as 31.01.2026 with the year first; the country decides what 3/4 means."""
+        """Return a date such as 31.01.2026 with the year first. The country decides what 3/4 means."""
         match = _IN_NUMBERS.match(written.strip())
         if match is None or len(match[1]) == 4:
             return written
@@ -278,11 +279,11 @@ class Table:
         return path.read_bytes() if path.exists() else b""
 
     def lines(self) -> list[dict[str, str]]:
-        """Return the lines by their columns, as ``collect`` last wrote them."""
+        """Return the lines that ``collect`` wrote last, each by column."""
         return _rows(self._read_copy(self._newest), whole=True)[0] or []
 
     def waiting(self) -> list[Waiting]:
-        """Return the waiting lines, as ``collect`` last wrote them."""
+        """Return the waiting lines that ``collect`` wrote last."""
         return [
             Waiting(row["file"], row["reason"], row["student"], row["assignment"], number)
             for number, row in enumerate(self.lines(), 2)
@@ -291,9 +292,10 @@ class Table:
 
 
 def _rows(data: bytes, *, whole: bool = False) -> tuple[list[dict[str, str]] | None, int]:
-    """Return the lines of a table by their columns, in any spreadsheet's format, and the number of the table.
+    """Return the lines of a table by column, in the format of any spreadsheet, and the number of the table.
 
-    In each line, ``file`` is only the key unless the ``whole`` cell is requested; None if no line names the columns.
+    ``file`` contains only the key of the line, unless ``whole`` is true. The lines are None if no line names the
+    columns.
     """
     text = _text_of(data)
     first = text.partition("\n")[0]
@@ -316,7 +318,7 @@ def _rows(data: bytes, *, whole: bool = False) -> tuple[list[dict[str, str]] | N
 
 
 def _text_of(data: bytes) -> str:
-    """Return the text of a file that Excel or LibreOffice has saved in the system's encoding."""
+    """Return the text of a file that Excel or LibreOffice may have saved in the system's own encoding."""
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return data.decode("utf-16", "replace")
     try:
@@ -326,7 +328,7 @@ def _text_of(data: bytes) -> str:
 
 
 def _guarded(cell: str) -> str:
-    """Return a cell that a spreadsheet neither executes nor takes for a number or a date."""
+    """Return a cell changed so that a spreadsheet neither executes it nor takes it for a number or a date."""
     safe = defused(cell)
     return f"'{safe}" if safe == cell and _TURNS.match(cell) else safe
 
@@ -336,7 +338,7 @@ def _unguarded(cell: str) -> str:
 
 
 def _is_same(written: str, was: str) -> bool:
-    """True if a cell is unchanged, apart from leading zeros that a spreadsheet drops."""
+    """Return True if a cell is unchanged, apart from leading zeros that a spreadsheet drops."""
     if written.casefold() == was.casefold():
         return True
     return (
@@ -345,7 +347,7 @@ def _is_same(written: str, was: str) -> bool:
 
 
 def _locale_of(zone: str) -> Locale:
-    """Return the conventions of a time zone's country: the separator in its spreadsheets, and the order of a date."""
+    """Return the conventions of a time zone's country: the separator in spreadsheets, and the order of a date."""
     territory = get_global("zone_territories").get(zone, "001")
     try:
         return Locale.parse(f"und_{territory}")

@@ -1,8 +1,9 @@
-"""Unpacks one archive. Runs in a box: what an archive says is believed by this process alone.
+"""Unpacks one archive. It runs in a box, because only this process relies on what the archive says.
 
-``python -I -S unpack.py ARCHIVE DEPTH FILES BYTES OF_ONE`` writes at most so many files and bytes to standard
-output. Each file is a line of JSON and its bytes. The line has its size, and its names: one for each archive in
-another. If a file is not taken, the line has the reason. Nothing of the package is imported here.
+``python -I -S unpack.py ARCHIVE DEPTH FILES BYTES OF_ONE`` writes files to standard output, up to these limits. Each
+file is a line of JSON followed by the file's bytes. The line contains the size and the names: one name for each
+archive inside another. If a file is not taken, the line contains the reason. Nothing else of the package is imported
+here.
 """
 
 from __future__ import annotations
@@ -22,28 +23,32 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 _MEMORY = 600_000_000
-"""Bytes; some methods unpack a few hundred bytes to more in one step, which then fails."""
+"""The memory limit in bytes. Some compression methods unpack a few hundred bytes to more than this in one step, which
+then fails.
+"""
 _CPU_SECONDS = 200
 _TARS = (".tar", ".tgz", ".tar.gz", ".tar.bz2", ".tar.xz")
 _LEFT_BY_PROGRAMS = ("__MACOSX", ".git", ".ipynb_checkpoints", "__pycache__", ".DS_Store")
-"""Files that systems and editors leave beside a student's work."""
+"""Files that operating systems and editors leave next to a student's work."""
 EMPTY = "holds no file, or only what programs leave beside a work"
-"""The reason against an archive or a folder of which nothing is taken."""
+"""The reason why an archive or folder was not taken, if it contains nothing to take."""
 LONGEST_NAME = 1_000
-"""Characters of a path; a zip may have paths of 65,535, too many to print."""
+"""The maximum length of a path in characters. A zip may have paths of 65,535, too long to print."""
 LONGEST_LINE = 50_000
-"""Bytes of the line of a file, with three names of more than the longest that is taken."""
+"""The maximum length of the line about a file, in bytes. It has up to three names, each of which may exceed
+:data:`LONGEST_NAME` when escaped.
+"""
 
 
 def is_archive(name: str, data: bytes) -> bool:
-    """Return True if a file is an archive to be opened. Documents of office programs are zips, and are not."""
+    """Return True if a file is an archive to be opened. Office documents, which are zips as well, are not opened."""
     lower = name.lower()
     plain = "." not in lower or lower.endswith((".txt", ".bin"))
     return ".zip" in lower or lower.endswith(_TARS) or (plain and data.startswith(b"PK\x03\x04"))
 
 
 def is_left_by_a_program(name: str) -> bool:
-    """Return True for a name that no student has given."""
+    """Return True for a name that programs use and no student chose."""
     return name in _LEFT_BY_PROGRAMS or name.startswith("._")
 
 
@@ -55,7 +60,7 @@ class _Entry(NamedTuple):
 
 
 def _entries(file: BinaryIO) -> list[_Entry]:
-    """The files of an archive, as it lists them."""
+    """Return the files that an archive lists."""
     if tarfile.is_tarfile(file):
         file.seek(0)
         tar = tarfile.open(fileobj=file)  # noqa: SIM115  (its files are read from it)
@@ -77,7 +82,7 @@ def _opened(tar: tarfile.TarFile, one: tarfile.TarInfo) -> IO[bytes]:
 
 
 def _name_of(one: zipfile.ZipInfo) -> str:
-    """The name as it was meant: many programs write UTF-8 and do not say so."""
+    """Return the name as it was meant: many programs write UTF-8 without saying so."""
     try:
         return one.filename if one.flag_bits & 0x800 else one.filename.encode("cp437").decode("utf-8")
     except UnicodeError:
@@ -89,13 +94,13 @@ def _is_ordinary(one: zipfile.ZipInfo) -> bool:
 
 
 class _Unpacking:
-    """Unpacks an archive and those in it, within limits that they share.
+    """Unpacks an archive, and the archives in it, within common limits.
 
     Args:
-        depth: Archives in each other; 1 leaves those that are in it as they are.
-        files: The number of files.
-        unpacked: The number of bytes.
-        of_one: The bytes of one file.
+        depth: The maximum nesting of archives. With 1, archives inside this one are left packed.
+        files: The number of files that may still be unpacked.
+        unpacked: The number of bytes that may still be unpacked.
+        of_one: The maximum size of one file in bytes.
     """
 
     def __init__(self, depth: int, files: int, unpacked: int, of_one: int) -> None:
@@ -125,7 +130,7 @@ class _Unpacking:
             for one in entries
             if not any(map(is_left_by_a_program, one.name.replace("\\", "/").split("/")))
         ]
-        if not kept and self.depth > 1:  # of an empty download, its folder says so
+        if not kept and self.depth > 1:  # if a whole download is empty, the folder is reported instead
             _tell(names, reason=f"it {EMPTY}")
         for one in kept:
             self._take([*names, one.name[: 2 * LONGEST_NAME]], one)
@@ -151,7 +156,7 @@ class _Unpacking:
 
 
 def _tell(names: Sequence[str], data: bytes = b"", reason: str = "") -> None:
-    """Write a file, or why it is not taken; what cannot be written ends the process with the number of the error."""
+    """Write a file, or the reason why it is not taken. If writing fails, end the process with the error's number."""
     out = sys.stdout.buffer
     try:
         out.write(json.dumps({"names": names, "size": len(data), "reason": reason}).encode() + b"\n" + data)
@@ -161,7 +166,7 @@ def _tell(names: Sequence[str], data: bytes = b"", reason: str = "") -> None:
 
 
 def main() -> None:
-    """Take the limits, and unpack."""
+    """Read the limits from the command line, and unpack."""
     path, *numbers = sys.argv[1:]
     unpacking = _Unpacking(*map(int, numbers))
     written = max(unpacking.unpacked, 0) + max(unpacking.files, 0) * LONGEST_LINE + LONGEST_LINE

@@ -1,1 +1,1 @@
-"""From what a student handed in to a task: read, compared with the trusted master, rebuilt."""
+"""From the file that a student handed in to a task: it is read, compared with the trusted master, and rebuilt."""

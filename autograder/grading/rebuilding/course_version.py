@@ -1,4 +1,4 @@
-"""A hash that changes whenever anything changes that may decide a grade."""
+"""A hash that changes whenever anything in the course changes that may influence a grade."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ if TYPE_CHECKING:
 
 _MADE_BY_PYTHON = "__pycache__"
 _MADE_BY_COLCON = frozenset({"build", "install", "log"})
-"""Folders that are generated from the files that count; colcon makes its folders next to a workspace's ``src``."""
+"""Folders that are generated from files that are already counted. colcon makes them next to a workspace's ``src``."""
 _OF_CHAPTERS = (f"*/{course.CHAPTER}", "*/*/*.py", f"*/*/*{REFERENCE}")
-"""The files of the chapters that count: their descriptions, the exercises and their reference outputs."""
+"""The files of the chapters that count: their descriptions, the exercises, and the reference outputs."""
 
 
 @functools.cache
 def course_version() -> str:
-    """Return a hash of everything in the course that runs and judges submissions, as hexadecimal digits.
+    """Return a hash of everything in the course that runs and judges submissions, in hexadecimal.
 
-    A release number is not enough: after an exercise is fixed, yesterday's results must not be reused. Results are
-    stored under this hash, a graded submission is checked again when it changes, and all machines of a cluster must
-    have the same one.
+    The release number would not be enough: after an exercise is fixed, yesterday's results must not be reused.
+    Results are stored under this hash, a graded submission is checked again when it changes, and all machines of a
+    cluster must have the same hash.
 
-    Every file of the package and of the environment counts, even one that seems to decide no grade: a list of
-    exceptions would be wrong one day. In ``solutions/`` the exercises, their reference outputs, the chapters'
-    interfaces and the workspace count. The masters do not: a class has its own copy in ``source/``, and that copy is
-    compared.
+    Every file of the package and of the environment counts, even one that seems to influence no grade, because a list
+    of exceptions would be wrong one day. In ``solutions/``, the exercises, their reference outputs, the chapters'
+    interfaces and the workspace count. The masters do not: a class has its own copy of them in ``source/``, which is
+    compared separately.
     """
     digest = hashlib.sha256()
     for name, path in counted_files():

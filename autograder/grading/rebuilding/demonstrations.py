@@ -1,12 +1,13 @@
-"""Cells that only show something: they are skipped while a class is graded, because no grade depends on them.
+"""Cells that only show something. They are skipped when a class is graded, because no grade depends on them.
 
-A chapter shows the ``ros2`` command in some forty cells. Each starts processes that take half a second, and together
-they take longer than all student code and checks. A check runs its subject in a ROS domain of its own, so such a cell
-cannot affect it.
+A chapter shows the ``ros2`` command in some forty cells. Each of these starts processes that take half a second, and
+together they take longer than all student code and checks. A check runs its subject in a separate ROS domain, so such
+a cell cannot affect the check.
 
 The master marks these cells with a tag. A cell that makes something, such as ``colcon build``, is not a
-demonstration, unless it is below the last cell with points. There a notebook writes its nodes into a package and
-builds and runs them as programs, for its reader and for no check: its files and terminals are skipped.
+demonstration, except below the last cell with points: there, a notebook writes its nodes into a package, and builds
+and runs them as programs. This is for the reader and not for a check, so cells with files and terminals are skipped
+there.
 """
 
 from __future__ import annotations
@@ -26,10 +27,10 @@ LEFT_OUT = "[a demonstration of the notebook: left out while grading]"
 
 
 def is_demonstration(cell: NotebookNode) -> bool:
-    """True if a cell of a rebuilt notebook only shows something.
+    """Return True if a cell of a rebuilt notebook only shows something.
 
     Args:
-        cell: A cell of a rebuilt notebook, in which only the master's own cells have nbgrader's marks.
+        cell: A cell of a rebuilt notebook. Only cells that come from the master have nbgrader's metadata there.
     """
     given = cell.cell_type == CellType.CODE and is_the_masters(cell) and not _marks(cell).get("grade")
     return given and CellRole.DEMONSTRATION in cell.metadata.get("tags", ())
@@ -62,5 +63,5 @@ def _is_file_or_terminal(cell: NotebookNode) -> bool:
 
 
 def are_run(directory: ClassDirectory) -> bool:
-    """True if the configuration of a class asks for demonstrations to be run."""
+    """Return True if the configuration of a class asks for demonstrations to be run."""
     return bool(directory.config.WireExecute.get("demonstrations", False))

@@ -1,13 +1,13 @@
-"""Read what students handed in: each file is parsed by a desk, a process of its own in a box.
+"""Reads what students handed in. Each file is parsed by a desk: a separate process in a box.
 
 .. code-block:: python
 
     cells, left_out = read_notebook(read_bytes(path))
 
-Code that has taken over a desk decides only what is said of this one file. The document that comes out is checked
-(:func:`autograder.grading.running.admission.admitted_notebook`). An impossible document or a desk that fails is the
-fault of the file. A machine without namespaces for a box still has the process, its limits and its filter of system
-calls.
+Code that has taken over a desk decides only what is said about this one file. The document that comes out is checked
+(:func:`autograder.grading.running.admission.admitted_notebook`). An impossible document, or a desk that fails, counts
+as the file's fault. On a machine that cannot make namespaces for a box, there are still the process, its limits and
+its filter of system calls.
 """
 
 from __future__ import annotations
@@ -40,12 +40,14 @@ if TYPE_CHECKING:
 
 MODULE = "autograder.grading.rebuilding.desk_process"
 MEMORY_BYTES = 700_000_000
-"""The limit of a desk's address space. A file of 50 MB with a picture and an emoji takes two thirds of that."""
+"""The maximum address space of a desk process, in bytes. A file of 50 MB with a picture and an emoji takes two thirds
+of it.
+"""
 CPU_SECONDS = 20
-"""The limit in seconds of the processor time of one desk. A file of 50 MB takes two seconds."""
+"""The maximum processor time of a desk process, in seconds. A file of 50 MB takes two seconds."""
 _SAMPLE = b'{"nbformat": 4, "metadata": {}, "cells": [{"cell_type": "code", "source": "x"}]}'
 _WALL_SECONDS = 600.0
-"""The limit in seconds. A desk cannot sleep, so only a machine that was stopped takes so long."""
+"""Time limit in seconds of wall time. A desk cannot sleep, so this is reached only if the whole machine was stopped."""
 _ATTEMPTS = 3
 _AS_SAVED = "Save the notebook in JupyterLab and hand in that file."
 _TOO_LONG = f"To read the file takes far more time than to read a notebook. {_AS_SAVED}"
@@ -53,14 +55,14 @@ _NOT_READ = f"The file is not a notebook: the program that reads notebooks faile
 
 
 class DeskFailed(GradingError):
-    """No file can be read on this machine, so the files are not at fault; the message says what to do."""
+    """No file can be read on this machine, so the files are not at fault. The message says what to do."""
 
 
 class Desk:
-    """The fork server of desks and the box that they enter; both end with this object or with this process.
+    """The fork server of desk processes, and the box that they enter. Both end with this object, or with this process.
 
     Args:
-        module: The program of a desk.
+        module: The module that a desk process runs.
         extra: More environment variables.
 
     """
@@ -80,11 +82,11 @@ class Desk:
         return self._box is not None
 
     def answer(self, data: bytes) -> bytes:
-        """Let a new desk read the bytes of a file, and return its document, unchecked.
+        """Let a new desk process read the bytes of a file, and return its document, which is not yet checked.
 
         Raises:
-            UnreadableSubmission: The desk failed, and the file is the reason.
-            ChannelClosed: No answer came, and the file is not the reason.
+            UnreadableSubmission: The desk process failed because of the file.
+            ChannelClosed: No answer came, for a reason other than the file.
         """
         with contextlib.ExitStack() as stack:
             source, answer = (os.memfd_create(name) for name in ("handed-in", "answer"))
@@ -106,7 +108,7 @@ class Desk:
             return os.pread(answer, min(os.fstat(answer).st_size, LARGEST_DOCUMENT + 1), 0)
 
     def close(self) -> None:
-        """End all desks; may be called twice."""
+        """End all desk processes. This may be called twice."""
         self._open.close()
 
     def _box_in(self, folder: Path) -> Box | None:
@@ -135,17 +137,17 @@ _desks: list[Desk] = []
 
 
 def read_notebook(data: bytes) -> tuple[Sequence[SubmittedCell], int]:
-    """Return the cells of a file that was handed in, and the number of those that were left out.
+    """Return the cells of a file that was handed in, and the number of cells that were left out.
 
     Raises:
-        UnreadableSubmission: The file is not a notebook; the message is a sentence for the student.
-        DeskFailed: No file can be read here.
+        UnreadableSubmission: The file is not a notebook. The message is a sentence for the student.
+        DeskFailed: No file can be read on this machine.
     """
     return checked(_answer(data))
 
 
 def checked(document: bytes) -> tuple[Sequence[SubmittedCell], int]:
-    """Return the cells of a desk's document, and the number of those that were left out; raises as read_notebook."""
+    """Return the cells in a desk's document, and the number left out. Raises the same errors as read_notebook."""
     try:
         read = admitted_notebook(document)
     except Forged as error:
@@ -156,7 +158,7 @@ def checked(document: bytes) -> tuple[Sequence[SubmittedCell], int]:
 
 
 def why_unreadable(data: bytes) -> str:
-    """Return the reason why these bytes cannot be taken as a notebook, for the student; empty if they can be."""
+    """Return why a file cannot be read as a notebook, in words for the student; empty if it can be read."""
     try:
         read_notebook(data)
     except UnreadableSubmission as error:
@@ -181,14 +183,14 @@ def _answer(data: bytes) -> bytes:
 
 
 def _desk() -> Desk:
-    """Return the desks of this process, which are started at the first need."""
+    """Return the desk of this process, which is started when it is first needed."""
     with _changing:
         if not _desks:
             desk = Desk()
             try:
                 checked(
                     desk.answer(_SAMPLE)
-                )  # before the first student: what fails here is not a file's fault
+                )  # tried before the first student's file, so that a failure here is not blamed on a file
             except UnreadableSubmission as error:
                 desk.close()
                 raise ChannelClosed(f"not even a sample ({error})") from error

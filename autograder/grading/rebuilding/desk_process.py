@@ -1,9 +1,9 @@
-"""The desk: a process in a box that parses what one student handed in, and nothing else.
+"""The desk: a process in a box that parses the file of one student, and does nothing else.
 
-A fork of the fork server (:mod:`autograder.boxes.fork_server`), with the filter of readers. It gets the bytes of one
-file, and answers with a document of typed cells, or with the reason why there are none. A file can be made to keep a
-parser busy, or to use up memory: here the limits of the process end that. :mod:`autograder.grading.rebuilding.desk` is
-the way in.
+It is forked by the fork server (:mod:`autograder.boxes.fork_server`), with the system call filter for readers. It
+gets the bytes of one file, and answers with a document of typed cells or with the reason why there are none. A file
+can be crafted to keep a parser busy or to use up memory; the limits of this process then end it. Callers use
+:mod:`autograder.grading.rebuilding.desk`.
 """
 
 from __future__ import annotations
@@ -29,22 +29,23 @@ SAMPLE = (
     b'\xef\xbb\xbf{"nbformat": 4, "metadata": {}, "cells": [{"cell_type": "markdown", "source": ["\\ud800"], '
     b'"metadata": {"nbgrader": {"grade_id": "a", "grade": true}}, "attachments": {"a.png": {"image/png": "aa=="}}}]}'
 )
-"""A notebook with everything that a desk loads at its first use."""
+"""A notebook that makes a desk load everything that it loads at first use."""
 _PIECE = 1 << 20
 
 
 def prepare() -> None:
-    """Load what a desk needs: it can open no file itself."""
-    gc.disable()  # nothing made here can be freed before the end, but the collector would check it again and again
+    """Load everything that a desk needs, because the desk itself cannot open files."""
+    # Garbage collection off: nothing made here can be freed before the end, and it would be checked again and again.
+    gc.disable()
     for data in (SAMPLE, b"[", b"\xff"):
         answer_to(data)
 
 
 def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
-    """Parse one file and write the answer.
+    """Parse one file, and write the answer.
 
     Args:
-        call: Unused.
+        call: Not used.
         descriptors: The submitted file, and an empty file for the answer.
     """
     del call
@@ -55,7 +56,7 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
 
 
 def answer_to(data: bytes) -> bytes:
-    """Return the document about the bytes of a file, as JSON."""
+    """Return the document about a file, as JSON."""
     document: ReadNotebook | Unreadable
     try:
         cells, left_out = parse(data)

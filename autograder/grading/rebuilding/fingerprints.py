@@ -1,7 +1,7 @@
-"""Fingerprints of submissions, from their bytes alone; a run uses them to find submissions that have not changed.
+"""Fingerprints of submissions, computed from their bytes. A run uses them to find submissions that have not changed.
 
-Rebuilding a notebook would be more exact, but a class of a hundred students has a thousand notebooks, and in most
-runs few are new. A submission whose fingerprint differs is compared again, cell by cell.
+Rebuilding a notebook would be a more exact test, but a class of a hundred students has a thousand notebooks, and in
+most runs few of them are new. A submission whose fingerprint has changed is compared again, cell by cell.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Fingerprints:
-    """Computes the fingerprints of one class in its present state.
+    """Computes the fingerprints of a class in its current state.
 
     Args:
         directory: The class.
@@ -34,7 +34,7 @@ class Fingerprints:
         self._directory = directory
 
     def of(self, submission: Submission) -> str:
-        """Return a hash of the submission and everything from which its grade, notebook and page are made."""
+        """Return a hash of the submission, and of everything from which its grade, notebook and page are made."""
         files = [submission.folder / f"{name}{SUFFIX}" for name in self._notebooks(submission.assignment)]
         return _digest(
             [
@@ -66,12 +66,12 @@ class Fingerprints:
 
 
 def _trusted(path: Path) -> str:
-    """Return a hash of one of the class's own files, which may be a link or have a second name."""
+    """Return a hash of one of the class's own files. Unlike a submitted file, it may be a link."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def _content(path: Path) -> str:
-    """Return a hash of a submitted file, or of the reason why it cannot be read."""
+    """Return a hash of a submitted file or, if it cannot be read, of the reason."""
     try:
         return hashlib.sha256(read_bytes(path)).hexdigest()
     except UnreadableSubmission as error:

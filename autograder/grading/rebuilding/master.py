@@ -1,4 +1,4 @@
-"""The trusted master of a submission: the class's source notebook with stubs for solutions."""
+"""The trusted master of a submission: the class's source notebook, with stubs in place of solutions."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 
 
 def read_master(source: Path, config: Config) -> NotebookNode:
-    """Return the notebook as ``nbgrader generate_assignment`` enters it into the gradebook.
+    """Return the notebook that ``nbgrader generate_assignment`` would enter into the gradebook.
 
-    The master is made from the source, not read from ``release/``: it has hidden tests but no solutions. All callers
-    share one object, because copying it for each submission would take as long as reading it. A caller that changes
-    it must copy it first.
+    The master is made from the source and not read from ``release/``, because it has to contain hidden tests and no
+    solutions. All callers share one object, because copying it for each submission would take as long as reading it.
+    A caller that changes the object must copy it first.
 
     Args:
         source: The notebook in the class's ``source`` folder.
@@ -52,7 +52,7 @@ def read_master(source: Path, config: Config) -> NotebookNode:
 def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
     try:
         notebook = nbformat_nodes.read(data.decode())
-    except Exception as error:  # nbformat raises the errors of its JSON and schema libraries
+    except Exception as error:  # nbformat passes on all errors of its JSON and schema libraries
         raise MasterUnusable(
             f"{source} is not a notebook: {error}. Make it again or put back a copy."
         ) from error
@@ -61,9 +61,7 @@ def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
     for step in steps:
         try:
             notebook, resources = _step(step)().preprocess(notebook, resources)
-        except (
-            Exception
-        ) as error:  # each of nbgrader's steps raises what it likes, as for a missing END SOLUTION
+        except Exception as error:  # nbgrader's steps raise various errors, for example if END SOLUTION is missing
             raise MasterUnusable(f"{source} cannot be prepared as nbgrader does it: {error}") from error
     _check_cells(source, notebook)
     for cell in notebook.cells:
@@ -74,7 +72,7 @@ def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
 
 
 def _rubrics(source: NotebookNode) -> dict[str, dict[str, Any]]:
-    """Return the model answers and grading rules of the questions that a person grades, with pictures, by grade_id."""
+    """Return the model answers and grading rules for questions that a person grades, with pictures, by grade_id."""
     found = {}
     for cell in source.cells:
         if cell.cell_type == "markdown" and is_answer(cell):
@@ -86,7 +84,7 @@ def _rubrics(source: NotebookNode) -> dict[str, dict[str, Any]]:
 
 
 def _given_part(source: str) -> str:
-    """Return the lines of a cell that are not part of its solution; empty if nbgrader replaces the whole cell."""
+    """Return the lines of a cell that are not part of the solution; empty if nbgrader replaces the whole cell."""
     lines = source.splitlines()
     begin = next((place for place, line in enumerate(lines) if "BEGIN SOLUTION" in line), len(lines))
     end = next((place for place, line in enumerate(lines) if "END SOLUTION" in line), 0)
@@ -94,10 +92,10 @@ def _given_part(source: str) -> str:
 
 
 def check_of(cell: NotebookNode) -> CellCheck | None:
-    """Return the check of a master's cell, or None if the cell is not graded automatically.
+    """Return the check in a cell of a master; None if the cell is not graded automatically.
 
     Raises:
-        LookupError: The cell asks the judge, but no exercise has its name.
+        LookupError: The cell calls the judge, but there is no exercise with its name.
     """
     if not is_check(cell):
         return None
@@ -115,16 +113,16 @@ def check_of(cell: NotebookNode) -> CellCheck | None:
 
 
 def exercise_of(name: str) -> str:
-    """Return the id of the exercise that a check cell checks, or the cell's name if it checks none."""
+    """Return the id of the exercise that a check cell checks; if it checks none, the name of the cell."""
     return next((known for known in exercises.all_ids() if exercises.grade_id(known) == name), name)
 
 
 def _asks_the_judge(source: str) -> bool:
-    """True if a graded cell calls ``check`` with an exercise; then the cell's own tests do not decide."""
+    """Return True if a graded cell calls ``check`` with an exercise; then its own tests do not decide."""
     try:
         tree = ast.parse(source)
     except SyntaxError:
-        return "check(" in source  # a magic makes the cell invalid Python
+        return "check(" in source  # a magic makes the cell invalid Python, so it cannot be parsed
     return any(
         isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "check"
         for node in ast.walk(tree)
@@ -148,7 +146,7 @@ def _check_cells(source: Path, notebook: NotebookNode) -> None:
 
 
 def _steps(config: Config) -> tuple[str, ...]:
-    """The steps that a source notebook goes through before it is entered into the gradebook."""
+    """Return the steps that a source notebook goes through before it is entered into the gradebook."""
     configured = GenerateAssignment(
         config=Config({"GenerateAssignment": config.GenerateAssignment})
     ).preprocessors

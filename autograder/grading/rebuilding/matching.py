@@ -1,8 +1,8 @@
-"""Matches submitted cells with cells of the master, even if an editor has dropped nbgrader's marks.
+"""Matches submitted cells with cells of the master, even if an editor has dropped nbgrader's metadata.
 
-A cell is recognized by its grade_id, else by its id, else by its text. If an answer has no such cell, it is looked for
-in the student's other cells, by what they define. All of this decides only which text of a student answers which cell:
-the text of given cells and of checks always comes from the master.
+A cell is recognized by its grade_id, or else by its id, or else by its text. If no submitted cell matches an answer
+in this way, the answer is looked for in the student's other cells, by what they define. All of this decides only
+which text of a student belongs to which cell; the text of given cells and of checks always comes from the master.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ _WRITES = re2.compile(r"\A\s*%%(?:writefile|program)[ \t]+(?:-a[ \t]+|--append[ 
 
 @dataclass(frozen=True)
 class Known:
-    """A cell of the master, with everything that identifies a submitted cell as this one.
+    """A cell of the master, with everything by which a submitted cell can be recognized as this one.
 
     Attributes:
-        name: The grade_id; empty for a text cell that nbgrader does not know.
-        kind: Its type.
-        identifier: The cell's id in the released notebook.
+        name: The grade_id of the cell; empty for a text cell that nbgrader does not know.
+        kind: The type of the cell.
+        identifier: The id of the cell in the released notebook.
         texts: The cell's text in the master and in the released notebook.
-        is_answer: True if students write it.
-        given: The part of an answer's text that students receive, such as the question above the answer.
+        is_answer: True if students write this cell.
+        given: The part of an answer's text that students receive, for example the question above the answer.
     """
 
     name: str
@@ -49,12 +49,13 @@ class Known:
 
 @dataclass(frozen=True)
 class Matches:
-    """The submitted cells, grouped by the master's cells that they match.
+    """The result of matching: which submitted cells match which cells of the master.
 
     Attributes:
-        places: The indexes of the submitted cells that match each of the master's cells, by grade_id.
-        unmarked: The indexes of the cells that had lost their grade_id.
-        elsewhere: For unmatched answers, the indexes of cells that define the same names or write the same file.
+        places: For each cell of the master, by grade_id, the indexes of the submitted cells that match it.
+        unmarked: The indexes of the submitted cells that had lost their grade_id.
+        elsewhere: For answers that match no cell, the indexes of cells that define the same names or write the same
+            file.
         own: The indexes of the cells that match no cell of the master and contain a student's text.
     """
 
@@ -65,10 +66,10 @@ class Matches:
 
 
 def match(master: Sequence[Known], submitted: Sequence[SubmittedCell]) -> Matches:
-    """Match the submitted cells.
+    """Match the submitted cells with those of the master.
 
     Args:
-        master: The master's cells, in their order.
+        master: The cells of the master, in order.
         submitted: The submitted cells.
     """
     matching = _Matching(master, submitted)
@@ -83,7 +84,7 @@ def match(master: Sequence[Known], submitted: Sequence[SubmittedCell]) -> Matche
 
 
 def normalized(text: str) -> str:
-    """Return a text without what editors change by themselves: blanks at line ends, empty lines around it."""
+    """Return a text without what editors change by themselves: spaces at line ends, and empty lines around the text."""
     return "\n".join(line.rstrip() for line in text.strip().splitlines())
 
 
@@ -103,13 +104,13 @@ class _Matching:
                 self.places.setdefault(cell.grade_id, []).append(place)
 
     def by_id(self) -> None:
-        """Match cells without a known grade_id by the cell id."""
+        """Match cells that have no known grade_id by the id of the cell."""
         names = {cell.identifier: cell.name for cell in self._missing() if cell.identifier}
         for place, cell in self._left():
             self._take(names.get(cell.identifier, ""), place)
 
     def by_text(self) -> None:
-        """Match cells by exactly the same text; of several, the first with the first."""
+        """Match cells by exactly equal text. If several cells have it, the first matches the first."""
         names: dict[str, list[str]] = {}
         for missing in self._missing():
             for text in {normalized(text) for text in missing.texts} - {""}:
@@ -119,7 +120,7 @@ class _Matching:
             self._take(next((name for name in same if name not in self.places), ""), place)
 
     def by_given_part(self) -> None:
-        """Match missing answers that define nothing, such as texts, if only one cell contains the given part."""
+        """Match missing answers that define nothing, such as texts, if just one cell contains the given part."""
         for missing in self._missing():
             if not missing.is_answer or _defines(missing) or not self._is_telling(missing):
                 continue
@@ -130,7 +131,7 @@ class _Matching:
     def elsewhere(self) -> dict[str, list[int]]:
         """Find the cells that define what missing answers should define.
 
-        A given cell into which an answer was merged becomes the student's own; the original is put back.
+        If an answer was merged into a given cell, that cell becomes the student's own, and the original is put back.
         """
         code = {
             place: cell.source
@@ -165,18 +166,18 @@ class _Matching:
         return [(place, cell) for place, cell in enumerate(self._submitted) if place not in taken]
 
     def _is_telling(self, missing: Known) -> bool:
-        """True if the given part of an answer is in no other cell of the master."""
+        """Return True if no other cell of the master contains the given part of this answer."""
         others = (text for cell in self._master.values() if cell is not missing for text in cell.texts)
         return bool(missing.given.strip()) and not any(_has_lines(text, missing.given) for text in others)
 
 
 def _defines(answer: Known) -> str:
-    """Return what a stub defines: the path of the file that it writes, else a pattern for its names, else nothing."""
+    """Return what a stub defines: the path of a file that it writes, else a pattern for its names, else nothing."""
     return _file(answer.texts[0]) or (_names(answer.texts[0]) if answer.kind is CellType.CODE else "")
 
 
 def _is_answered_by(answer: Known, text: str) -> bool:
-    """True if a text defines, at its top level, what a stub defines."""
+    """Return True if a text defines, at its top level, what a stub defines."""
     if file := _file(answer.texts[0]):
         return _file(text) == file
     names = _names(answer.texts[0])
@@ -184,13 +185,13 @@ def _is_answered_by(answer: Known, text: str) -> bool:
 
 
 def _is_mentioned_by(answer: Known, text: str) -> bool:
-    """True if a text mentions the file that a stub writes, such as a script that writes this file in another way."""
+    """Return True if a text mentions the file that a stub writes; it may write this file in another way."""
     file = re2.escape(posixpath.basename(_file(answer.texts[0])))
     return bool(file) and re2.search(rf"(?:^|[^\w.-]){file}(?:[^\w-]|$)", text) is not None
 
 
 def _file(source: str) -> str:
-    """The path of the file that a cell writes; empty for any other cell."""
+    """Return the path of the file that a cell writes; empty for any other cell."""
     found = _WRITES.match(source)
     return posixpath.normpath(found[1]) if found else ""
 
@@ -214,7 +215,7 @@ def _defined_names(stub: str) -> list[str]:
     try:
         body = ast.parse(python_of(stub)).body
     except SyntaxError:
-        return []  # an instructor's own stub that contains a magic
+        return []  # this is an instructor's own stub that contains a magic, so it cannot be parsed
     names = []
     for node in body:
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
@@ -226,6 +227,6 @@ def _defined_names(stub: str) -> list[str]:
 
 
 def _has_lines(text: str, lines: str) -> bool:
-    """True if a text has these lines, in this order; blanks around a line do not count."""
+    """Return True if a text contains these lines in this order. Spaces around a line do not count."""
     there = (line.strip() for line in text.splitlines())
     return all(line.strip() in there for line in lines.splitlines() if line.strip())

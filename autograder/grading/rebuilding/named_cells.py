@@ -1,4 +1,4 @@
-"""The named cells of all notebooks of a class: they identify a notebook, whatever its file name is."""
+"""The named cells of all notebooks of a class. They identify a notebook, whatever its file name is."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
     from autograder.grading.rebuilding.submission import SubmittedCell
 
 Target = tuple[str, str]
-"""An assignment, and one of its notebooks."""
+"""An assignment and one of its notebooks."""
 
 
 class NamedCells:
-    """The named cells of a class's sources, read at the first use.
+    """The named cells in the sources of a class, read at the first use.
 
     Args:
-        sources: The file of each notebook.
+        sources: The source file of each notebook.
     """
 
     def __init__(self, sources: dict[Target, Path]) -> None:
@@ -32,11 +32,11 @@ class NamedCells:
         """A sentence about each source that cannot be read."""
 
     def closest(self, names: Collection[str], assignment: str = "") -> list[Target]:
-        """Return the notebooks that have most of these names; empty if none has any.
+        """Return the notebooks that contain most of these cell names; none if no notebook contains any of them.
 
         Args:
             names: The names of cells.
-            assignment: Only notebooks of this assignment; of all by default.
+            assignment: The assignment whose notebooks are searched; all assignments if empty.
         """
         shared = {
             target: len({cell.grade_id for cell in cells if cell.grade_id} & set(names))
@@ -47,13 +47,13 @@ class NamedCells:
         return [target for target, count in shared.items() if most and count == most]
 
     def assignments(self, cells: Iterable[SubmittedCell]) -> list[str]:
-        """Return the assignments whose graded cells are among these; a cell without its name may still have its id."""
+        """Return the assignments whose graded cells are among these. A cell without its name may still have its id."""
         marks = {mark for cell in cells for mark in _marks(cell)}
         return sorted({self._graded[mark] for mark in marks & self._graded.keys()})
 
     @functools.cached_property
     def _graded(self) -> dict[str, str]:
-        """The assignments by the marks of graded cells that no other assignment has."""
+        """Return the assignment for each mark of a graded cell, if no other assignment has this mark."""
         cells = [(assignment, cell) for (assignment, _), own in self._sources.items() for cell in own]
         often = Counter(
             mark for mark, _ in {(mark, assignment) for assignment, cell in cells for mark in _marks(cell)}
@@ -68,7 +68,7 @@ class NamedCells:
 
     @functools.cached_property
     def _sources(self) -> dict[Target, list[SubmittedCell]]:
-        """The cells of each notebook; empty for a notebook that cannot be read."""
+        """Return the cells of each notebook; none for a notebook that cannot be read."""
         found: dict[Target, list[SubmittedCell]] = {}
         for target, path in self._paths.items():
             try:

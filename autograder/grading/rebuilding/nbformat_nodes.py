@@ -1,4 +1,4 @@
-"""nbformat's constructors with types, which the library itself lacks."""
+"""nbformat's constructors with type annotations, which the library itself lacks."""
 
 from __future__ import annotations
 
@@ -41,17 +41,17 @@ _OUTPUT: Any = _Stream | _Display | _Result | _Error
 
 
 def notebook(cells: list[NotebookNode], metadata: dict[str, Any]) -> NotebookNode:
-    """Return a notebook of format 4.5 without validation: its cells come from the master, or from :func:`cell`."""
+    """Return a notebook of format 4.5 without validation; its cells come from the master, or from :func:`cell`."""
     return NotebookNode(metadata=_node(metadata), nbformat=4, nbformat_minor=5, cells=cells)
 
 
 def cell(kind: CellType, source: str, identifier: str = "") -> NotebookNode:
-    """Return a cell without outputs, skipping nbformat's validation, which would take longer than everything else.
+    """Return a cell without outputs. nbformat's validation is skipped: it would take longer than everything else.
 
     Args:
-        kind: Its type.
-        source: Its text.
-        identifier: The cell's id; random by default.
+        kind: The type of the cell.
+        source: The text of the cell.
+        identifier: The id of the cell; by default random.
     """
     made = NotebookNode(
         id=identifier or uuid.uuid4().hex[:8], cell_type=str(kind), metadata=NotebookNode(), source=source
@@ -63,12 +63,12 @@ def cell(kind: CellType, source: str, identifier: str = "") -> NotebookNode:
 
 
 def output(**fields: Any) -> NotebookNode:
-    """Return an output made of nbformat's fields, of the kinds that the boxes produce.
+    """Return an output with these fields of nbformat's, if it is of a kind that the boxes produce.
 
-    This check replaces nbformat's, which takes a hundred times as long.
+    This replaces nbformat's own check, which takes a hundred times as long.
 
     Raises:
-        msgspec.ValidationError: The fields are not those of an output.
+        msgspec.ValidationError: The fields are not those of such an output.
     """
     msgspec.convert(fields, _OUTPUT)
     made: NotebookNode = _node(fields)
@@ -76,7 +76,7 @@ def output(**fields: Any) -> NotebookNode:
 
 
 def read(text: str) -> NotebookNode:
-    """Return a notebook from its JSON text.
+    """Return the notebook that a JSON text contains.
 
     Raises:
         Exception: Any error of nbformat's JSON and schema libraries.

@@ -1,6 +1,6 @@
-"""Parses a notebook into typed cells, and trusts nothing but the text of the cells.
+"""Parses a notebook into typed cells, and trusts nothing in it but the text of the cells.
 
-For the desk, and for the class's own notebooks. What students hand in is parsed by a desk alone
+It is used by the desk, and for the class's own notebooks. A file that a student handed in is parsed only by a desk
 (:func:`autograder.grading.rebuilding.desk.read_notebook`).
 """
 
@@ -32,7 +32,7 @@ def parse(data: bytes) -> tuple[list[SubmittedCell], int]:
     """Return the cells of a submitted notebook.
 
     Returns:
-        The cells, and the number of those that were left out because they had not the form of a cell.
+        The cells, and the number of cells that were left out because they are not valid cells.
 
     Raises:
         UnreadableSubmission: The file is not a notebook.
@@ -115,7 +115,7 @@ def _cell(cell: Any) -> SubmittedCell | None:
 
 
 def _pictures(cell: Mapping[str, Any]) -> Iterator[Picture]:
-    """Yield the attached bitmaps; drawings, which may contain a script, are skipped."""
+    """Yield the bitmaps attached to a cell. Drawings (SVG), which may contain a script, are skipped."""
     attached = cell.get("attachments")
     for name, kinds in attached.items() if isinstance(attached, Mapping) else ():
         for kind in IMAGES if isinstance(kinds, Mapping) else ():
@@ -131,5 +131,5 @@ def _name(value: Any) -> str:
 
 
 def _text(value: str) -> str:
-    """Return a text that UTF-8 can encode: a lone surrogate is legal in JSON, but not in UTF-8."""
+    """Return a text changed so that UTF-8 can encode it: JSON allows lone surrogates, UTF-8 does not."""
     return value.encode("utf-8", "replace").decode("utf-8")

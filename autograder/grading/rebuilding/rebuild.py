@@ -1,9 +1,9 @@
-"""Builds the notebook that is executed from the trusted master, with nothing but text from the submission.
+"""Builds the notebook that is executed: from the trusted master, with only text from the submission.
 
-Locked cells and check cells come from the master, in its order. The submission contributes the text of solution
-cells, the student's own cells, which stay next to their neighbors, and the bitmaps that these texts show. Everything
-else in a submission (metadata, tags, outputs, ids) is dropped. Other figures in its text cells come from the master,
-and each appears no more often than in the master.
+Locked cells and check cells come from the master, in the master's order. The submission contributes the text of
+solution cells; the student's own cells, which stay next to their neighbors; and the bitmaps that these texts show.
+Everything else in a submission (metadata, tags, outputs, ids) is dropped. Any other picture in its text cells comes
+from the master, and appears no more often than in the master.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ def rebuild(
     """Build the notebook that is executed and graded from the master and the submitted cells.
 
     Args:
-        master: The released notebook: stubs instead of solutions, every important cell named by its grade_id.
-        submitted: The submission's cells.
+        master: The released notebook, with stubs instead of solutions. Every important cell has a name, its grade_id.
+        submitted: The cells of the submission.
         left_out: The number of submitted cells that could not be read.
         others: Other assignments whose graded cells are in the submission.
 
     Returns:
-        nbformat 4.5. If anything was repaired, the first cell tells it, and so does the metadata.
+        A notebook of format 4.5. If anything was repaired, the first cell and the metadata say so.
     """
     sorting = _Sorting(master, submitted)
     remarks = [
@@ -65,9 +65,9 @@ def rebuild_unreadable(master: NotebookNode, problem: str) -> NotebookNode:
 
 
 def is_of_another(master: NotebookNode, submitted: Sequence[SubmittedCell]) -> bool:
-    """True if the notebook was made from another master: most of its named cells, and all graded ones, are foreign.
+    """Return True if a notebook was made from another master: most named cells and all graded ones are foreign.
 
-    Some labs share names of cells. A notebook without named cells may come from any master.
+    Some labs have cells with the same names. A notebook without named cells may come from any master.
     """
     names = {cell.grade_id for cell in submitted if cell.grade_id}
     ours = {grade_id(cell) for cell in master.cells}
@@ -92,18 +92,18 @@ class _Sorting:
                 self._chosen[name] = self._elsewhere.pop(name)
 
     def cells(self) -> list[NotebookNode]:
-        """The cells of the rebuilt notebook."""
+        """Return the cells of the rebuilt notebook."""
         extras, late = self._extras_by_anchor(), self._late_checks()
         built: list[NotebookNode] = []
         pending: list[NotebookNode] = [_extra(cell) for cell in extras.get(_START, [])]
         for name, cell in self._master.items():
             if name not in late:
                 if name in self._chosen or is_check(cell):
-                    # A deleted check comes back after the student's own cells, which it may need.
+                    # A deleted check is put back after the student's own cells, because it may need them.
                     built += pending
                     pending = []
                 built.append(self._filled(name, cell))
-            # Any other deleted cell comes back before the student's cells, which may change what it defines.
+            # Any other deleted cell is put back before the student's cells, because they may change what it defines.
             pending += [_extra(extra) for extra in extras.get(name, [])]
             for check in [check for check, anchor in late.items() if anchor == name]:
                 built += [*pending, nbformat_nodes.copied(self._master[check])]
@@ -111,7 +111,7 @@ class _Sorting:
         return built + pending
 
     def remarks(self) -> list[str]:
-        """The differences from the master that the student should know about."""
+        """Return sentences about the differences from the master that the student should know."""
         found = [*self._on_lost_marks(), *self._on_missing_cells()]
         for name, places in self._places.items():
             found += self._remarks_on(name, places)
@@ -176,9 +176,9 @@ class _Sorting:
         return found
 
     def _choose(self, name: str, places: Sequence[int]) -> int:
-        """Return the last submitted cell of that name before its check: the one that counts when all cells are run.
+        """Return the last submitted cell with that name before its check, which counts when all cells are run.
 
-        An untouched stub does not count; a copy after the check counts only if no other copy exists.
+        An untouched stub does not count. A copy after the check counts only if there is no other copy.
         """
         stub = self._master[name].source.strip()
         answered = [place for place in places if self._submitted[place].source.strip() != stub] or places
@@ -186,18 +186,18 @@ class _Sorting:
         return ([place for place in answered if place < check] or answered)[-1]
 
     def _place_of_next_check(self, name: str) -> int:
-        """Return the index of the first later check of the master that is in the submission."""
+        """Return the index of the first submitted check that comes later in the master."""
         behind = itertools.dropwhile(lambda other: other != name, self._master)
         checks = (self._places[one] for one in behind if is_check(self._master[one]) and one in self._places)
         return max(next(checks, [len(self._submitted)]))
 
     def _anchor(self, place: int) -> str:
-        """Return the named cell at an index, or the nearest one before it."""
+        """Return the named cell at an index, or else the nearest one before it."""
         before = {at: name for name, at in self._chosen.items() if at <= place}
         return before[max(before)] if before else _START
 
     def _is_in_its_place(self, name: str, place: int) -> bool:
-        """True if a cell is exactly in the missing answer's place, so that using it as the answer moves nothing."""
+        """Return True if a cell is exactly where the missing answer should be, so that using it moves nothing."""
         names, anchor = list(self._master), self._anchor(place)
         behind = {at: other for other, at in self._chosen.items() if at > place}
         return (
@@ -207,7 +207,7 @@ class _Sorting:
         )
 
     def _late_checks(self) -> dict[str, str]:
-        """The checks that wait for an answer in another cell, and the named cell after which that answer comes."""
+        """Return, for each check that waits for an answer in another cell, the named cell before that answer."""
         names = list(self._master)
         late: dict[str, str] = {}
         for name, place in self._elsewhere.items():
@@ -218,7 +218,7 @@ class _Sorting:
         return late
 
     def _extras_by_anchor(self) -> dict[str, list[SubmittedCell]]:
-        """The student's own cells, grouped by the named cell before them."""
+        """Return the student's own cells, grouped by the named cell before them."""
         anchors = {place: name for name, place in self._chosen.items()}
         given = {
             place
@@ -243,28 +243,28 @@ class _Sorting:
             answer = self._submitted[self._chosen[name]]
             filled.update(source=answer.source, attachments=_attachments(answer))
         elif is_answer(cell) and self._may_be_answered_elsewhere(name):
-            # A stub would overwrite the student's definitions, so a note tells a person where to look.
+            # A stub would overwrite the student's definitions, so a note tells a person where to look instead.
             filled["source"] = _ELSEWHERE if cell.cell_type == CellType.MARKDOWN else f"# {_ELSEWHERE}"
         return filled
 
     def _may_be_answered_elsewhere(self, name: str) -> bool:
-        """True if another cell answers a missing one, or a person must look: nbgrader would give a stub zero points."""
+        """Return True if another cell may answer a missing one. A person must look, as a stub would get no points."""
         by_a_person = self._master[name].metadata.nbgrader.get("grade", False) and bool(self._matches.own)
         return name in self._elsewhere or by_a_person
 
 
 def grade_id(cell: NotebookNode) -> str:
-    """Return the name of a master's cell; empty if it has none."""
+    """Return the name (grade_id) of a master's cell; empty if it has none."""
     return str(cell.metadata.get("nbgrader", {}).get("grade_id", ""))
 
 
 def is_answer(cell: NotebookNode) -> bool:
-    """True if students fill in the cell."""
+    """Return True if students fill in the cell."""
     return bool(cell.metadata.get("nbgrader", {}).get("solution", False))
 
 
 def is_check(cell: NotebookNode) -> bool:
-    """True if the cell is graded automatically."""
+    """Return True if the cell is graded automatically."""
     marked = bool(cell.metadata.get("nbgrader", {}).get("grade", False))
     return marked and not is_answer(cell) and cell.cell_type == CellType.CODE
 
@@ -286,7 +286,7 @@ def _handed_out(cell: NotebookNode) -> tuple[str, str]:
 
 
 def is_the_masters(cell: NotebookNode) -> bool:
-    """True if a cell of a rebuilt notebook is exactly the master's."""
+    """Return True if a cell of a rebuilt notebook is exactly the master's."""
     marks = cell.get("metadata", {}).get("nbgrader", {})
     return bool(marks.get("locked")) and not marks.get("solution")
 
@@ -311,7 +311,7 @@ def _finished(master: NotebookNode, cells: list[NotebookNode], remarks: list[str
         if not is_the_masters(cell)
     )
     for index, cell in enumerate(cells):
-        # As items: nbformat's nodes look up an attribute in their class first, which is slower.
+        # Accessed as items, because for an attribute nbformat's nodes first search their class, which is slower.
         cell["id"] = _cell_id(cell, index)
         attached = cell.pop("attachments", {})
         shown = attached if is_the_masters(cell) else pictures.of(cell["source"], attached)
@@ -346,13 +346,13 @@ def _remarks_cell(remarks: list[str]) -> NotebookNode:
 
 
 def _escaped(text: str) -> str:
-    """Escape a remark: it may quote a student's text, which must not become markup."""
+    """Escape a remark, because it may quote a student's text, which must not become markup."""
     text = text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     return re.sub(r"([\\\[\]*#!|~$])", r"\\\1", " ".join(text.split()))
 
 
 def _were(names: Sequence[str]) -> str:
-    """Return the beginning of a sentence about cells."""
+    """Return the beginning of a sentence about these cells."""
     return (
         f"The cell {_quoted(*names)} was"
         if len(names) == 1
@@ -370,5 +370,5 @@ def _quoted(name: str) -> str:
 
 
 def _cell_id(cell: NotebookNode, index: int) -> str:
-    """Return an id made from the text, so that equal notebooks are equal in every byte; nbformat's ids are random."""
+    """Return an id made from the text, so that equal notebooks are equal in every byte. nbformat's ids are random."""
     return re.sub(r"[^A-Za-z0-9_-]", "-", f"{index}-{grade_id(cell) or 'own'}")[:64]

@@ -14,16 +14,16 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 MOST_CHARACTERS = 10_000_000
-"""The limit for all bitmaps attached to a notebook together, in bytes; a screenshot has a million."""
+"""The maximum size in bytes of all bitmaps attached to a notebook; a screenshot has a million."""
 _SHOWN = re2.compile(r"\(attachment:([\w.%+-]+)\)")
 
 
 class ShownPictures:
-    """Finds the pictures for the text cells that show them: a student's own, else the master's.
+    """Finds the pictures that text cells show: the student's own, or else the master's.
 
     Args:
-        given: The text of each of the master's cells as students receive it, and its attachments. A picture that no
-            such text shows belongs to a solution: no student receives it.
+        given: For each cell of the master, its text as students receive it, and its attachments. A picture that no
+            such text shows belongs to a solution, and no student receives it.
     """
 
     def __init__(self, given: Iterable[tuple[str, Mapping[str, Mapping[str, str]]]]) -> None:
@@ -36,7 +36,7 @@ class ShownPictures:
                 self._left[name] += 1
 
     def of(self, text: str, own: Mapping[str, Mapping[str, str]]) -> NotebookNode:
-        """Return the pictures that a text shows; each is used up, because copies of one cell must not bloat a page.
+        """Return the pictures that a text shows. Each can be used once, so that copies of a cell do not bloat a page.
 
         Args:
             text: The text of a cell.

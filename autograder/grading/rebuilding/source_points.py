@@ -1,6 +1,6 @@
 """The cells with points in a class's sources, compared with those in the gradebook.
 
-Reading a source takes a second for a chapter, because nbgrader's steps run on it, so the result is stored.
+The result is stored, because reading the source of a chapter takes a second: nbgrader's steps are run on it.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class GradedCell:
-    """A cell of a source that has points.
+    """A cell with points in a source notebook.
 
     Attributes:
-        notebook: The name of its notebook.
-        name: Its grade_id.
-        exercise: The exercise's id, or the cell's name if it checks no exercise.
-        worth: The points in the gradebook.
-        by_judge: True if the judge or the cell's own tests give the points, False if a person does.
+        notebook: The name of the notebook.
+        name: The grade_id of the cell.
+        exercise: The exercise's id; if the cell checks no exercise, the name of the cell.
+        worth: The maximum points of the cell in the gradebook.
+        by_judge: True if the judge or the cell's own tests give the points; False if a person does.
     """
 
     notebook: str
@@ -42,11 +42,11 @@ class GradedCell:
 
 @dataclass(frozen=True)
 class Released:
-    """The cells with points of a class's assignments.
+    """The cells with points in a class's assignments.
 
     Attributes:
         cells: The cells with points of each assignment, in the order of the course.
-        unusable: The assignments that cannot be graded against, with the reason.
+        unusable: The assignments that cannot be graded, with the reason.
     """
 
     cells: dict[str, tuple[GradedCell, ...]]
@@ -72,10 +72,10 @@ def read_released(directory: ClassDirectory, store: ClassStore, fingerprints: Fi
 
 
 def check_release(directory: ClassDirectory, cells: dict[str, tuple[GradedCell, ...]]) -> None:
-    """Check that the gradebook knows the cells that the sources have, with the same points.
+    """Check that the gradebook contains the same cells as the sources, with the same points.
 
     Raises:
-        ClassIncomplete: The assignment does not exist, or the gradebook has different cells or points.
+        ClassIncomplete: There is no assignment, or the gradebook has other cells or points.
     """
     if not cells:
         raise ClassIncomplete(
@@ -116,7 +116,7 @@ def _read(directory: ClassDirectory, assignment: str) -> list[GradedCell]:
 
 
 def _check_names(directory: ClassDirectory, assignment: str, names: list[str]) -> None:
-    """Check that each line of the table will have a different name."""
+    """Check that all lines of the table will have different names."""
     twice = next((name for name in names if [*names, *NO_EXERCISE].count(name) > 1), "")
     if twice:
         raise MasterUnusable(

@@ -1,4 +1,4 @@
-"""Read a file that a student handed in, and define what is taken over from it: the text of the cells."""
+"""Reads a file that a student handed in, and defines what is taken from it: the text of the cells."""
 
 from __future__ import annotations
 
@@ -19,18 +19,20 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 MAX_BYTES = 50_000_000
-"""The limit for a file in bytes; a notebook with many pictures in its outputs has a few megabytes."""
+"""The maximum size of a file in bytes. A notebook with many pictures in its outputs has a few megabytes."""
 MAX_CELLS = 2_000
 MAX_CELL_CHARACTERS = 100_000
-"""The limit for the text of one cell in characters; students write a few thousand."""
+"""The maximum length of the text of one cell, in characters; students write a few thousand."""
 MAX_CHARACTERS = 1_000_000
-"""The limit for the text of all cells together."""
+"""The maximum length of the text of all cells together, in characters."""
 LONGEST_REASON = 300
-"""The limit for a sentence of the desk in characters."""
+"""The maximum length of a sentence from the desk, in characters."""
 LONGEST_NAME = 200
-"""The limit for the name of a cell or a picture in characters."""
+"""The maximum length of the name of a cell or picture, in characters."""
 HARMLESS_LENGTH = 6_000
-"""The limit for a notebook's own cells that are rendered without a trial; the worst stay within a page's budget."""
+"""A notebook's own cells are rendered without a trial up to this total length in characters: even the worst stay within
+the time limit of a page.
+"""
 _LONGEST_SHOWN = 80
 _KINDS = {
     stat.S_ISLNK: "a link",
@@ -43,7 +45,7 @@ _KINDS = {
 
 
 class UnreadableSubmission(ValueError):
-    """The submission cannot be read as a notebook; the message is a sentence for the student."""
+    """The submission cannot be read as a notebook. The message is a sentence for the student."""
 
 
 _Name = Annotated[str, msgspec.Meta(max_length=LONGEST_NAME)]
@@ -56,11 +58,11 @@ class SubmittedCell:
 
     Attributes:
         kind: The type of the submitted cell.
-        source: Its text.
-        grade_id: The name that the cell claims to have; empty for none.
-        identifier: The cell's id; empty for none.
-        is_graded: True if the cell claims to have points; trusted only in a source.
-        pictures: The bitmaps attached to a text cell: name, type and content in base64.
+        source: The text of the cell.
+        grade_id: The name that the cell claims to have; empty if it has none.
+        identifier: The id of the cell; empty if it has none.
+        is_graded: True if the cell claims to have points. This is trusted only in a source.
+        pictures: The bitmaps attached to a text cell, each with name, type and base64 content.
     """
 
     kind: CellType
@@ -72,11 +74,11 @@ class SubmittedCell:
 
 
 class ReadNotebook(msgspec.Struct, frozen=True, tag=True):
-    """The answer of the desk about a file that is a notebook.
+    """The desk's answer about a file that is a notebook.
 
     Attributes:
         cells: The cells of the notebook.
-        left_out: The number of cells that were skipped because they are not valid cells.
+        left_out: The number of cells that were left out because they are not valid cells.
     """
 
     cells: Annotated[tuple[SubmittedCell, ...], msgspec.Meta(max_length=MAX_CELLS)]
@@ -84,10 +86,10 @@ class ReadNotebook(msgspec.Struct, frozen=True, tag=True):
 
 
 class Unreadable(msgspec.Struct, frozen=True, tag=True):
-    """The answer of the desk about any other file.
+    """The desk's answer about a file that is not a notebook.
 
     Attributes:
-        reason: A sentence for the student.
+        reason: A sentence for the student that says why.
     """
 
     reason: Annotated[str, msgspec.Meta(min_length=1, max_length=LONGEST_REASON)]
@@ -102,7 +104,7 @@ def read_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
 
     Args:
         path: The file's path.
-        most: The limit in bytes.
+        most: The maximum size in bytes.
 
     Raises:
         NotAFile: The path is a link, a pipe, a device or similar, or cannot be opened.
@@ -122,7 +124,7 @@ def read_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
 
 
 def reason_against_file(path: Path) -> str:
-    """Return why ``path`` cannot be a submission; empty for an ordinary file or if nothing exists there."""
+    """Return why ``path`` cannot be a submission; empty if it is an ordinary file or does not exist."""
     try:
         with _opened(path):
             return ""
@@ -134,7 +136,7 @@ def reason_against_file(path: Path) -> str:
 
 @contextlib.contextmanager
 def _opened(path: Path) -> Iterator[IO[bytes]]:
-    """Open an ordinary file. Its type is checked before, because opening a device may have effects, and after."""
+    """Open an ordinary file. Its type is checked both before, because opening a device may have effects, and after."""
     try:
         _check(path, path.lstat())
         with opened(path) as file:
@@ -161,11 +163,13 @@ def _check(path: Path, status: os.stat_result) -> None:
 
 
 def _is_somebody_elses(path: Path, status: os.stat_result) -> bool:
-    """True if a file with several names first had another name in the class, and so belongs to another student.
+    """Return True if a file with several names (hard links) first had another name in the class.
+
+    Then it belongs to another student.
 
     The first owner keeps the file, so that a student cannot make another student's work fail by giving it a second
-    name. A folder's change time shows when a name was made in it, and only the system can set it. Names outside the
-    class are a backup's.
+    name. The change time of a folder shows when a name was made in it, and only the system can set that time. Names
+    outside the class are assumed to belong to a backup.
     """
     submitted = next((folder for folder in path.parents if folder.name == "submitted"), path.parent)
     places = itertools.chain(files_below(submitted), files_below(submitted.parent / "source"))
@@ -184,7 +188,7 @@ def _same_file(place: Path, status: os.stat_result) -> bool:
 
 
 def _found_instead(folder: Path) -> str:
-    """Mention other notebooks in a folder: often, a browser has added a number to the name."""
+    """Return a sentence about other notebooks in a folder, because browsers often add a number to the name."""
     try:
         others = sorted(entry.name for entry in os.scandir(folder) if entry.name.endswith(".ipynb"))
     except OSError:
@@ -193,6 +197,6 @@ def _found_instead(folder: Path) -> str:
 
 
 def _shown(name: str) -> str:
-    """Make a file's name printable: a student, or a student's program, chose it."""
+    """Return the name of a file in printable form, because a student, or a student's program, chose it."""
     name = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in name)
     return name if len(name) <= _LONGEST_SHOWN else f"{name[:_LONGEST_SHOWN]}…"

@@ -37,17 +37,17 @@ def tasks_of(directory: ClassDirectory, submission: Submission) -> list[Task]:
     """Return the tasks of a submission, one for each notebook of the assignment.
 
     Raises:
-        MasterUnusable: A source notebook cannot be graded against.
+        MasterUnusable: Submissions cannot be graded against a source notebook.
     """
     notebooks = directory.notebooks(submission.assignment)
     return [task_of(directory, submission, notebook)[0] for notebook in notebooks]
 
 
 def task_of(directory: ClassDirectory, submission: Submission, notebook: str) -> tuple[Task, NotebookNode]:
-    """Return the task for a notebook of a submission under the class's limits, and the rebuilt notebook.
+    """Return the task for a notebook of a submission, with the class's limits; and the rebuilt notebook.
 
     Raises:
-        MasterUnusable: The source notebook cannot be graded against.
+        MasterUnusable: Submissions cannot be graded against the source notebook.
     """
     student, assignment = submission.student, submission.assignment
     master = directory.master(assignment, notebook)
@@ -75,7 +75,7 @@ def task_of(directory: ClassDirectory, submission: Submission, notebook: str) ->
 def _rebuilt(
     directory: ClassDirectory, submission: Submission, notebook: str, master: NotebookNode
 ) -> tuple[NotebookNode, str]:
-    """Return the notebook that represents the submitted file, and why it was not used (empty if it was)."""
+    """Return the notebook that stands for the submitted file, and why the file was not used (empty if it was)."""
     path = submission.folder / f"{notebook}{SUFFIX}"
     try:
         cells, left_out = read_notebook(read_bytes(path))
@@ -99,13 +99,13 @@ def _hash_of_pictures(rebuilt: NotebookNode) -> str:
 def cells_of(
     notebook: NotebookNode, *, demonstrations: bool = True, prose: Iterable[str] = ()
 ) -> tuple[Cell, ...]:
-    """Return the cells of a rebuilt notebook in the form for execution.
+    """Return the cells of a rebuilt notebook in the form in which they are executed.
 
     Args:
         notebook: The notebook.
-        demonstrations: True to also run the cells that only show something.
-        prose: Texts from the course. No student wrote them, although their cells are not locked. A copy of one counts
-            as the student's: rendering a page with thousands of them would take the grader seconds.
+        demonstrations: True to run cells that only show something, too.
+        prose: Texts from the course that no student wrote, although their cells are not locked. A further copy of
+            such a text counts as the student's, because rendering a page with thousands of copies would take seconds.
     """
     left_out = frozenset() if demonstrations else demonstrations_of(notebook)
     left = Counter(prose)

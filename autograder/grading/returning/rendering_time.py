@@ -83,11 +83,11 @@ def _renderer() -> Callable[[Cell], object]:
         elif cell.kind is CellType.MARKDOWN:
             piece = strip_files_prefix(clean(markdown2html_mistune(harmless_markdown(cell.source))))
         else:
-            return None  # a text this long is always shown as typed
+            return None  # cells of any other kind are always shown as typed
         return BeautifulSoup(piece, "html.parser")  # nbconvert/exporters/html.py: from_notebook_node
 
     for kind in (CellType.CODE, CellType.MARKDOWN):
         render(
             Cell("a <b>", kind)
-        )  # render something once, because lexers and parsers are loaded at their first use
+        )  # render once in advance: lexers and parsers are loaded at their first use
     return render

@@ -1,1 +1,1 @@
-"""Executes tasks in parallel, by worker processes with boxes and fork servers."""
+"""Executes tasks in parallel, with worker processes, boxes and fork servers."""

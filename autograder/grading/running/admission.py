@@ -1,9 +1,9 @@
-"""Check the answers of desks and of workers, on this machine as on others, before anything of them is used.
+"""Checks the answers of desks and workers, on this machine as on others, before anything in them is used.
 
-A desk parses a student's file, and a worker executes students' programs, so a student may have taken either over. An
-admitted document of a desk is one that some notebook could have. An admitted answer of a worker has the form of an
-execution of the task that was asked for, points within the limits of its checks, and outputs without anything that a
-browser would run.
+A desk parses a student's file, and a worker executes students' programs, so a student may have taken over either. A
+document of a desk is admitted if some notebook could have produced it. A worker's answer is admitted if it has the
+form of an execution of the task, with points within the limits of the task's checks, and with outputs that contain
+nothing that a browser would run.
 """
 
 from __future__ import annotations
@@ -33,19 +33,21 @@ if TYPE_CHECKING:
 
 LARGEST_OFFER = 4_000
 LARGEST_DOCUMENT = MAX_BYTES + 14_000_000
-"""Limit of a desk's document in bytes. Pictures are as long as in the file; a character of a text has up to 6 bytes."""
+"""The maximum size of a desk's document, in bytes. Pictures are as long as in the file; each character of a text has up
+to 6 bytes.
+"""
 _MOST_SLOTS = 1_000
 _LONGEST_WORDS = 1_000
 _CLOSING_LINE = 200
-"""Bytes that a sandbox itself adds to an output that it had to cut."""
+"""The number of bytes that a sandbox itself adds to an output that it had to cut."""
 
 
 class Forged(ValueError):
-    """The answer of a worker or a desk is not possible; the message says why."""
+    """The answer of a worker or desk is not possible. The message says why."""
 
 
 def admitted_offer(data: bytes) -> Offer:
-    """Return the offer of a worker, checked.
+    """Return a worker's offer after checking it.
 
     Raises:
         Forged: The data is not a valid offer.
@@ -62,7 +64,7 @@ def admitted_offer(data: bytes) -> Offer:
 
 
 def admitted_notebook(data: bytes) -> ReadNotebook | Unreadable:
-    """Return the document of a desk, checked.
+    """Return a desk's document after checking it.
 
     Raises:
         Forged: The data is not such a document.
@@ -84,10 +86,10 @@ def admitted_notebook(data: bytes) -> ReadNotebook | Unreadable:
 
 
 def admitted(data: bytes, task: Task) -> Execution:
-    """Return the execution of a task from a worker's answer, checked, with harmless outputs.
+    """Return the execution of a task from a worker's answer, after checking it and cleaning the outputs.
 
     Raises:
-        Forged: The data is not an execution, or not one of this task.
+        Forged: The data is not an execution, or not an execution of this task.
     """
     if len(data) > LARGEST_ANSWER:
         raise Forged(f"its answer has {len(data)} bytes")
@@ -123,7 +125,7 @@ def _look_at(verdict: Verdict, check: CellCheck) -> None:
 
 
 def _harmless(cells: tuple[CellRun, ...], limits: Limits) -> tuple[CellRun, ...]:
-    """Return the cells with their outputs cut and cleaned again, as their sandbox should have done."""
+    """Return the cells with their outputs cut and cleaned again, as the sandbox should already have done."""
     budget = Budget(limits.notebook_output_bytes + _CLOSING_LINE * len(cells))
     harmless = []
     for cell in cells:

@@ -1,4 +1,4 @@
-"""The backends that execute tasks: this machine, or the workers of a Dask cluster."""
+"""The ways to execute tasks: on this machine, or on the workers of a Dask cluster."""
 
 from __future__ import annotations
 
@@ -16,28 +16,30 @@ if TYPE_CHECKING:
     from autograder.grading.task import Task
 
     Execute = Callable[[Iterable[Task], Callable[[Task], None]], Generator[Done, None, None]]
-    """Takes tasks in their order and a function to call when one begins; yields results as they are ready."""
+    """A function of the tasks, in order, and of a function to call when one begins. It yields results as they are
+    ready.
+    """
 
 
 def remove_leftovers(directory: ClassDirectory) -> None:
-    """Remove temporary files of a killed batch, even if nothing will be executed.
+    """Remove temporary files that a killed batch left, even if nothing will be executed now.
 
-    The caller must hold the class's lock, so that no other process uses the files.
+    The caller must hold the lock of the class, so that no other process uses the files.
     """
     sweep(directory.scratch_prefix)
 
 
 @contextlib.contextmanager
 def local(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[Execute]:
-    """Execute on this machine.
+    """Prepare to execute on this machine.
 
     Args:
         directory: The class.
-        jobs: The number of notebooks at once; None for as many as processors and memory allow.
+        jobs: The number of notebooks to execute at the same time; None for as many as processors and memory allow.
         judge: The class that makes a judge, as ``module:class``; the real one if empty.
 
     Raises:
-        SandboxMissing: Submissions cannot be boxed on this machine; the message says what to do.
+        SandboxMissing: Submissions cannot be boxed on this machine. The message says what to do.
     """
     from autograder.grading.running import engine, sandboxing
 
@@ -54,7 +56,7 @@ def local(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[E
 def cluster(
     directory: ClassDirectory, scheduler: str, judge: str, tell: Callable[[str], None]
 ) -> Iterator[Execute]:
-    """Execute on the workers of a Dask cluster.
+    """Prepare to execute on the workers of a Dask cluster.
 
     Args:
         directory: The class.
@@ -63,7 +65,7 @@ def cluster(
         tell: Called with a sentence for the instructor.
 
     Raises:
-        GradingError: The cluster cannot be used; the message says why.
+        GradingError: The cluster cannot be used. The message says why.
     """
     from autograder.grading.cluster.connection import connected
     from autograder.grading.running import sandboxing

@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 @dataclass
 class Timings:
-    """Seconds of wall time for each part of a batch; the times of parallel notebooks are added up.
+    """Seconds of wall time for each part of a batch. The times of notebooks that run in parallel are added up.
 
     Attributes:
         boxes: Starting and ending boxes, kernels and judges.
-        students: Cells without a check: the student's own, and given cells.
-        judge: Check cells, including the subject that is judged in them.
-        rebuild: Reading submissions and building the notebooks that run.
+        students: Executing cells without a check: the student's own, and given cells.
+        judge: Executing check cells, including the subject that is judged in them.
+        rebuild: Reading submissions, and building the notebooks that are executed.
         gradebook: Converting notebooks and entering grades.
         feedback: Making feedback pages.
         first_started: The start of the first notebook, in seconds since the start of the batch.
@@ -51,7 +51,7 @@ class Timings:
 
     @contextmanager
     def measure(self, part: str) -> Iterator[None]:
-        """Add the duration of the block to ``part``."""
+        """Measure the duration of the block, and add it to ``part``."""
         began = time.monotonic()
         try:
             yield
@@ -59,7 +59,7 @@ class Timings:
             setattr(self, part, getattr(self, part) + time.monotonic() - began)
 
     def line(self) -> str:
-        """The times as one line of text; empty if nothing took any time."""
+        """Return the times as a line of text; empty if nothing took any time."""
         parts = (
             ("boxes and kernels", self.boxes),
             ("students' code", self.students),

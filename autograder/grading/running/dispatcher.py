@@ -1,8 +1,9 @@
-"""Give tasks to workers, on this machine or of a cluster, and decide which tasks run again and which run alone.
+"""Gives tasks to workers, on this machine or in a cluster, and decides which tasks run again and which run alone.
 
-A worker is a machine with slots: this machine is one worker. A task runs again, alone, if its execution proves nothing:
-the grader had trouble, or other tasks may have used up what this one was short of. A task also runs again if its worker
-has ended. No answer is used before :func:`autograder.grading.running.admission.admitted` has checked it.
+A worker is a machine with slots; this machine counts as one worker. A task runs again, alone, if its execution proves
+nothing: the grader had trouble, or other tasks may have used up resources that this one needed. A task also runs
+again if its worker has ended. No answer is used before :func:`autograder.grading.running.admission.admitted` has
+checked it.
 """
 
 from __future__ import annotations
@@ -44,11 +45,11 @@ if TYPE_CHECKING:
     from autograder.grading.task import Task
 
 ATTEMPTS = 3
-"""Limit of the workers that a task may lose: it may be what ends them."""
+"""The maximum number of workers that may end while they run a task, because the task may be what ends them."""
 _RETURN_SECONDS = 60.0
-"""Seconds to wait for a worker if none is left: a worker that ended is often started again."""
+"""Seconds to wait for a worker if none is left, because a worker that ended is often started again."""
 _EXTRA_SECONDS = 90.0
-"""Seconds after a task's own time limits at which its worker counts as lost."""
+"""A worker is assumed to be lost this many seconds after the time limits of its task."""
 _MOST_IN_FLIGHT = 2_000
 _MOST_TROUBLES = 3
 
@@ -63,24 +64,24 @@ class SchedulerGone(GradingError):
 
 @dataclass
 class _Worker:
-    """A worker that was accepted."""
+    """A worker whose offer was accepted."""
 
     name: str
     slots: int
     troubles: int = 0
-    """The number of successive notebooks with trouble."""
+    """The number of notebooks in a row with which the worker had trouble."""
     flights: set[int] = field(default_factory=set)
 
 
 @dataclass
 class _Job:
-    """A task to execute, how often that was tried, and on which workers."""
+    """A task to execute, with the number of attempts and the workers that have tried it."""
 
     task: Task
     attempts: int = 0
     tried: set[str] = field(default_factory=set)
     alone: bool = False
-    """True after an execution that proves nothing: its worker executes nothing else at the same time."""
+    """True after an execution that proves nothing. The worker then executes nothing else at the same time."""
     cpu_seconds: float = 0.0
     """The processor time of that execution, in seconds."""
 
@@ -94,17 +95,17 @@ class _Flight:
 
 @dataclass(frozen=True)
 class Done:
-    """A task that was executed, or could not be."""
+    """A task that was executed, or that could not be executed."""
 
     task: Task
     execution: Execution
 
 
 class Link(Protocol):
-    """The connection to the workers."""
+    """The connection between the dispatcher and the workers."""
 
     def say(self, command: Command) -> None:
-        """Send a command. If the connection is broken, do nothing: :meth:`hear` returns ``Broken`` then."""
+        """Send a command. If the connection is broken, nothing happens, and :meth:`hear` returns ``Broken``."""
 
     def hear(self, within: float | None) -> News | None:
         """Return the next message; None if none came within this number of seconds (None: no limit)."""
@@ -117,8 +118,8 @@ class Dispatcher:
         link: The connection to the workers.
         address: The address of the cluster's scheduler, for messages; empty for this machine.
         judge: The class of the judge, as ``module:class``.
-        boxed: True if tasks run in sandboxes; a worker without any is refused then.
-        tell: Called with a sentence for the instructor, such as which worker was refused and why.
+        boxed: True if tasks run in sandboxes. Then a worker that has none is rejected.
+        tell: Called with sentences for the instructor, for example that a worker was rejected and why.
         return_seconds: Seconds to wait for a worker if none is left.
     """
 
@@ -145,7 +146,7 @@ class Dispatcher:
         self._number = 0
 
     def await_workers(self) -> None:
-        """Wait until a worker is accepted, or until all workers have been asked.
+        """Wait until a worker is accepted, or until all workers have been asked for their offers.
 
         Raises:
             SchedulerGone: The scheduler cannot be reached.
@@ -163,7 +164,7 @@ class Dispatcher:
         """Execute tasks on the workers, and yield results as they are ready.
 
         Args:
-            tasks: The tasks in the order in which they begin; taken one by one, when a worker is free.
+            tasks: The tasks in the order in which they begin. They are taken one by one, when a worker is free.
             on_start: Called when a task is given to a worker for the first time.
 
         Raises:
@@ -189,7 +190,7 @@ class Dispatcher:
                 yield self._done.pop()
 
     def _give_out(self, jobs: Iterator[_Job], on_start: Callable[[Task], None]) -> None:
-        """Fill every free slot. Nothing is queued on a worker, so little is lost with it."""
+        """Fill every free slot. Nothing is queued at a worker, so little is lost if the worker ends."""
         for address, worker in self._workers.items():
             while len(worker.flights) < worker.slots and len(self._flights) < _MOST_IN_FLIGHT:
                 job = self._next_for(address, worker, jobs)
@@ -201,10 +202,12 @@ class Dispatcher:
         self._look_ahead(jobs)
 
     def _next_for(self, address: str, worker: _Worker, jobs: Iterator[_Job]) -> _Job | None:
-        """Return the next task of a worker: at most one that was lost before, and if possible not by this worker.
+        """Return the next task for a worker.
 
-        A lost task may be what ends workers, and no other lost task must be lost with it again. Tasks that run alone
-        come when there is nothing else for this worker, because it is empty then.
+        A worker gets at most one task that was lost before, and if possible not one that it lost itself.
+
+        A task that was lost may be what ends workers, and no other such task must be lost together with it. Tasks
+        that must run alone come when there is nothing else for this worker, because it is empty then.
         """
         held = [self._flights[number].job for number in worker.flights]
         if any(job.alone for job in held):
@@ -217,7 +220,7 @@ class Dispatcher:
         return None if held else self._taken_from(self._alone, address)
 
     def _taken_from(self, waiting: list[_Job], address: str) -> _Job | None:
-        """Take the first task that this worker has not tried, or that all workers have tried."""
+        """Take the first waiting task that this worker has not tried, or that all workers have tried."""
         for job in waiting:
             if address not in job.tried or job.tried >= self._workers.keys():
                 waiting.remove(job)
@@ -245,7 +248,7 @@ class Dispatcher:
         return min(deadlines) - time.monotonic() if deadlines else None
 
     def _order(self, task: Task) -> bytes:
-        # A worker does not need the name of the student.
+        # The worker does not need to know the student.
         nameless = msgspec.json.encode(replace(task, student=""))
         return msgspec.json.encode(Order(msgspec.Raw(nameless), self._judge))
 
@@ -312,7 +315,7 @@ class Dispatcher:
             return
         worker = self._workers[flight.worker]
         self._land(number)
-        # If a task ran alone, the trouble may come from its notebook, and such tasks follow each other.
+        # If a task ran alone, its notebook may have caused the trouble, and such tasks come one after the other.
         if not flight.job.alone:
             worker.troubles = worker.troubles + 1 if execution.trouble else 0
         if self._comes_again(flight.job, execution):
@@ -320,27 +323,27 @@ class Dispatcher:
         else:
             self._done.append(Done(flight.job.task, execution))
         if worker.troubles >= _MOST_TROUBLES and len(self._workers) > 1:
-            # Such as a full disk: the worker would end each notebook at once, and get the next ones.
+            # For example, if a worker's disk is full, it would end each notebook at once and then get the next one.
             self._turn_out(
                 flight.worker, f"it had trouble with {worker.troubles} notebooks: {execution.trouble}"
             )
 
     def _comes_again(self, job: _Job, execution: Execution) -> bool:
-        """Return True if the task must run again: its execution proves nothing, or other workers may do better."""
+        """Return True if the task must run again: its execution proves nothing, or another worker may succeed."""
         if not job.alone:
             return execution.says_nothing
         return bool(execution.trouble) and self._others_may_do(job)
 
     def _do_alone(self, flight: _Flight, execution: Execution) -> None:
         job = flight.job
-        if not execution.trouble:  # its worker did nothing wrong
+        if not execution.trouble:  # the worker did nothing wrong
             job.attempts -= 1
             job.tried.discard(flight.worker)
         job.alone, job.cpu_seconds = True, execution.cpu_seconds
         self._wait(job)
 
     def _wait(self, job: _Job) -> None:
-        """Let a job wait for its next worker. Of jobs that run alone, the one with most processor time comes last."""
+        """Put a job into the queue. Of jobs that run alone, the one that used most processor time comes last."""
         if job.alone:
             bisect.insort(self._alone, job, key=operator.attrgetter("cpu_seconds"))
         else:
@@ -355,11 +358,11 @@ class Dispatcher:
             self._lost(number, f"the answer of its worker process is not possible: {reason}")
             return
         for held in self._workers[address].flights:
-            self._flights[held].job.attempts -= 1  # the fault of the worker, not of the notebook
+            self._flights[held].job.attempts -= 1  # this was the fault of the worker, not of the notebook
         self._turn_out(address, f"it sent an impossible answer: {reason}. Look at that machine")
 
     def _turn_out(self, address: str, reason: str) -> None:
-        """Give an accepted worker no more work; other workers do its tasks."""
+        """Give an accepted worker no more work. Other workers execute its tasks."""
         name = self._workers[address].name
         self._forget(address, f"its worker was turned out: {reason}")
         self._refuse(address, name, reason)
@@ -397,7 +400,7 @@ class Dispatcher:
 
 
 def _most_seconds(task: Task) -> float:
-    # A machine tries a task whose worker process ended once more.
+    # The factor 2 is because a machine tries a task again if its worker process ended.
     return 2 * task.limits.longest + _EXTRA_SECONDS
 
 

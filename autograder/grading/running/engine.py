@@ -1,4 +1,4 @@
-"""Execute the tasks of a class on this machine, as many at once as it has memory for."""
+"""Executes the tasks of a class on this machine, as many at the same time as the memory allows."""
 
 from __future__ import annotations
 
@@ -21,9 +21,11 @@ if TYPE_CHECKING:
     from autograder.grading.task import Task
 
 _PER_CORE = 4
-"""Notebooks for each processor: a notebook mostly waits for a timer, for discovery or for the start of a program."""
+"""The number of notebooks per processor. A notebook mostly waits: for a timer, for discovery, or for a program to
+start.
+"""
 BOX_BYTES = Limits().beside_bytes + 150_000_000
-"""Memory that one more notebook may take, with its sandbox, judge and worker process."""
+"""The memory in bytes that each further notebook may take, with its sandbox, judge and worker process."""
 _RESERVE_BYTES = 1_000_000_000
 
 
@@ -33,9 +35,10 @@ def cores() -> int:
 
 
 def at_once(processors: int, free_bytes: int) -> int:
-    """Return the default number of notebooks at once: all of them fit into memory if each takes its whole share.
+    """Return the default number of notebooks to execute at once: all fit into memory if each takes its full share.
 
-    One build on each processor has memory, too. A notebook that needs more than its share is executed again, alone.
+    The memory also has to hold one build per processor. A notebook that needs more than its share is executed again,
+    alone.
     """
     room = free_bytes - _RESERVE_BYTES - processors * BUILD_LIMITS.beside_bytes
     return max(1, min(processors * _PER_CORE, room // BOX_BYTES))
@@ -51,13 +54,14 @@ def execute_all(
 ) -> Generator[Done, None, None]:
     """Execute tasks in parallel, and yield results as they are ready.
 
-    Leaving the loop early ends every worker process and what it runs.
+    If the caller leaves the loop early, every worker process and what it runs is ended.
 
     Args:
-        tasks: The tasks in the order in which they begin; a thread takes each of them when there is a slot for it.
+        tasks: The tasks in the order in which they begin. A thread takes each of them when a slot becomes free.
         scratch: The folder in which submissions run. The caller removes it.
-        workers: The number of notebooks at once; None for the number from :func:`at_once`.
-        on_start: Called from a thread when a task begins.
+        workers: The number of notebooks to execute at the same time; None for the number that :func:`at_once`
+            returns.
+        on_start: Called in another thread when a task begins.
         judge: The class of the judge, as ``module:class``.
     """
     slots = workers or at_once(cores(), psutil.virtual_memory().available)
@@ -66,12 +70,12 @@ def execute_all(
         dispatcher = Dispatcher(machine, "", judge=judge, boxed=True, tell=lambda _: None)
 
         def dispatch() -> None:
-            """Dispatch in a thread, so that no slot is empty while the caller stores a result."""
+            """Dispatch in a separate thread, so that no slot is empty while the caller stores a result."""
             try:
                 for done in dispatcher.execute_all(tasks, on_start):
                     results.put(done)
                 results.put(None)
-            except BaseException as error:  # the caller waits for results
+            except BaseException as error:  # pass the error on, because the caller waits for results
                 results.put(error)
 
         thread = threading.Thread(target=dispatch, daemon=True)

@@ -1,6 +1,6 @@
-"""Define the messages between the dispatcher and the machines that execute tasks, and a machine's offer.
+"""Messages between the dispatcher and the machines that execute tasks; and the offer of a machine.
 
-For a cluster they are lines of JSON to the client process, for this machine plain objects. Orders and answers are
+For a cluster, they are lines of JSON to the client process; for this machine, plain objects. Orders and answers are
 bytes, which the client process never decodes.
 """
 
@@ -9,17 +9,18 @@ from __future__ import annotations
 import msgspec
 
 ADDRESS = "this machine"
-"""The address of the worker that is this machine. It is never refused: then nothing could be graded."""
+"""The address of the worker that is this machine. This worker is never rejected: otherwise nothing could be graded."""
 JUDGE = "autograder.judge.serving.process:JudgeProcess"
 """The class of the real judge, as ``module:class``. It is named, not imported: only workers load a judge."""
 
 
 class Offer(msgspec.Struct, frozen=True):
-    """A worker's description of itself before it gets work.
+    """What a worker says about itself before it gets work.
 
     Attributes:
-        version: The version of its course (:func:`autograder.grading.rebuilding.course_version.course_version`).
-        slots: The number of notebooks that it executes at once.
+        version: The version of the worker's course
+            (:func:`autograder.grading.rebuilding.course_version.course_version`).
+        slots: The number of notebooks that it executes at the same time.
         obstacle: Why it cannot execute in sandboxes, and what to do; empty if it can.
     """
 
@@ -29,7 +30,7 @@ class Offer(msgspec.Struct, frozen=True):
 
 
 class Order(msgspec.Struct, frozen=True):
-    """An order to a worker.
+    """An order to a worker: execute this task.
 
     Attributes:
         task: The task, as JSON.
@@ -41,11 +42,11 @@ class Order(msgspec.Struct, frozen=True):
 
 
 class Give(msgspec.Struct, frozen=True, tag=True):
-    """A command: have this worker execute this order.
+    """A command to the connection: have this worker execute this order.
 
     Attributes:
-        number: Identifies the order in the answer.
-        worker: The worker's address.
+        number: A number that identifies the order in the answer.
+        worker: The address of the worker.
         order: An :class:`Order` as JSON.
     """
 
@@ -55,13 +56,13 @@ class Give(msgspec.Struct, frozen=True, tag=True):
 
 
 class Drop(msgspec.Struct, frozen=True, tag=True):
-    """A command: the answer to this order is no longer needed."""
+    """A command to the connection: the answer to this order is no longer needed."""
 
     number: int
 
 
 class Joined(msgspec.Struct, frozen=True, tag=True):
-    """A worker exists and has sent something that should be an :class:`Offer`."""
+    """A message: a worker exists, and has sent something that should be an :class:`Offer`."""
 
     worker: str
     name: str
@@ -69,7 +70,7 @@ class Joined(msgspec.Struct, frozen=True, tag=True):
 
 
 class Unfit(msgspec.Struct, frozen=True, tag=True):
-    """A worker exists but has sent no offer."""
+    """A message: a worker exists, but has sent no offer."""
 
     worker: str
     name: str
@@ -77,29 +78,29 @@ class Unfit(msgspec.Struct, frozen=True, tag=True):
 
 
 class Asked(msgspec.Struct, frozen=True, tag=True):
-    """Every worker that existed at the beginning has been asked."""
+    """A message: every worker that existed at the beginning has been asked for its offer."""
 
 
 class Left(msgspec.Struct, frozen=True, tag=True):
-    """A worker has ended."""
+    """A message: a worker has ended."""
 
     worker: str
 
 
 class Answered(msgspec.Struct, frozen=True, tag=True):
-    """A worker's answer, which should be an execution as JSON; it has not been checked."""
+    """A message: a worker's answer, which should be an execution as JSON. It has not been checked yet."""
 
     number: int
     data: bytes
 
 
 class Failed(msgspec.Struct, frozen=True, tag=True):
-    """An order brought no answer.
+    """A message: there is no answer to an order.
 
     Attributes:
         number: The number of the order.
-        reason: The reason.
-        forged: True if the worker has answered something that no worker of ours would.
+        reason: Why there is no answer.
+        forged: True if the worker's answer was one that an unmodified worker would never send.
     """
 
     number: int
@@ -108,7 +109,7 @@ class Failed(msgspec.Struct, frozen=True, tag=True):
 
 
 class Broken(msgspec.Struct, frozen=True, tag=True):
-    """No worker can be reached any more. No message follows."""
+    """A message: no worker can be reached any more. No message follows this one."""
 
     reason: str
 
@@ -117,4 +118,6 @@ Command = Give | Drop
 News = Joined | Unfit | Asked | Left | Answered | Failed | Broken
 
 LARGEST_ANSWER = 16_000_000
-"""Limit of an answer in bytes. A notebook's outputs are cut at 2 MB, and its evidence at 4 MB, a third more as JSON."""
+"""The maximum size of an answer in bytes. A notebook's outputs are cut at 2 MB, and its evidence at 4 MB, which is a
+third more as JSON.
+"""

@@ -1,7 +1,8 @@
-"""Progress while a class is graded: a bar in a terminal, plain lines in a log file or a notebook.
+"""Progress while a class is graded: a bar in a terminal, or plain lines in a log file or a notebook.
 
-The time left is estimated from the finished notebooks. If that time has passed and a notebook still runs, the
-estimate was wrong; then the text names the notebook, how long it has run, and when it will be stopped at the latest.
+The remaining time is estimated from the finished notebooks. If the estimated time has passed and a notebook is still
+running, the estimate was wrong. The text then names the notebook, how long it has been running, and when it will be
+stopped at the latest.
 """
 
 from __future__ import annotations
@@ -21,39 +22,39 @@ if TYPE_CHECKING:
     from rich.progress import Task
 
 _LINES = 20
-"""The most lines that a batch writes into a log file."""
+"""The maximum number of lines that a batch writes into a log file."""
 _SILENCE = 30.0
-"""Seconds after which a log file reports a notebook that runs longer than estimated."""
+"""Seconds of silence after which a log file gets a line about a notebook that runs longer than estimated."""
 
 
 def plain_line(console: Console, text: str, style: str = "") -> None:
-    """Print a text as it is: without markup, highlighting and line breaks."""
+    """Print a text unchanged: without markup, highlighting and line breaks."""
     console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
 
 
 class _Now(ProgressColumn):
-    """Shows what is going on now: computed whenever the bar is drawn, not only when a notebook begins or ends."""
+    """A column of the progress bar that shows what is going on, computed each time the bar is drawn."""
 
     def __init__(self, now: Callable[[], str]) -> None:
         super().__init__()
         self._now = now
 
     def render(self, task: Task) -> Text:
-        """Return the text next to the bar."""
+        """Return the text that is shown next to the bar."""
         del task
         return Text(self._now())
 
 
 class BatchProgress:
-    """Counts notebooks done, running, waiting and failed; safe to call from any thread.
+    """Counts notebooks that are done, running, waiting or failed. Any thread may call it.
 
     Args:
         console: The console for the progress.
         total: The number of notebooks to execute.
-        doing: The word for the work in the bar.
-        did: The word for finished work.
+        doing: The word for the work in progress, such as "grading".
+        did: The word for finished work, such as "graded".
         longest: Seconds after which a notebook is stopped in any case; None if unknown.
-        clock: Returns the time in seconds.
+        clock: Returns the current time in seconds.
     """
 
     def __init__(
@@ -77,7 +78,8 @@ class BatchProgress:
         self._began = self._last = clock()
         self._closed = threading.Event()
         self._lock = threading.Lock()
-        # A notebook is not a terminal: it would show the characters that move the cursor.
+        # A notebook is treated like a log file, because it would show the characters that move the cursor in a
+        # terminal.
         self._lively = console.is_terminal and not console.is_jupyter
         self._bar = Progress(
             Words(doing),
@@ -104,7 +106,7 @@ class BatchProgress:
             self._bar.stop()
 
     def started(self, label: str) -> None:
-        """Note that a notebook begins.
+        """Record that a notebook begins.
 
         Args:
             label: The name of the notebook.
@@ -113,12 +115,12 @@ class BatchProgress:
             self._running[label] = self._clock()
 
     def finished(self, label: str, failed: bool, note: str = "") -> None:
-        """Note that a notebook is done.
+        """Record that a notebook is done.
 
         Args:
             label: The name of the notebook, as in :meth:`started`.
-            failed: True if the grader itself failed on it.
-            note: The text after the name.
+            failed: True if the grader itself failed on the notebook.
+            note: Text to show after the name.
         """
         with self._lock:
             self._running.pop(label, None)
@@ -133,7 +135,7 @@ class BatchProgress:
             plain_line(self._console, text)
 
     def tell(self) -> None:
-        """Write into a log file which notebook runs longer than estimated, if one does."""
+        """If a notebook runs longer than estimated, write a line about it into the log file."""
         with self._lock:
             late = self._is_late() and f"still {', '.join(self._now())}"
         if late:
@@ -144,7 +146,7 @@ class BatchProgress:
             self.tell()
 
     def _rest(self) -> str:
-        """The text in parentheses at the end of a line of the log; empty for the last line."""
+        """Return the text in parentheses at the end of a line in the log; empty for the last line."""
         return f" ({', '.join(self._now())})" if self._done < self._total else ""
 
     def _now(self) -> list[str]:
@@ -160,18 +162,18 @@ class BatchProgress:
         return words
 
     def _each(self) -> float:
-        """Return the seconds from one finished notebook to the next."""
+        """Return the average time in seconds between two finished notebooks."""
         return max(1e-3, self._last - self._began) / max(1, self._done)
 
     def _rest_of_all(self) -> float:
         return self._each() * (self._total - self._done)
 
     def _is_late(self) -> bool:
-        """True if the estimated time has passed, and a notebook still runs."""
+        """Return True if the estimated time has passed and a notebook is still running."""
         return bool(self._running and self._done) and self._clock() > self._last + self._rest_of_all()
 
     def _slowest(self) -> list[str]:
-        # A copy, because notebooks begin and end in other threads.
+        # Use a copy, because notebooks begin and end in other threads.
         label, since = min(self._running.copy().items(), key=lambda one: one[1])
         seconds = self._clock() - since
         words = [f"{label} for {_duration(seconds)} now"]

@@ -1,4 +1,4 @@
-"""Requires a sandbox: without one, grading stops unless the user explicitly asked for it."""
+"""Requires a sandbox: without one, nothing is graded unless the user explicitly asked for that."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ NOTE = (
     "Graded without a sandbox: what was handed in ran with all rights of whoever graded it "
     "and could have changed any grade."
 )
-"""Shown in the report and on each page of feedback."""
+"""A warning that the report and each page of feedback show."""
 
 
 class SandboxMissing(GradingError):
@@ -23,16 +23,18 @@ class SandboxMissing(GradingError):
 
 
 _off: set[Path] = set()
-"""Folders of the classes for which ``--unsafe-no-sandbox`` was given; several objects may stand for one class."""
+"""The folders of the classes for which ``--unsafe-no-sandbox`` was given. Folders are stored, because several objects
+may represent one class.
+"""
 
 
 def switch_off(path: Path) -> None:
-    """Grade the class at ``path`` without boxes from now on, in this process: the option ``--unsafe-no-sandbox``."""
+    """Grade the class at ``path`` without boxes from now on, in this process, as ``--unsafe-no-sandbox`` does."""
     _off.add(path.resolve())
 
 
 def switched_off(directory: ClassDirectory) -> bool:
-    """True if this class is graded without boxes, because of its configuration or :func:`switch_off`."""
+    """Return True if this class is graded without boxes, because of its configuration or :func:`switch_off`."""
     configured = directory.config.WireExecute.get("unsafe_no_sandbox", False)
     return bool(configured) or directory.path.resolve() in _off
 
@@ -41,7 +43,8 @@ def require(directory: ClassDirectory) -> None:
     """Check that submissions of this class can be boxed, or that the user allowed grading without boxes.
 
     Raises:
-        SandboxMissing: The message gives the reason, and says what to do.
+        SandboxMissing: They cannot be boxed, and the user did not allow grading without boxes. The message says what
+            to do.
     """
     if switched_off(directory):
         return

@@ -1,4 +1,4 @@
-"""Execute orders on this machine: for the dispatcher of a class here, or for a Dask worker."""
+"""Executes orders on this machine, for the dispatcher of a class or for a Dask worker."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ _STOPPED = Broken("the run was stopped")
 
 
 class WorkerProcesses:
-    """The worker processes of this machine, kept from order to order, each used by one thread at a time.
+    """The worker processes of this machine. They are kept from order to order; only one thread at a time uses each.
 
     Args:
-        scratch: The folder in which submissions run; each process gets a folder of its own in it.
+        scratch: The folder in which submissions run. Each process gets a separate folder in it.
     """
 
     def __init__(self, scratch: Path) -> None:
@@ -52,7 +52,7 @@ class WorkerProcesses:
         """Execute an order, and return the execution as JSON.
 
         Args:
-            key: Identifies the order, for :meth:`cancel`.
+            key: A key for the order, for use in :meth:`cancel`.
             data: An :class:`autograder.grading.running.orders.Order` as JSON.
         """
         order = msgspec.json.decode(data, type=Order)
@@ -64,7 +64,7 @@ class WorkerProcesses:
         return answer
 
     def cancel(self, key: str) -> None:
-        """End everything that an order runs: its answer is no longer needed."""
+        """End everything that an order runs, because its answer is no longer needed."""
         with self._changing:
             process = self._at_work.pop(key, None)
         if process is not None:
@@ -79,14 +79,14 @@ class WorkerProcesses:
             process.stop()
 
     def kill(self) -> None:
-        """Kill the processes that still work after :meth:`stop`."""
+        """Kill the processes that are still working after :meth:`stop`."""
         with self._changing:
             busy = list(self._at_work.values())
         for process in busy:
             process.kill()
 
     def end(self) -> None:
-        """Wait for the end of all processes; call :meth:`stop` before, and let no thread use one."""
+        """Wait for all processes to end. Call :meth:`stop` first; no thread may be using a process."""
         for process in self._made:
             process.end()
 
@@ -115,11 +115,11 @@ class WorkerProcesses:
 
 
 class ThisMachine:
-    """Executes the dispatcher's orders here, as a cluster's client process has them executed elsewhere.
+    """Executes the dispatcher's orders here. It has the same interface as the connection to a cluster.
 
     Args:
         scratch: The folder in which submissions run.
-        slots: The number of notebooks at once.
+        slots: The number of notebooks to execute at the same time.
     """
 
     def __init__(self, scratch: Path, slots: int) -> None:
@@ -144,7 +144,7 @@ class ThisMachine:
         self._processes.end()
 
     def say(self, command: Command) -> None:
-        """Obey a command of the dispatcher."""
+        """Carry out a command of the dispatcher."""
         if isinstance(command, Give):
             self._threads.submit(self._execute, command)
         else:
@@ -154,7 +154,7 @@ class ThisMachine:
         """Return the next message; None if none came in time.
 
         Args:
-            within: Limit in seconds; None for no limit.
+            within: The limit in seconds; None for no limit.
         """
         try:
             news = self._news.get(timeout=None if within is None else max(0.0, within))
@@ -163,12 +163,12 @@ class ThisMachine:
         return _STOPPED if self._stopped else news
 
     def stop(self) -> None:
-        """Let the dispatcher hear nothing more, so that it gives out no further task."""
+        """Let the dispatcher receive no more messages, so that it gives out no more tasks."""
         self._stopped = True
         self._news.put(_STOPPED)
 
     def _execute(self, give: Give) -> None:
         try:
             self._news.put(Answered(give.number, self._processes.execute(str(give.number), give.order)))
-        except BaseException as error:  # the dispatcher waits for an answer
+        except BaseException as error:  # answer with the error, because the dispatcher waits for an answer
             self._news.put(Failed(give.number, f"{type(error).__name__}: {error}"))

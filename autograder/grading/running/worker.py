@@ -1,6 +1,6 @@
-"""A process that executes tasks one after the other: lines of JSON on the socket that is its standard input.
+"""A process that executes tasks one after the other. It exchanges lines of JSON over the socket on its standard input.
 
-Even a single notebook gets a process of its own, because the process becomes the parent of every daemon that a
+Even a single notebook gets a separate process, because this process becomes the parent of every daemon that a
 submission starts, and ends them all. It ends when its grader ends.
 """
 
@@ -47,13 +47,15 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 LAST_SECONDS = 10.0
-"""Seconds for a worker to end cleanly once its grader is gone; a living grader allows less."""
+"""Seconds for a worker to end cleanly after its grader has ended. A running grader allows less time."""
 MOST_EVIDENCE = 4_000_000
-"""The limit on one notebook's evidence in bytes, enough for ten checks; evidence of later checks is dropped."""
+"""The maximum size in bytes of the evidence of one notebook, enough for ten checks. The evidence of later checks is
+dropped.
+"""
 
 
 def main(arguments: list[str]) -> None:
-    """Work until the grader closes the connection.
+    """Execute tasks until the grader closes the connection.
 
     Args:
         arguments: The scratch folder, the class that makes a judge (``module:class``), and the addresses of the fork
@@ -72,13 +74,13 @@ def main(arguments: list[str]) -> None:
 
 
 def execute(task: Task, scratch: Path, judge: Any, addresses: Addresses) -> Execution:
-    """Execute one task; a failure of the grader itself is part of the result.
+    """Execute one task. A failure of the grader itself becomes part of the result.
 
     Args:
         task: The task.
-        scratch: The folder in which the task gets a folder.
-        judge: Makes a judge from a socket's path, a seed and a function that starts its process.
-        addresses: The addresses of the fork servers; without one for supervisors there is no sandbox.
+        scratch: The folder in which the task gets its own folder.
+        judge: Makes a judge, given the path of a socket, a seed, and a function that starts the judge's process.
+        addresses: The addresses of the fork servers. Without the one for supervisors there is no sandbox.
     """
     try:
         with contextlib.ExitStack() as stack:
@@ -88,7 +90,7 @@ def execute(task: Task, scratch: Path, judge: Any, addresses: Addresses) -> Exec
     except Exception as error:
         return task.in_trouble(f"{type(error).__name__}: {error}")
     finally:
-        # Even if this process is being ended: nothing of the submission may outlive it.
+        # This happens even if this process is being ended: nothing of the submission may outlive it.
         end_descendants()
 
 
@@ -142,9 +144,9 @@ def _execute(
 
 
 def a_check_was_stopped(cells: Sequence[Cell], execution: Execution) -> bool:
-    """Return True if one of the judge's checks reached its cell's time limit.
+    """Return True if a check by the judge reached the time limit of its cell.
 
-    Each wait of the judge has a limit of its own, so this usually means that the machine is busy.
+    Each wait of the judge has its own limit, so this usually means that the machine is busy.
     """
     judged = [cell.check is not None and not cell.check.asserts for cell in cells]
     runs = zip(judged, execution.cells, strict=True)
@@ -158,14 +160,14 @@ def patiently(seconds: float) -> Left:
 
 
 class _Judges:
-    """A judge for each check, on the network of that check; one judge lives at a time.
+    """Makes a judge for each check, on the network of that check. Only one judge is alive at a time.
 
-    It distinguishes a check that was never requested from one in which the judge itself failed.
+    It distinguishes a check that the notebook never requested from one in which the judge itself failed.
 
     Args:
-        made: Makes an unstarted judge: True for programs, False for the notebook's own nodes.
+        made: Makes a judge that is not started yet: with True for programs, with False for the notebook's own nodes.
         runners: The exercises whose subjects are programs.
-        first: The exercise of the first check; its judge starts together with the kernel.
+        first: The exercise of the first check. Its judge is started together with the kernel.
 
     Attributes:
         evidence: The evidence of the verdicts, by exercise.
@@ -211,9 +213,9 @@ class _Judges:
 
 
 def _ros_variables(stack: contextlib.ExitStack, *, boxed: bool) -> Mapping[str, str]:
-    """Return variables for loopback only, plain logs on stdout, and a domain for the notebook's own demonstrations."""
+    """Return variables for ROS on loopback only, plain logs on stdout, and the domain of the demonstrations."""
     if boxed:
-        # The network has no other nodes, so any domain is free.
+        # No other nodes are on this network, so any domain is free.
         return {**boxed_ros_environment(), "ROS_DOMAIN_ID": "0"}
     return {**ros_environment(), "ROS_DOMAIN_ID": str(stack.enter_context(lease()))}
 
@@ -224,10 +226,10 @@ def _imported(name: str) -> Any:
 
 
 def _tasks(grader: Lines) -> Iterator[bytes]:
-    """Yield tasks as they come. When the grader goes away, end this process, if necessary by force during a task.
+    """Yield tasks as they come. When the grader ends, end this process, if necessary by force during a task.
 
-    The end of the connection is the only usable sign: the system's signal (PR_SET_PDEATHSIG) comes when the thread
-    ends that started this process, and a grader's threads come and go.
+    The end of the connection is the only usable sign. The system's signal (PR_SET_PDEATHSIG) comes when the thread
+    that started this process ends, and a grader's threads come and go.
     """
     lines: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
     idle = threading.Event()
@@ -240,7 +242,7 @@ def _tasks(grader: Lines) -> Iterator[bytes]:
         if not idle.is_set():
             os.kill(os.getpid(), signal.SIGTERM)
         time.sleep(LAST_SECONDS)
-        # A thread is stuck, and so is the clean-up that waits for it.
+        # A thread is stuck, and so is the clean-up, which waits for that thread.
         end_descendants()
         os._exit(1)
 

@@ -1,8 +1,8 @@
 """A worker process that is kept from task to task, the connection to it, and the fork servers that it uses.
 
-The fork servers are started at first use and kept until this process ends: a batch starts them once, and so does
-plain ``nbgrader autograde``, which executes one notebook after the other. They end with this process, however it
-ends.
+Fork servers are started at their first use and kept until this process ends. So they are started only once for a
+batch, and also once for plain ``nbgrader autograde``, which executes one notebook after the other. They end with this
+process, however it ends.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 ATTEMPTS = 2
 """The number of times that a task is tried, because a worker may die."""
 GOODBYE_SECONDS = 2.0
-"""Seconds after which a worker that was asked to end is killed, so that Ctrl-C takes less than three in all."""
+"""Seconds after which a worker that was asked to end is killed, so that Ctrl-C takes less than three seconds in all."""
 _RESULT_BYTES = 64_000_000
 _EXTRA_SECONDS = 60.0
 _JUDGE_MODULE = "autograder.judge.serving.attached"
@@ -45,14 +45,14 @@ _changing = threading.Lock()
 
 
 class WorkerLost(RuntimeError):
-    """A worker ended or stopped answering; the message says which."""
+    """A worker ended or stopped answering. The message says which."""
 
 
 class WorkerProcess:
-    """One worker process that executes tasks one by one; it is started again when it dies.
+    """A worker process that executes tasks one by one. If it dies, it is started again.
 
     Args:
-        scratch: The folder in which submissions run; for this worker alone.
+        scratch: The folder in which submissions run. No other worker uses it.
         judge: The class that makes a judge, as ``module:class``.
         boxed: True if the first task will be executed in a box.
     """
@@ -61,8 +61,8 @@ class WorkerProcess:
         self._scratch = scratch
         self._command = ("-m", "autograder.grading.running.worker", str(scratch), judge)
         self._boxed = boxed
-        # The worker prints to a file, because a pipe that is not read would fill up. The file lives as long as the
-        # worker.
+        # The worker prints into a file, because a pipe that no process reads would fill up. The file exists as long
+        # as the worker.
         self._log = unnamed_file()
         self._worker: subprocess.Popen[bytes] | None = None
         self._lines: Lines | None = None
@@ -71,7 +71,7 @@ class WorkerProcess:
         self._changing = threading.Lock()
 
     def stop(self) -> None:
-        """End the worker and what it runs, from any thread; a task in progress ends with trouble."""
+        """End the worker and what it runs. Any thread may call this. A task in progress ends with trouble."""
         with self._changing:
             self._stopping = True
             if self._lines is not None:
@@ -79,24 +79,24 @@ class WorkerProcess:
 
     @property
     def stopping(self) -> bool:
-        """True if it was stopped: then a failure means nothing."""
+        """True if the worker was stopped on purpose. Then its failures are ignored."""
         return self._stopping
 
     def kill(self) -> None:
-        """Kill a worker that does not end by itself, from any thread."""
+        """Kill a worker that does not end by itself. Any thread may call this."""
         with self._changing:
             if self._worker is not None:
                 self._worker.kill()
 
     def execute(self, task: Task) -> Execution:
-        """Execute a task, for one thread at a time; any failure is part of the result."""
+        """Execute a task. Only one thread at a time may call this. Any failure becomes part of the result."""
         reason = ""
         for _ in range(ATTEMPTS):
             try:
                 execution = self._ask(task)
                 if execution.trouble:
                     if self._is_stale():
-                        raise WorkerLost(execution.trouble)  # with fresh fork servers it may succeed
+                        raise WorkerLost(execution.trouble)  # with new fork servers it may succeed
                     return replace(execution, trouble=f"{execution.trouble}{self._last_words()}")
                 return execution
             except (WorkerLost, OSError, ValueError) as error:
@@ -105,7 +105,7 @@ class WorkerProcess:
         return task.in_trouble(reason)
 
     def _is_stale(self) -> bool:
-        """True if the worker has the addresses of old fork servers, because another worker has restarted them."""
+        """Return True if the worker has addresses of old fork servers, because another worker has restarted them."""
         holds = _fork_servers_run(self._boxed)
         return not holds or self._addresses != _addresses_of_fork_servers(self._boxed)
 
@@ -133,7 +133,7 @@ class WorkerProcess:
             raise WorkerLost(f"the grader's worker process sent an invalid result: {error}") from error
 
     def _conversation(self) -> Lines:
-        """Return the connection to the worker; start the worker if it does not run."""
+        """Return the connection to the worker. If the worker does not run, start it."""
         with self._changing:
             if self._stopping:
                 raise WorkerLost("the grading run was stopped")
@@ -149,21 +149,21 @@ class WorkerProcess:
                         stdin=its_own.fileno(),
                         stdout=self._log,
                         stderr=self._log,
-                        # Ctrl-C goes to the grader, which then ends its workers cleanly.
+                        # Ctrl-C reaches only the grader, which then ends its workers cleanly.
                         start_new_session=True,
                     )
                 self._lines = lines
             return self._lines
 
     def end(self) -> None:
-        """End the worker cleanly. Only for the thread that executes, because only that one reads from the worker."""
+        """End the worker cleanly. Only the thread that executes may call this: only it reads from the worker."""
         worker, lines = self._worker, self._lines
         if worker is None or lines is None:
             return
         lines.finish()
         end_soon(worker, GOODBYE_SECONDS)
         if worker.returncode != 0:
-            # It may not have cleaned up after itself.
+            # The worker may not have cleaned up after itself.
             end_processes_in(self._scratch)
         with self._changing:
             self._worker = self._lines = None
@@ -171,10 +171,10 @@ class WorkerProcess:
 
 
 def _addresses_of_fork_servers(sandbox: bool) -> Addresses:
-    """Return the addresses of the fork servers, starting those that do not run.
+    """Return the addresses of the fork servers. Those that do not run are started.
 
     Args:
-        sandbox: True to include the one for supervisors of boxes.
+        sandbox: True to include the fork server for the boxes' supervisors.
     """
     with _changing:
         kept = _fork_servers.get(sandbox)
@@ -193,7 +193,7 @@ def _addresses_of_fork_servers(sandbox: bool) -> Addresses:
 
 
 def _fork_servers_run(sandbox: bool) -> bool:
-    """True if every fork server that was started still runs."""
+    """Return True if every fork server that was started is still running."""
     with _changing:
         kept = _fork_servers.get(sandbox)
         return kept is not None and kept.alive
@@ -201,7 +201,7 @@ def _fork_servers_run(sandbox: bool) -> bool:
 
 @atexit.register
 def _stop_fork_servers() -> None:
-    """End all fork servers, with the processes that they started."""
+    """End all fork servers, and the processes that they started."""
     with _changing:
         for kept in _fork_servers.values():
             kept.stop()

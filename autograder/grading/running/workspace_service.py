@@ -1,4 +1,4 @@
-"""The service next to a notebook for its checks of workspaces and launch files."""
+"""The workspace service of a notebook, for its checks of workspaces and launch files."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ class Arrangement:
     """The paths of one notebook's sockets and folders.
 
     Attributes:
-        folder: A folder for this notebook alone.
+        folder: A folder that only this notebook uses.
         boxed: True if the notebook runs in boxes.
-        runners: The exercises whose subjects the grader builds and starts itself.
+        runners: The exercises whose subjects the grader itself builds and starts.
     """
 
     folder: Path
@@ -45,16 +45,16 @@ class Arrangement:
 
     @property
     def judges_folder(self) -> Path:
-        """The folder that the judge's box must see, and the student's box must not."""
+        """Return the folder that the judge's box has to see and the student's box must not see."""
         return self.folder / "jobs"
 
     @property
     def judges_socket(self) -> Path:
-        """The judge's socket, at the same path for the judge and for the grader."""
+        """Return the path of the judge's socket, which is the same for the judge and the grader."""
         return self.judges_folder / "sock"
 
     def variables(self) -> Mapping[str, str]:
-        """More environment variables for the notebook."""
+        """Return more environment variables for the notebook."""
         if not self.boxed:
             return {}
         path = f"{SHARED_FOLDER / _PROGRAMS}{os.pathsep}{os.environ.get('PATH', os.defpath)}"
@@ -66,7 +66,7 @@ def arrange(task: Task, folder: Path) -> Arrangement:
 
     Args:
         task: The notebook.
-        folder: A folder for this notebook alone; its path is short, because it will contain a Unix socket.
+        folder: A folder that only this notebook uses. Its path must be short, because it will contain a Unix socket.
     """
     checks = [cell.check.exercise for cell in task.cells if cell.check and not cell.check.asserts]
     runners = {name: exercises.get(name).runner for name in checks if name in exercises.all_ids()}
@@ -80,12 +80,12 @@ def arrange(task: Task, folder: Path) -> Arrangement:
 def served(
     arrangement: Arrangement, place: BoxedPlace | UnboxedPlace, addresses: Addresses
 ) -> WorkspaceService:
-    """Return the service; its sockets are open for as long as the notebook runs.
+    """Return the service. Its sockets are open for as long as the notebook runs.
 
     Args:
         arrangement: The result of :func:`arrange`.
         place: The boxes of the notebook.
-        addresses: The fork servers.
+        addresses: The addresses of the fork servers.
     """
     folder = arrangement.folder / "work-of-jobs"
     folder.mkdir()
@@ -104,13 +104,13 @@ def served(
         jobs = PlainJobs(kernel_environment(folder / "home", {}), handed_in=True)
         ros = ros_environment()
         sockets = ServiceSockets(arrangement.judges_socket, None)
-    # A program that hangs can be asked for its traceback, and output comes without delay.
+    # With these, a program that hangs can be asked for its stacks, and output comes without delay.
     variables = {**ros, "PYTHONUNBUFFERED": "1", "PYTHONFAULTHANDLER": "1"}
     return WorkspaceService(sockets, jobs, builds, variables, folder, ahead)
 
 
 def _furnish(shared: Path) -> None:
-    """Write the replacement for colcon into the folder that the student's box can read; nothing from solutions."""
+    """Write the replacement for colcon into the folder that the student's box can read. It contains no solution."""
     programs = shared / _PROGRAMS
     programs.mkdir()
     colcon = programs / "colcon"
