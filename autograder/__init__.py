@@ -1,1 +1,1 @@
-"""The autograder of the ROS 2 course: it judges nodes on the wire, from a process of its own."""
+"""The autograder of the ROS 2 course. It judges nodes on the wire, in a separate process."""

@@ -1,4 +1,4 @@
-"""Run ``python -m autograder`` and the ``autograder`` command."""
+"""The entry point of ``python -m autograder`` and of the ``autograder`` command."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from environment.installation import COMMAND, PACKAGE, installing
 from environment.python_child import SAFE_PATH
 
 TERMINATED = 143
-"""A shell's exit code for a program that SIGTERM ended: 128 and the signal's number."""
+"""The exit code that a shell reports for a program that SIGTERM ended: 128 plus the signal's number."""
 
 
 def main() -> None:
-    """Run the command line. A closed pipe, Ctrl-C and SIGTERM end it quietly, with everything that it has started."""
-    # Python has used this variable at its start. A student's program must not inherit it, because the
-    # program imports modules from its own folder, as usual.
+    """Run the command line. A closed pipe, Ctrl-C or SIGTERM ends it quietly, with everything that it has started."""
+    # Python has read this variable at its start. A student's program must not inherit it, because such a program
+    # imports modules from its own folder, as usual.
     os.environ.pop(SAFE_PATH, None)
     from autograder.cli import cli
 
@@ -44,7 +44,7 @@ def main() -> None:
 
 
 def why_missing(error: ImportError) -> str:
-    """Return what to type to get a module that an installation leaves out; empty for any other module."""
+    """Return what to type to get a module that this installation left out; empty for any other module."""
     top = (error.name or "").partition(".")[0]
     if top == "autograder" and not Path(__file__).with_name("grading").is_dir():
         return "this is the students' part of the course: that command is not in it"

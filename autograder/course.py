@@ -1,4 +1,4 @@
-"""Find the course's own files: its chapters, and the labs of a chapter in order."""
+"""Finds the course's own files: its chapters, and the labs of a chapter in order."""
 
 from __future__ import annotations
 
@@ -14,36 +14,36 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 VARIABLE = "AUTOGRADER_COURSE"
-"""Environment variable with the top folder of a course that does not contain this package."""
+"""The environment variable for the path of the top folder of a course that does not contain this package."""
 SOLUTIONS = "solutions"
-"""The folder of the chapters as their authors write them."""
+"""The name of the folder that contains the chapters as authors write them."""
 HANDED_OUT = "exercises"
-"""The folder in a hand-out that replaces it: the judge's part of the chapters, without masters."""
+"""The name of the folder that replaces it in a hand-out: the judge's part of the chapters, without masters."""
 CHAPTERS = "chapters"
-"""The folder of the notebooks that students open, with one folder for each chapter."""
+"""The name of the folder with the notebooks that students open. It has one folder for each chapter."""
 CHAPTER = "chapter.toml"
-"""The file that describes a chapter, beyond the folders of its labs."""
+"""The name of the file that describes a chapter beyond what the folders of its labs show."""
 INTERFACES = "interfaces"
-"""The folder of a chapter's interface packages, which the set-up of the course builds."""
+"""The name of a chapter's folder for interface packages, which the course's set-up builds."""
 GITHUB = "https://github.com/"
 BRANCH = "main"
-"""The branch of the course's repository that its readers open."""
+"""The branch of the course's repository that links for readers open."""
 COPY = "(your copy,"
-"""In the name of each notebook that `./course reset` has kept."""
+"""The words by which a copy that `./course reset` kept is recognized; they are in its file name."""
 LAB = "lab.md"
-"""The master in a lab's folder, from which its notebook is derived."""
+"""The name of the master in a lab's folder. The lab's notebook is derived from it."""
 WHY = ".why.md"
-"""The ending of the file next to an exercise with the reasons for its reference solution."""
+"""The suffix of the file, next to an exercise, that contains the reasons for its reference solution."""
 SOLUTION = ".solution.json"
-"""The ending of the file made from these reasons and the master, for students with full marks."""
+"""The suffix of the file, made from these reasons and the master, that students see with full marks."""
 
 
 class NoCourse(LookupError):
-    """The folder with ``solutions/`` and ``chapters/`` was not found."""
+    """No course, that is, no folder with ``solutions/`` and ``chapters/``, was found."""
 
 
 class BrokenChapter(Exception):
-    """A chapter's description cannot be used. The message names the file and what is wrong."""
+    """The description of a chapter cannot be used. The message names the file and what is wrong."""
 
 
 @dataclass(frozen=True)
@@ -51,14 +51,12 @@ class Chapter:
     """A chapter of the course.
 
     Attributes:
-        folder: The folder with its description and a folder for each lab.
+        folder: The folder that contains the chapter's description and a folder for each lab.
         title: The title of the chapter.
-        labs: The folders of its labs, in the order in which they are read. Labs that the description does not name
-            come last.
-        exercises: The names of a lab's exercises in the order in which they are done, if that is not
-            alphabetical.
-        interfaces: The interface packages that come with the chapter, for its nodes to import. The set-up builds
-            each, from the chapter's folder ``interfaces`` or from the course's environment.
+        labs: The folders of the chapter's labs, in reading order. Labs that the description does not name come last.
+        exercises: For a lab whose exercises are not done in alphabetical order, their names in the right order.
+        interfaces: The interface packages that come with the chapter, for its nodes to import. The course's set-up
+            builds each, from the chapter's folder ``interfaces`` or from the course's environment.
     """
 
     folder: Path
@@ -73,14 +71,15 @@ class Chapter:
         return sorted(files, key=lambda file: wanted.index(file.stem) if file.stem in wanted else len(wanted))
 
     def exercises_of(self, lab: Path) -> dict[str, Path]:
-        """Return the files of a lab's exercises by their ids, in the order in which they are done."""
+        """Return the files of a lab's exercises by id, in the order in which they are done."""
         return {f"{lab.name}.{file.stem}": file for file in self.in_order(lab, sorted(lab.glob("[!_]*.py")))}
 
 
 def root() -> Path:
     """Return the top folder of the course.
 
-    It is the folder in the environment variable ``AUTOGRADER_COURSE``, or else the clone that contains this package.
+    It is the folder that the environment variable ``AUTOGRADER_COURSE`` names, or else the clone that contains this
+    package.
 
     Raises:
         NoCourse: No course was found.
@@ -97,16 +96,16 @@ def root() -> Path:
 
 
 def use(folder: Path) -> None:
-    """Use a course in this process and its children, unless one is named or contains this package."""
+    """Use a course in this process and its children, unless the environment names one or one contains this package."""
     if VARIABLE not in os.environ and not _written(Path(__file__).resolve().parents[1]).is_dir():
         os.environ[VARIABLE] = str(folder)
 
 
 def use_the_one_around(folder: Path) -> None:
-    """Use the course that contains a folder, if there is one.
+    """Use the course that contains a folder, if there is one, in this process and its children.
 
-    For commands that run their user's own code. A command for a class never searches: a student's folder could
-    contain a course, too.
+    This is meant for commands that run their user's own code. A command for a class must never search for a course,
+    because a student's folder could contain one, too.
     """
     for candidate in (folder, *folder.parents):
         if _written(candidate).is_dir():
@@ -115,20 +114,21 @@ def use_the_one_around(folder: Path) -> None:
 
 
 def variables() -> dict[str, str]:
-    """Return the variables with which another process finds the same course. No student's sandbox gets them."""
+    """Return the environment variables with which another process finds the same course. No student's box gets them."""
     return {VARIABLE: str(root())}
 
 
 def repository(folder: Path) -> str:
     """Return the address of a course's public repository, ``https://github.com/OWNER/NAME``; empty if it has none.
 
-    It is ``Repository`` in the table ``[project.urls]`` of the course's pyproject.toml, and stands nowhere else.
+    The address is ``Repository`` in the table ``[project.urls]`` of the course's pyproject.toml, and is written
+    nowhere else.
 
     Args:
         folder: The top folder of the course.
 
     Raises:
-        BrokenChapter: The file cannot be read, or names an address of another form.
+        BrokenChapter: The file cannot be read, or the address has another form.
     """
     file = folder / "pyproject.toml"
     try:
@@ -145,12 +145,12 @@ def repository(folder: Path) -> str:
 
 
 def archive(address: str) -> str:
-    """Return the address of a zip with the files of a repository."""
+    """Return the address of a zip with all files of a repository."""
     return f"{address}/archive/refs/heads/{BRANCH}.zip"
 
 
 def chapters(folder: Path) -> tuple[Chapter, ...]:
-    """Return the chapters of a course, in the order of their folders' names.
+    """Return the chapters of a course, sorted by the names of their folders.
 
     Args:
         folder: The top folder of the course.
@@ -165,7 +165,7 @@ def chapters(folder: Path) -> tuple[Chapter, ...]:
 
 
 def _written(folder: Path) -> Path:
-    """Return the folder of the chapters: the authors' own, or that of a hand-out."""
+    """Return the folder that contains the chapters: the authors' own folder, or that of a hand-out."""
     solutions, handed_out = folder / SOLUTIONS, folder / HANDED_OUT
     return handed_out if handed_out.is_dir() and not solutions.is_dir() else solutions
 
@@ -181,7 +181,7 @@ def interfaces() -> tuple[str, ...]:
 
 
 def interface_modules() -> tuple[str, ...]:
-    """Return the modules that may contain their classes; a package need not have all three kinds."""
+    """Return the names of modules that may contain their classes. Not every package has all three kinds."""
     return tuple(f"{package}.{kind}" for package in interfaces() for kind in ("msg", "srv", "action"))
 
 
@@ -221,7 +221,7 @@ def _are_names(said: object) -> bool:
 
 
 def _is_lab(folder: Path) -> bool:
-    # A hand-out contains exercises and released notebooks, and no master.
+    # A hand-out contains exercises and released notebooks but no masters.
     return folder.is_dir() and (
         (folder / LAB).is_file() or released(folder).is_file() or any(folder.glob("*.py"))
     )

@@ -1,8 +1,9 @@
-"""Find the exercises in the labs' folders. A module is imported when it is asked for.
+"""Finds the exercises in the labs' folders. The module of an exercise is imported when it is first needed.
 
-An exercise ``lab_1_2.talker`` is the file ``talker.py`` in the folder ``lab_1_2`` of a chapter, and a module of the
-same name, so that the files of a lab import each other as in a package. A file whose name begins with an underscore is
-a part of the others. Only judges and graders import these modules: no student's sandbox contains them.
+An exercise ``lab_1_2.talker`` is the file ``talker.py`` in the folder ``lab_1_2`` of a chapter. It is also a module
+of the same name, so that the files of a lab import each other as in a package. A file whose name begins with an
+underscore is a part of other exercises. Only judges and graders import these modules; no student's sandbox contains
+them.
 """
 
 from __future__ import annotations
@@ -26,11 +27,11 @@ if TYPE_CHECKING:
     from autograder.kit.model import Exercise
 
 REFERENCE = ".reference.json"
-"""The ending of the file next to an exercise that contains its reference output."""
+"""The suffix of the file, next to an exercise, that contains its reference output."""
 
 
 class UnknownExercise(LookupError):
-    """No exercise has this id. The message names similar ones."""
+    """There is no exercise with this id. The message names similar ones."""
 
 
 class BrokenExercise(Exception):
@@ -43,10 +44,10 @@ def all_ids() -> tuple[str, ...]:
 
 
 def get(exercise_id: str) -> Exercise:
-    """Return the exercise with an id.
+    """Return the exercise with this id.
 
     Raises:
-        UnknownExercise: There is none.
+        UnknownExercise: There is no exercise with this id.
         BrokenExercise: Its file cannot be imported, or does not define an exercise with this id.
     """
     file = path(exercise_id)
@@ -65,7 +66,7 @@ def get(exercise_id: str) -> Exercise:
 
 
 def unbroken() -> tuple[Exercise, ...]:
-    """Return all exercises except broken ones, such as one that its author is still writing."""
+    """Return all exercises except broken ones, for example one that its author is still writing."""
     found = []
     for exercise_id in all_ids():
         with contextlib.suppress(BrokenExercise):
@@ -77,7 +78,7 @@ def path(exercise_id: str) -> Path:
     """Return the file of an exercise.
 
     Raises:
-        UnknownExercise: There is none.
+        UnknownExercise: The exercise does not exist.
     """
     files = _files()
     if not files:
@@ -98,12 +99,12 @@ def reference_path(exercise_id: str) -> Path:
 
 
 def grade_id(exercise_id: str) -> str:
-    """Return the nbgrader grade_id of an exercise's check cell: nbgrader does not allow a dot in it."""
+    """Return the nbgrader grade_id of an exercise's check cell, in which nbgrader does not allow a dot."""
     return exercise_id.replace(".", "-")
 
 
 def _words(error: Exception) -> str:
-    """Return an import's error with its file and line, as one line of text."""
+    """Return the error of an import, with its file and line, as one line of text."""
     kind = type(error).__name__
     if isinstance(error, SyntaxError):
         return f"{kind}: {error.msg} ({error.filename}, line {error.lineno})"
@@ -115,7 +116,7 @@ def _files() -> dict[str, Path]:
     return _files_of(course.root())
 
 
-# Found once, because a judge in its sandbox cannot read the folders of labs.
+# The files are found only once, because a judge in its sandbox cannot list the labs' folders.
 @functools.cache
 def _files_of(root: Path) -> dict[str, Path]:
     return {

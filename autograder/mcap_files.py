@@ -1,4 +1,4 @@
-"""Write messages as MCAP, the format that ``ros2 bag``, Foxglove and Python programs open."""
+"""Writes messages as MCAP, the format that ``ros2 bag``, Foxglove and Python programs can open."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ if TYPE_CHECKING:
 ROS_2 = "ros2"
 """The MCAP profile for messages in CDR with the definitions of their types."""
 _LINE = "=" * 80
-"""Separates the definition of a type from those of the types that it contains."""
+"""The line that separates the definition of a type from those of the types that it contains."""
 _FIELD = re2.compile(r"^\s*([A-Za-z][\w/]*)(?:<=\d+)?(?:\[[^\]]*\])?\s+\w")
 """Matches a line of a definition: a type, perhaps bounded or an array, and a name."""
 
 
 class MessageFile:
-    """An MCAP file that is being written; only :meth:`close` completes it.
+    """An MCAP file that is being written. It is complete only after :meth:`close`.
 
     Args:
-        stream: The stream to write to; the caller closes it.
+        stream: The stream to write to. The caller closes it.
         profile: The profile of the file, such as :data:`ROS_2`; empty for messages as JSON.
     """
 
@@ -37,14 +37,14 @@ class MessageFile:
     def channel(
         self, topic: str, type_name: str, definition: str, *, as_json: bool = False, about: Mapping[str, str]
     ) -> int:
-        """Register messages of one type on one topic, and return the number of the channel.
+        """Register messages of one type on one topic. Return the number of the channel.
 
         Args:
             topic: The name of the topic.
             type_name: The type of the messages, such as ``"std_msgs/msg/String"``.
             definition: The definition of the type: that of ROS, or a JSON Schema.
             as_json: True for messages as JSON; False for CDR.
-            about: Further facts about the messages.
+            about: Further facts about these messages, as text by name.
         """
         encodings = ("jsonschema", "json") if as_json else ("ros2msg", "cdr")
         schema = self._writer.register_schema(type_name, encodings[0], definition.encode())
@@ -54,10 +54,10 @@ class MessageFile:
         """Write one message.
 
         Args:
-            channel: The number from :meth:`channel`.
-            data: The message.
-            arrived: Unix time of arrival, in nanoseconds.
-            sent: Unix time of sending, in nanoseconds.
+            channel: The number that :meth:`channel` returned.
+            data: The message in the channel's encoding.
+            arrived: The Unix time of arrival, in nanoseconds.
+            sent: The Unix time of sending, in nanoseconds.
         """
         self._counts[channel] += 1
         self._writer.add_message(
@@ -65,7 +65,7 @@ class MessageFile:
         )
 
     def note(self, name: str, words: Mapping[str, str]) -> None:
-        """Write something about the whole file."""
+        """Write facts about the whole file, as text by name."""
         self._writer.add_metadata(name, dict(words))
 
     def close(self) -> None:
@@ -74,7 +74,7 @@ class MessageFile:
 
 
 def definition(type_name: str) -> str:
-    """Return the definition of a type such as ``"geometry_msgs/msg/Twist"``, and of all types in it.
+    """Return the definition of a type such as ``"geometry_msgs/msg/Twist"``, and of all types that it contains.
 
     Raises:
         LookupError: This environment does not have the type.
@@ -99,7 +99,7 @@ def _text(type_name: str) -> str:
 
 
 def _types_in(text: str, package: str) -> Iterator[str]:
-    """Yield the types of fields that are messages themselves: their names begin with a capital, or name a package."""
+    """Yield the types of those fields that are messages: their names begin with a capital, or name a package."""
     for line in text.splitlines():
         field = _FIELD.match(line)
         if field is None or not (field[1][0].isupper() or "/" in field[1]):

@@ -1,7 +1,8 @@
-"""List the descendants of a process, end them together, and make them end with their parent.
+"""Lists the descendants of a process, ends them together, and makes them end with their parent.
 
-This works on Linux only (proc(5), prctl(2), pidfd_open(2)). A command that must end with another process, with
-everything that it has started, is run as ``python -I -S process_trees.py PARENT COMMAND ...`` (:func:`keep`).
+This works only on Linux (proc(5), prctl(2), pidfd_open(2)). A command that must end together with another process,
+including everything that the command has started, is run as ``python -I -S process_trees.py PARENT COMMAND ...``
+(:func:`keep`).
 """
 
 from __future__ import annotations
@@ -21,25 +22,27 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     Known = tuple[int, str]
-    """A process id and its start time (:func:`started_at`): a later process with that id has a different one."""
+    """A process id with the start time of the process (:func:`started_at`). A later process with the same id has
+    another start time.
+    """
 
 _PR_SET_PDEATHSIG = 1  # linux/prctl.h
 _PR_SET_DUMPABLE = 4
 _PR_SET_CHILD_SUBREAPER = 36
-# Loaded here, because loading a library between fork and exec is not safe.
+# Loaded now, because loading a library between fork and exec is not safe.
 _libc = ctypes.CDLL(None, use_errno=True)
 
 
 def die_with_parent(parent: int = 0, number: signal.Signals = signal.SIGKILL) -> None:
-    """Make this process get a signal when its parent ends, or be killed if the parent has already ended.
+    """Make this process get a signal when its parent ends. If the parent has already ended, kill this process.
 
-    The setting survives exec, but children do not inherit it, and a change of rights removes it. Linux takes
-    the *thread* that started a process as its parent: that thread must live as long as the process.
+    The setting survives exec, but children do not inherit it, and a change of rights clears it. For Linux, the parent
+    is the *thread* that started a process, so that thread must live as long as the process.
 
     Args:
-        parent: The id of the parent before the fork; 0 if it is in another PID namespace or not known. A parent
-            that has already ended is not noticed then.
-        number: The signal.
+        parent: The process id of the parent before the fork; 0 if the parent is in another PID namespace or unknown.
+            With 0, it is not noticed that the parent has already ended.
+        number: The signal to get.
     """
     _prctl(_PR_SET_PDEATHSIG, number)
     if parent and os.getppid() != parent:
@@ -47,10 +50,10 @@ def die_with_parent(parent: int = 0, number: signal.Signals = signal.SIGKILL) ->
 
 
 def adopt_orphans() -> bool:
-    """Become the parent of every descendant that loses its own parent, so that none escapes.
+    """Make this process the parent of every descendant that loses its own parent, so that none escapes.
 
     Returns:
-        True if the system supports this; on other systems than Linux a daemon may escape.
+        True if the system supports this. On systems other than Linux, a daemon may escape.
     """
     return _prctl(_PR_SET_CHILD_SUBREAPER, 1)
 
@@ -72,21 +75,21 @@ def known(processes: Iterable[int]) -> set[Known]:
 
 
 def started_at(pid: int) -> str:
-    """Return the start time of a process, in clock ticks since the system's start; empty if it has ended."""
+    """Return the start time of a process, in clock ticks since the system started; empty if the process has ended."""
     fields = _fields(pid)
     return fields[19] if fields else ""
 
 
 def send(processes: Iterable[Known], number: int) -> None:
-    """Send a signal to each of these processes that still runs."""
+    """Send a signal to those of these processes that still run."""
     for process in processes:
         _signal(process, number)
 
 
 def kill(processes: Iterable[Known]) -> None:
-    """Kill processes that may start others.
+    """Kill processes that may be starting others.
 
-    Each process is stopped first, so that it cannot start another one meanwhile.
+    All of them are stopped first, so that none can start another process meanwhile.
     """
     processes = list(processes)
     for number in (signal.SIGSTOP, signal.SIGKILL):
@@ -94,12 +97,13 @@ def kill(processes: Iterable[Known]) -> None:
 
 
 def end_each(processes: Iterable[int], number: int, within: float) -> None:
-    """Send a signal to one process after the other, and wait each time until it has ended.
+    """Send a signal to one process after the other, and wait each time until that process has ended.
 
     Args:
         processes: The processes to end, in order.
         number: The signal.
-        within: Seconds to wait for all of them together; the rest get the signal without a wait.
+        within: The maximum number of seconds to wait for all of them together. After that, the rest get the signal
+            without waiting.
     """
     deadline = time.monotonic() + within
     for process in [(pid, started_at(pid)) for pid in processes]:
@@ -107,18 +111,18 @@ def end_each(processes: Iterable[int], number: int, within: float) -> None:
 
 
 def signal_group(leader: int, number: int) -> None:
-    """Send a signal to a process group if it still exists. Do nothing for 0, the caller's own group."""
+    """Send a signal to a process group if it still exists. For 0, the caller's own group, do nothing."""
     with contextlib.suppress(ProcessLookupError, PermissionError):
         if leader > 0:
             os.killpg(leader, number)
 
 
 def end_soon(process: subprocess.Popen[bytes], within: float) -> None:
-    """Wait for a child that was asked to end, and kill it if it does not end in time.
+    """Wait for a child that was asked to end. If it does not end in time, kill it.
 
     Args:
-        process: The child.
-        within: Seconds.
+        process: The child process.
+        within: The maximum number of seconds to wait.
     """
     try:
         process.wait(within)
@@ -128,16 +132,16 @@ def end_soon(process: subprocess.Popen[bytes], within: float) -> None:
 
 
 def end_descendants(within: float = 3.0, *, spare: Sequence[int] = ()) -> int:
-    """Kill every descendant of this process, and reap those that are or become its children.
+    """Kill every descendant of this process, and wait for those that are, or become, its children.
 
-    Call it only in a process that adopts orphans, when no child of its own is needed.
+    Call this only in a process that adopts orphans, at a time when it needs none of its children.
 
     Args:
-        within: Limit in seconds; a process in an uninterruptible system call dies when the call ends.
-        spare: Children to leave alone, with their descendants.
+        within: The limit in seconds. A process in an uninterruptible system call dies only when that call ends.
+        spare: Children to leave alone, together with their descendants.
 
     Returns:
-        The number of processes found.
+        The number of processes that were found.
     """
     seen: set[int] = set()
     deadline = time.monotonic() + within
@@ -148,50 +152,53 @@ def end_descendants(within: float = 3.0, *, spare: Sequence[int] = ()) -> int:
         alive = [*children, *(below for child in children for below in descendants(child))]
         seen.update(pid for pid in alive if _lives(pid))
         kill(known(alive))
-        # A killed process becomes our own child when its parent dies; there is no event for "one of these ended".
+        # A killed process becomes a child of this process when its parent dies. No event reports that any of them has
+        # ended, so this polls.
         if not _reap(children):
             time.sleep(0.005)
     return len(seen)
 
 
 def end_below(pid: int) -> None:
-    """Kill every descendant of a process that adopts orphans, even those started meanwhile, and wait for their end.
+    """Kill every descendant of a process that adopts orphans, even those started meanwhile; wait until they have ended.
 
-    Processes of another user, which may not be killed, are left.
+    Processes of another user, which this process may not kill, are left.
 
     Args:
-        pid: The process, which is not killed itself.
+        pid: The id of the process, which itself is not killed.
     """
     left: set[Known] = set()
     while living := known(one for one in descendants(pid) if _lives(one)) - left:
-        send(living, signal.SIGSTOP)  # so that none can start another one meanwhile
+        send(living, signal.SIGSTOP)  # stop them first, so that none can start another process meanwhile
         left |= {process for process in living if not _signal(process, signal.SIGKILL)}
-        # The first process of a sandbox ends only after all its processes were reaped (pid_namespaces(7)). This process
-        # must reap those that were started from outside and whose parent has ended.
+        # The first process of a sandbox ends only after all its processes were waited for (pid_namespaces(7)). This
+        # process must wait for those that were started from outside and whose parent has ended.
         if pid != os.getpid() or not _reap(_children(pid)):
             time.sleep(0.005)
 
 
 def keep(parent: int, command: list[str]) -> int:
-    """Run a command, and end it with everything that it started once the parent ends or this process gets SIGTERM.
+    """Run a command. When the parent ends or this process gets SIGTERM, end the command and everything that it started.
 
-    Processes that the command leaves behind are ended, too. Ctrl-C reaches the command and not this process.
+    Processes that the command leaves behind are ended, too. Ctrl-C reaches the command but not this process.
 
     Args:
         parent: The id of the process that started this one.
         command: The program and its arguments.
 
     Returns:
-        The command's exit code, negative for a signal.
+        The exit code of the command; negative if a signal ended it.
     """
     adopt_orphans()
     parent_ends = os.pidfd_open(parent)
-    if os.getppid() != parent:  # it has ended, and its number may be another's
+    if os.getppid() != parent:  # the parent has ended, and its process id may belong to another process
         return 1
     signalled, on_signal = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
     signal.set_wakeup_fd(on_signal, warn_on_full_buffer=False)
     for number in (signal.SIGCHLD, signal.SIGTERM, signal.SIGINT):
-        signal.signal(number, lambda *_: None)  # a handler, and not SIG_IGN, which the command would keep
+        signal.signal(
+            number, lambda *_: None
+        )  # a handler is set, because SIG_IGN would be inherited by the command
     child = _start(command)
     code: int | None = None
     try:
@@ -206,13 +213,14 @@ def keep(parent: int, command: list[str]) -> int:
 
 
 def _start(command: list[str]) -> int:
-    """Start the command with nothing open but its standard streams. Return its process id."""
+    """Start the command with only its standard streams open. Return its process id."""
     keeper = os.getpid()
     child = os.fork()
     if child == 0:
         try:
             die_with_parent(keeper)
-            for number in (signal.SIGPIPE, signal.SIGXFSZ):  # Python ignores these, but programs expect them
+            # Python ignores these signals, but programs expect their default action.
+            for number in (signal.SIGPIPE, signal.SIGXFSZ):
                 signal.signal(number, signal.SIG_DFL)
             os.closerange(3, os.sysconf("SC_OPEN_MAX"))
             os.execvp(command[0], command)
@@ -224,9 +232,9 @@ def _start(command: list[str]) -> int:
 
 
 def reaped(wanted: int) -> int | None:
-    """Reap all children that have ended.
+    """Wait for all children that have already ended.
 
-    Return the exit code of the wanted one, None if it lives or was reaped before.
+    It returns the exit code of the wanted child; None if that child lives or was waited for before.
     """
     code: int | None = None
     with contextlib.suppress(ChildProcessError):
@@ -237,24 +245,25 @@ def reaped(wanted: int) -> int | None:
 
 
 def end_processes_in(folder: Path) -> None:
-    """Kill what was started for a submission with its home in ``folder``, if its worker no longer can.
+    """Kill the processes of a submission that has its home in ``folder``, if its worker can no longer do so.
 
-    Processes are found by command line and environment, which children inherit unless a program hides them on purpose.
+    The processes are found by command line and environment. Children inherit the environment unless a program hides
+    it on purpose.
 
     Args:
-        folder: A folder that no other process has in its command line or as its home.
+        folder: A folder that no process of another submission has in its command line or as its home.
     """
     place = os.fsencode(f"{folder}{os.sep}")
     kill(known(pid for pid in _processes() if pid != os.getpid() and _mentions(pid, place)))
 
 
 def _signal(process: Known, number: int, within: float = 0.0) -> bool:
-    """Send a signal to a process if it still exists, and wait at most ``within`` seconds for its end.
+    """Send a signal to a process if it still exists, and wait at most ``within`` seconds for it to end.
 
-    Only one handle is open at a time: a family may have more members than this process may have open files.
+    Only one handle is open at a time, because there may be more processes than this process may have open files.
 
     Returns:
-        False if this process may not send it a signal.
+        False if this process is not allowed to send it a signal.
     """
     pid, began = process
     with contextlib.suppress(ProcessLookupError):
@@ -262,7 +271,9 @@ def _signal(process: Known, number: int, within: float = 0.0) -> bool:
         try:
             if began and started_at(pid) == began:
                 signal.pidfd_send_signal(handle, number)
-                waiting = select.poll()  # select(2) refuses the descriptors of a grader that has many open
+                # Poll and not select(2), which does not support the high descriptors of a grader with many open
+                # files.
+                waiting = select.poll()
                 waiting.register(handle, select.POLLIN)
                 waiting.poll(within * 1000)
         except PermissionError:
@@ -273,7 +284,7 @@ def _signal(process: Known, number: int, within: float = 0.0) -> bool:
 
 
 def _lives(pid: int) -> bool:
-    """True if a process exists and is not a zombie."""
+    """Return True if a process exists and is not a zombie."""
     return _fields(pid)[:1] not in ([], ["Z"], ["X"])
 
 
@@ -281,7 +292,7 @@ def _children(pid: int) -> list[int]:
     found: list[int] = []
     with contextlib.suppress(OSError):
         for task in Path(f"/proc/{pid}/task").iterdir():
-            with contextlib.suppress(OSError):  # one thread of several may end meanwhile
+            with contextlib.suppress(OSError):  # one of several threads may end meanwhile
                 found += map(int, (task / "children").read_text().split())
     return found
 
@@ -291,16 +302,16 @@ def _processes() -> list[int]:
 
 
 def _fields(pid: int) -> list[str]:
-    """Return the words of a process's ``stat`` from its state on; empty if it is gone."""
+    """Return the fields of a process's ``stat`` file, beginning with its state; none if the process has ended."""
     try:
-        # After the name of the program, which may hold anything (proc(5)).
+        # The fields come after the name of the program, which may contain anything (proc(5)).
         return Path(f"/proc/{pid}/stat").read_text(errors="replace").rpartition(")")[2].split()
     except OSError:
         return []
 
 
 def _mentions(pid: int, place: bytes) -> bool:
-    """True if a process has a folder in its command line, or has its home there."""
+    """Return True if a process has a folder in its command line, or has its home there."""
     with contextlib.suppress(OSError):
         if place in Path(f"/proc/{pid}/cmdline").read_bytes():
             return True
@@ -310,7 +321,7 @@ def _mentions(pid: int, place: bytes) -> bool:
 
 
 def _reap(children: Iterable[int]) -> bool:
-    """Reap those of our children that have ended. Return True if there were any."""
+    """Wait for those of these children that have already ended. Return True if there were any."""
     reaped = False
     for child in children:
         with contextlib.suppress(ChildProcessError):
@@ -325,7 +336,7 @@ def _prctl(option: int, value: int) -> bool:
 
 
 def _end_as(code: int) -> None:
-    """End with an exit code, or by the signal of a negative code, without writing a core file."""
+    """End this process with an exit code or, if it is negative, by that signal; do not write a core file."""
     if code < 0:
         _prctl(_PR_SET_DUMPABLE, 0)
         signal.signal(-code, signal.SIG_DFL)

@@ -1,4 +1,4 @@
-"""Safe access to regular files: reading files that may have been replaced by anything, and writing in one step."""
+"""Safe access to regular files: reads files that may have been replaced by anything, and writes files in one step."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ _UNFINISHED = re2.compile(r"\..+\.\d+\.new")
 
 
 def opened(path: str | Path, folder: int | None = None) -> IO[bytes]:
-    """Open a regular file for reading, without following a link to it or waiting for a pipe or device.
+    """Open a regular file for reading. A link is not followed, and a pipe or device is not waited for.
 
     Args:
-        path: The path. Links on the way to the file are followed: if other users can write to its folder, pass the
-            folder's descriptor, as from os.fwalk.
+        path: The path of the file. Links in its folders are followed. If other users can write to its folder, pass a
+            descriptor of that folder as well, such as one from os.fwalk.
         folder: A descriptor of the folder to which the path is relative.
 
     Raises:
-        OSError: The path is something else, or cannot be opened.
+        OSError: The path is not a regular file, or cannot be opened.
     """
     flags = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
     descriptor = os.open(path, flags, dir_fd=folder)
@@ -38,19 +38,20 @@ def opened(path: str | Path, folder: int | None = None) -> IO[bytes]:
 
 
 def name_as_text(name: str) -> str:
-    """Return a file name as text that can be encoded and searched: on a disk it may contain any bytes."""
+    """Return a file name as text that can be encoded and searched, because on a disk it may contain any bytes."""
     return name.encode("utf-8", "replace").decode()
 
 
 def write_whole(path: Path, data: bytes) -> None:
-    """Write a file so that it is never incomplete, and survives a power cut once this returns.
+    """Write a file so that it is never incomplete, and survives a power cut once this function returns.
 
     Raises:
-        OSError: The file could not be written; then its earlier content is unchanged.
+        OSError: The file could not be written. Its earlier content is then unchanged.
     """
     changed = [path.parent, *(one.parent for one in path.parents if not one.exists())]
     path.parent.mkdir(parents=True, exist_ok=True)
-    # In a folder like /tmp another user could place a link at a name that can be guessed.
+    # The name is random, because in a folder like /tmp another user could create a link at a name that can be
+    # guessed.
     beside = path.with_name(f".{path.name}.{secrets.randbelow(10**12)}.new")
     try:
         with beside.open("xb") as file:
@@ -67,7 +68,7 @@ def write_whole(path: Path, data: bytes) -> None:
 
 
 def keep_whole(beside: Path, path: Path) -> None:
-    """Rename a file that was written next to ``path``, once the disk has all of it.
+    """Rename a file that was written next to ``path`` to ``path``, once the disk has stored all of it.
 
     Raises:
         OSError: The file could not be written.
@@ -91,7 +92,7 @@ def files_below(folder: Path) -> Iterator[Path]:
 
 
 def remove_unfinished(folder: Path) -> None:
-    """Remove files that killed processes left unfinished below a folder; no other process may be using it."""
+    """Remove files below a folder that killed processes left unfinished. No other process may be using the folder."""
     for file in files_below(folder):
         if _UNFINISHED.fullmatch(name_as_text(file.name)):
             with contextlib.suppress(OSError):
@@ -99,7 +100,7 @@ def remove_unfinished(folder: Path) -> None:
 
 
 def _keep_names(folder: Path) -> None:
-    """Make the disk store the names in a folder; some network file systems cannot do that."""
+    """Make the disk store the names in a folder. Some network file systems cannot do that."""
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         with contextlib.suppress(OSError):

@@ -1,8 +1,9 @@
-"""Picks a ROS domain that no other process on this host uses.
+"""Picks a ROS domain that no other process on this computer uses.
 
-If two students on one host both stay on domain 0, they hear each other's ``/chatter``. A domain is free when none of
-its UDP ports is taken. It stays ours because this process keeps one of its ports bound, one that DDS itself never
-uses: the operating system refuses it to other processes, and frees it when this process ends, however it ends.
+If two students on one computer both stayed on domain 0, they would hear each other's ``/chatter``. A domain counts as
+free if none of its UDP ports is in use. To reserve it, this process keeps one of the domain's ports bound, one that
+DDS itself never uses. The operating system refuses this port to other processes, and frees it when this process ends,
+however it ends.
 
 The port numbers are those of the DDS Interoperability Wire Protocol (RTPS), section 9.6.1.1, with its default
 parameters: port base 7400, domain gain 250, participant gain 2.
@@ -21,24 +22,30 @@ if TYPE_CHECKING:
 
 DOMAIN_VARIABLE = "ROS_DOMAIN_ID"
 FREE_TO_PICK = range(1, 102)
-"""Domain 0 is every program's default; from 102 on the ports overlap with Linux's range for outgoing connections."""
+"""The domains to pick from. Domain 0 is every program's default; from 102 on, the ports overlap with Linux's range for
+outgoing connections.
+"""
 HIGHEST_DOMAIN = 232
 """The last domain whose ports are valid UDP port numbers."""
 
 _PORT_BASE = 7400
 _DOMAIN_GAIN = 250
 _CLAIM_OFFSET = 9
-"""RTPS uses the offsets 0, 1 and those from 10 on; the ones in between are unused."""
+"""The offset of the port that reserves a domain. RTPS uses the offsets 0, 1, and those from 10 on; the ones in between
+are unused.
+"""
 GROUP_OFFSET = 0
-"""Multicast discovery."""
+"""The port offset for multicast discovery."""
 PARTICIPANT_OFFSET = 10
-"""Discovery of a domain's first participant; that of the next one is two higher."""
+"""The port offset for the discovery of a domain's first participant. That of the next participant is two higher."""
 _PROBED_OFFSETS = (GROUP_OFFSET, *range(PARTICIPANT_OFFSET, PARTICIPANT_OFFSET + 16, 2))
-"""Multicast discovery, and the first eight participants: a new participant takes the lowest free index."""
+"""The port offsets that show whether a domain is in use: multicast discovery, and the first eight participants. A new
+participant takes the lowest free index.
+"""
 
 
 class NoFreeDomainError(RuntimeError):
-    """Every domain that could be picked is in use on this host."""
+    """Every domain that could be picked is in use on this computer."""
 
 
 @dataclass(frozen=True)
@@ -46,25 +53,25 @@ class DomainClaim:
     """A ROS domain that this process holds until it ends or calls ``release``.
 
     Attributes:
-        domain: The domain's number.
+        domain: The number of the domain.
     """
 
     domain: int
     _socket: socket.socket
 
     def release(self) -> None:
-        """Give the domain back, so that another process may pick it."""
+        """Release the domain, so that another process may pick it."""
         self._socket.close()
 
 
 def claim_free_domain(candidates: Iterable[int] | None = None) -> DomainClaim:
-    """Pick a ROS domain that no other process uses and hold it.
+    """Pick a ROS domain that no other process uses, and hold it.
 
     Args:
-        candidates: Domains to try, in this order; None for 1 to 101 in random order.
+        candidates: The domains to try, in this order; None for 1 to 101 in random order.
 
     Raises:
-        NoFreeDomainError: All of them are taken.
+        NoFreeDomainError: All of them are in use.
     """
     domains = random.sample(FREE_TO_PICK, len(FREE_TO_PICK)) if candidates is None else list(candidates)
     for domain in domains:
@@ -82,10 +89,10 @@ def claim_free_domain(candidates: Iterable[int] | None = None) -> DomainClaim:
 
 
 def domain_from_environment() -> int | None:
-    """Return the domain in ``ROS_DOMAIN_ID``, or None if it is not set.
+    """Return the domain in ``ROS_DOMAIN_ID``; None if it is not set.
 
     Raises:
-        ValueError: Its value is not a domain.
+        ValueError: The value is not a valid domain.
     """
     text = os.environ.get(DOMAIN_VARIABLE, "").strip()
     if not text:
@@ -99,7 +106,7 @@ def domain_from_environment() -> int | None:
 
 
 def port(domain: int, offset: int) -> int:
-    """Return the UDP port of a domain that is ``offset`` above its first port."""
+    """Return the UDP port that is ``offset`` above a domain's first port."""
     return _PORT_BASE + _DOMAIN_GAIN * domain + offset
 
 
@@ -113,7 +120,7 @@ def _looks_used(domain: int) -> bool:
 
 
 def _bind(port: int) -> socket.socket | None:
-    """Return a UDP socket on the loopback address, or None if the port is taken."""
+    """Return a UDP socket bound to a port on the loopback address; None if the port is in use."""
     udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         udp.bind(("127.0.0.1", port))

@@ -1,9 +1,9 @@
-"""New participants: the names of their nodes, and a way not to miss the answers to their first announcement.
+"""New participants: the name of their unnamed nodes, and a way not to miss answers to their first announcement.
 
-Fast DDS 2.14 announces a new participant before its receivers are registered. Existing participants answer within 0.1
-ms, once. If a receiving thread reads that answer too early it is lost, and the next one comes with the periodic
-announcement, up to 3 s later: one new participant in three was discovered that late. So the threads of a new
-participant must not run before the thread that makes them has finished.
+Fast DDS 2.14 announces a new participant before it has registered the participant's receivers. Existing participants
+answer within 0.1 ms, and only once. If a receiving thread reads such an answer too early, the answer is lost, and the
+next one comes with the periodic announcement, up to 3 s later. One new participant in three was discovered that late.
+So the threads of a new participant must not run before the thread that makes them has finished.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 UNNAMED = "_NODE_"
-"""The beginning of the names of nodes that a participant does not know by name yet (rmw_dds_common)."""
+"""The prefix of names of nodes whose real name a participant does not know yet (rmw_dds_common)."""
 
 
 @contextlib.contextmanager
 def receivers_wait() -> Iterator[None]:
     """Hold back the threads that are started in the block until the block has ended.
 
-    They are kept on one processor with their creator, under a scheduling policy that interrupts no running thread
-    (sched(7), SCHED_BATCH). Does nothing if the operating system has no such policy.
+    The threads are kept on one processor with the thread that creates them, under a scheduling policy that interrupts
+    no running thread (sched(7), SCHED_BATCH). If the operating system has no such policy, this does nothing.
     """
     if not hasattr(os, "SCHED_BATCH"):
         yield

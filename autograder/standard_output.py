@@ -1,7 +1,7 @@
-"""Standard output: kept free for results although Fast DDS prints warnings there, and read with a limit on lines.
+"""Keeps standard output free for results, although Fast DDS prints warnings there; and reads lines with a limit.
 
 Fast DDS writes its log to standard output (StdoutConsumer in fastdds/dds/log). One such line between two lines of
-JSON makes them unreadable, and it comes only in rare cases.
+JSON makes them unreadable, and it appears only in rare cases.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def private_stdout() -> BinaryIO:
 
 @contextmanager
 def stray_lines_on_stderr() -> Iterator[None]:
-    """Redirect what libraries and child processes print to standard output in the block to standard error."""
+    """In the block, redirect what libraries and child processes print to standard output to standard error."""
     sys.stdout.flush()
     kept = os.dup(STDOUT)
     os.dup2(STDERR, STDOUT)
@@ -50,10 +50,10 @@ _CHUNK = 65_536
 
 
 def split_lines(text: AnyStr) -> list[AnyStr]:
-    """Return the lines of a text without their ends; the last one is not complete yet.
+    """Return the lines of a text without their line ends. The last one may be incomplete.
 
-    A carriage return ends a line, too: a program may write one line of the terminal again and again. At the end of
-    the text it may be the first half of a line end.
+    A carriage return ends a line, too, because a program may write the same line of a terminal repeatedly. At the end
+    of the text, it may be the first half of a line end.
     """
     end: Any
     back: Any
@@ -65,18 +65,18 @@ def split_lines(text: AnyStr) -> list[AnyStr]:
 
 
 def short_lines(stream: Chunks, limit: int) -> Iterator[bytes]:
-    """Yield the lines of a stream as they come, each with its end. A line that is longer than the limit is cut.
+    """Yield the lines of a stream as they arrive, each with its line end. A longer line is cut to the limit.
 
     A carriage return ends a line, as in :func:`split_lines`.
 
     Args:
-        stream: The stream, read to its end.
-        limit: The most bytes of a line.
+        stream: The stream, which is read to its end.
+        limit: The maximum length of a line in bytes.
     """
     rest, begins = b"", True
     while chunk := stream.read1(_CHUNK):
         lines = (rest + chunk).splitlines(keepends=True)
-        # A carriage return at the end may be the first half of a line end.
+        # A carriage return at the end of the data may be the first half of a line end.
         rest = b"" if lines[-1].endswith(b"\n") else lines.pop()
         for line in lines:
             if begins:
@@ -85,7 +85,7 @@ def short_lines(stream: Chunks, limit: int) -> Iterator[bytes]:
         if len(rest) >= limit:
             if begins:
                 yield rest[:limit]
-            # Together with the next byte, the last byte shows whether the line has ended.
+            # The last byte is kept, because only together with the next one does it show whether the line has ended.
             rest, begins = rest[-1:], False
     if rest and begins:
         yield rest

@@ -1,7 +1,7 @@
-"""Temporary folders and files: the one way to make them.
+"""The only way in which this package makes temporary folders and files.
 
-The linter forbids ``tempfile`` everywhere else. On a machine with several users, any of them may put something at a
-path in ``/tmp`` that can be guessed. So each name is random, and only the user who makes a folder can look into it.
+The linter forbids ``tempfile`` everywhere else. On a machine with several users, any of them may create something at
+a path in ``/tmp`` that can be guessed. So each name is random, and only the user who makes a folder can look into it.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ _OF_OTHERS = stat.S_IRWXG | stat.S_IRWXO
 
 
 class UnsafeTemporaryFolder(PermissionError):
-    """Other users could replace what is made in the folder of temporary files. The message says what to do."""
+    """Other users could replace files in the folder for temporary files. The message says what to do."""
 
 
 def fresh_folder(prefix: str, parent: Path | None = None) -> Path:
-    """Make a folder that only this user can read, and return it; its maker removes it.
+    """Make a folder that only this user can read, and return it. The caller has to remove it.
 
     Args:
-        prefix: The beginning of the name. Keep it short if Unix sockets will lie in the folder.
-        parent: A folder of this user; the folder of temporary files if None.
+        prefix: The beginning of the name. Keep it short if the folder will contain Unix sockets.
+        parent: A folder of this user; None for the folder for temporary files.
 
     Raises:
         UnsafeTemporaryFolder: No place is safe, or the folder does not belong to this user alone.
@@ -50,20 +50,20 @@ def fresh_folder(prefix: str, parent: Path | None = None) -> Path:
 
 
 def unnamed_file(parent: Path | None = None) -> IO[bytes]:
-    """Open a temporary file without a name; it is gone when it is closed.
+    """Open a temporary file without a name. It disappears when it is closed.
 
     Args:
-        parent: A folder of this user; the folder of temporary files if None.
+        parent: A folder of this user; None for the folder for temporary files.
     """
     return tempfile.TemporaryFile(dir=parent or _base())
 
 
 @contextlib.contextmanager
 def scratch_folder(parent: Path, prefix: str = "n") -> Iterator[Path]:
-    """Make a folder in ``parent`` that only we can read, and remove it at the end.
+    """Make a folder in ``parent`` that only this user can read, and remove it at the end of the block.
 
     Args:
-        parent: A folder, made if it does not exist. Keep its path short: Unix sockets will have their names in it.
+        parent: A folder, which is created if it does not exist. Keep its path short if Unix sockets will be below it.
         prefix: The beginning of the name.
     """
     parent.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -75,7 +75,7 @@ def scratch_folder(parent: Path, prefix: str = "n") -> Iterator[Path]:
 
 
 def write_files(files: Mapping[str, bytes], folder: Path) -> Path:
-    """Write files by their relative paths into a folder, which is made. Return the folder."""
+    """Write files by their relative paths into a folder, which is created. Return the folder."""
     folder.mkdir()
     for name, data in files.items():
         path = folder / name
@@ -85,12 +85,12 @@ def write_files(files: Mapping[str, bytes], folder: Path) -> Path:
 
 
 def remove_tree(folder: Path) -> None:
-    """Remove a folder even if the rights to do so were removed."""
+    """Remove a folder, even if the rights to do so were taken away from its files."""
 
     def make_writable(function: Callable[[str], Any], name: str, _: Any) -> None:
         path = Path(name)
         with contextlib.suppress(OSError):
-            # Only inside the folder: its parent is shared.
+            # Change rights only inside the folder, because its parent is shared.
             for place in (path.parent, path):
                 if place.is_relative_to(folder) and not place.is_symlink():
                     place.chmod(stat.S_IRWXU)
@@ -100,28 +100,28 @@ def remove_tree(folder: Path) -> None:
 
 
 class HeldFolder:
-    """A fresh private folder among the temporary files; those of killed processes are removed first.
+    """A new private folder for temporary files. Folders left by killed processes are removed first.
 
-    A killed process cannot clean up, so the next process that needs such a folder does it. A lock on the folder shows
-    whether its creator lives; the system releases it when a process ends, however it ends.
+    A killed process cannot clean up, so the next process that needs such a folder does. A lock on the folder shows
+    whether its creator is alive; the system releases the lock when a process ends, however it ends.
 
     Args:
-        prefix: The beginning of the names of all folders of this kind. Folders of this user with such names are
-            removed, so no other program may use them.
+        prefix: The beginning of the names of all folders of this kind. Folders of this user with this prefix are
+            removed, so no other program may use it.
 
     Attributes:
-        path: The path.
+        path: The path of the folder.
     """
 
     def __init__(self, prefix: str) -> None:
         sweep(prefix)
         while True:
-            # Until it is locked, another process may remove it as one that was left behind.
+            # Until the folder is locked, another process may remove it as left behind, so this is repeated.
             try:
                 self.path = fresh_folder(prefix)
                 self._lock = os.open(self.path, os.O_RDONLY | os.O_DIRECTORY)
             except FileNotFoundError:
-                _base()  # raises an error if the folder of temporary files itself does not exist
+                _base()  # raises an error if the folder for temporary files itself does not exist
                 continue
             fcntl.flock(self._lock, fcntl.LOCK_EX)
             if self.path.exists():
@@ -129,7 +129,7 @@ class HeldFolder:
             os.close(self._lock)
 
     def remove(self) -> None:
-        """Remove the folder and its content; may be called twice."""
+        """Remove the folder and its content. This may be called twice."""
         if self._lock >= 0:
             remove_tree(self.path)
             os.close(self._lock)
@@ -143,17 +143,17 @@ class HeldFolder:
 
 
 def sweep(prefix: str) -> None:
-    """Remove the folders of a kind whose creators were killed."""
+    """Remove the folders of one kind whose creators were killed."""
     for folder in _base().glob(f"{prefix}*"):
         with contextlib.suppress(OSError), _locked(folder):
             remove_tree(folder)
 
 
 def _base() -> Path:
-    """Return the folder of temporary files; if other users could replace what is in it, one of this user alone.
+    """Return the folder for temporary files; if other users could replace files in it, a folder of this user alone.
 
     Raises:
-        UnsafeTemporaryFolder: No such folder exists.
+        UnsafeTemporaryFolder: There is no such folder.
     """
     usual = Path(tempfile.gettempdir())
     if _is_safe(usual):
@@ -177,10 +177,10 @@ def _is_safe(folder: Path) -> bool:
 
 @contextlib.contextmanager
 def _locked(folder: Path) -> Iterator[None]:
-    """Hold the lock of a folder of ours.
+    """Hold the lock of one of this user's folders.
 
     Raises:
-        OSError: Another process holds it, or the folder belongs to another user, or is not a folder.
+        OSError: Another process holds the lock, or the folder belongs to another user or is not a folder.
     """
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
     try:

@@ -1,6 +1,6 @@
-"""The verdict on one exercise, as plain data that travels as JSON.
+"""The verdict on one exercise, as plain data that is sent as JSON.
 
-Everything that shows, stores or counts a verdict (cards, the gradebook, ``--json``) reads these types. They do not
+Everything that shows, stores or counts a verdict (cards, the gradebook, ``--json``) uses these types. They do not
 depend on ROS, notebooks or the judge.
 """
 
@@ -13,25 +13,25 @@ import msgspec
 
 
 class State(StrEnum):
-    """The result of a check: three different things that are never mixed up."""
+    """The result of a check. The three values are never mixed up."""
 
     PASSED = "passed"
-    """Every criterion holds."""
+    """Every criterion is met."""
     FAILED = "failed"
-    """The subject was checked and at least one criterion does not hold."""
+    """The subject was checked, and at least one criterion is not met."""
     NOT_CHECKED = "not_checked"
     """The judge itself failed (no ROS, no free domain, a judge that died). This says nothing about the subject."""
 
 
 @dataclass(frozen=True)
 class CriterionResult:
-    """One requirement, and whether it was met.
+    """A requirement, and whether it was met.
 
     Attributes:
-        name: A stable key such as ``"rate"``.
+        name: A stable key for the criterion, such as ``"rate"``.
         title: A one-line name for people, such as ``"Publishes every 0.5 s"``.
-        points: The points for this criterion.
-        passed: True if the criterion holds.
+        points: The points that the criterion is worth.
+        passed: True if the criterion is met.
         expected: What the reference solution does.
         seen: What the subject did.
     """
@@ -46,10 +46,10 @@ class CriterionResult:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """A known mistake, and what to do next.
+    """A known mistake, with what to do next.
 
     Attributes:
-        key: The mistake's stable name, such as ``"topic_name"`` (``docs/mistakes.md`` lists them).
+        key: The stable name of the mistake, such as ``"topic_name"`` (``docs/mistakes.md`` lists them).
         text: What happened and why, in one to three sentences for a student.
         next_step: What to do now, in the imperative.
     """
@@ -65,7 +65,7 @@ ASKS_FOR_INPUT = Diagnosis(
     "Remove the line with `input()`, and write the value into the code instead. A program that needs a value takes "
     "it from `sys.argv`.",
 )
-"""The same words for a cell, a class and a program that wait for someone to type."""
+"""The diagnosis for a cell, class or program that waits for someone to type; the words are the same for all three."""
 
 
 @dataclass(frozen=True)
@@ -73,14 +73,14 @@ class Moment:
     """One dot on the card's timeline.
 
     Attributes:
-        t: Seconds since the judge began to watch (simulated seconds if ``simulated`` is set).
-        lane: The topic, service or action name of the event, or ``"log"``.
+        t: Seconds since the judge began to watch, in simulated time if ``simulated`` is true.
+        lane: The name of the topic, service or action; or ``"log"``.
         direction: ``"from_subject"``, ``"to_subject"`` or ``"note"``; ``"expected"`` for a message of the reference
             solution that did not come.
-        label: A few words: the text, the numbers, the status.
-        part: The part of the check, if it has several (``"the service is late"``), else empty.
+        label: A few words, such as the text, the numbers or the status.
+        part: The name of the part (``"the service is late"``) if the check has several parts, else empty.
         simulated: True if ``t`` is simulated time.
-        key: True for an important event, such as a goal, a cancel request, a result: a picture always names it.
+        key: True for an important event, such as a goal, a cancel request or a result. A picture always names it.
         stray: True if the event is irrelevant for the task, such as a message on another topic.
     """
 
@@ -100,17 +100,17 @@ class Verdict:
 
     Attributes:
         exercise: The exercise's id, such as ``"lab_1_2.talker"``.
-        title: The exercise's name for people.
-        state: Passed, failed or not checked.
-        score: Points earned; 0 unless the subject was checked.
-        max_score: Points that can be earned.
-        criteria: In the order of the exercise; empty when nothing could be checked.
-        diagnosis: The most useful known mistake, or None if all is well.
+        title: The exercise's title for people.
+        state: Whether the check passed, failed, or could not be made.
+        score: The points earned; 0 unless the subject was checked.
+        max_score: The maximum points.
+        criteria: The criteria in the order of the exercise; empty if nothing could be checked.
+        diagnosis: The known mistake that helps most; None if there is no mistake.
         remarks: Remarks that cost no points.
-        timeline: The events on the wire, in order, limited in number.
+        timeline: The most important events on the wire, in order.
         seed: The seed of the random inputs; the same seed gives the same inputs.
-        seconds: The wall time of the check.
-        detail: A traceback or the last lines of output, if they help; else empty.
+        seconds: The duration of the check, in seconds of wall time.
+        detail: A traceback, or the last lines of output, if they help; else empty.
     """
 
     exercise: str
@@ -128,7 +128,7 @@ class Verdict:
 
     @property
     def passed(self) -> bool:
-        """True if every criterion holds."""
+        """True if every criterion is met."""
         return self.state is State.PASSED
 
 
@@ -138,7 +138,7 @@ def to_json(verdict: Verdict) -> bytes:
 
 
 def from_json(data: bytes | str) -> Verdict:
-    """Read a verdict back.
+    """Return the verdict that JSON contains.
 
     Raises:
         msgspec.ValidationError: ``data`` is JSON but not a verdict.
@@ -148,7 +148,7 @@ def from_json(data: bytes | str) -> Verdict:
 
 
 def failed(exercise: str, title: str, max_score: float, diagnosis: Diagnosis, detail: str = "") -> Verdict:
-    """Return the verdict for a check that is impossible because of the submission itself; it earns nothing."""
+    """Return the verdict, with zero points, for a check that is impossible because of the submission itself."""
     return Verdict(
         exercise=exercise,
         title=title,
@@ -161,9 +161,9 @@ def failed(exercise: str, title: str, max_score: float, diagnosis: Diagnosis, de
 
 
 def not_checked(exercise: str, title: str, max_score: float, reason: str, next_step: str = "") -> Verdict:
-    """Return the verdict for trouble of the grader's own; it earns nothing and accuses nobody.
+    """Return the verdict, with zero points, after a failure of the grader itself, which is not the student's fault.
 
-    A reason of two lines has what to do in its second line, if ``next_step`` is not given.
+    If ``next_step`` is not given and the reason has two lines, the second line is the next step.
     """
     if not next_step:
         reason, _, next_step = reason.partition("\n")

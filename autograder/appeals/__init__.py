@@ -1,5 +1,5 @@
-"""Appeals: save the evidence of one check in a file, show it, and judge it again.
+"""Appeals: saves the evidence of one check in a file, shows it, and judges it again.
 
-The grader writes an appeal file from a class. Anyone with the file and the course can judge it again: no class is
-needed, no student's code is run, and no ROS node is started.
+The grader writes an appeal file from a class. Any person with this file and the course can judge the check again.
+This needs no class, runs no student's code, and starts no ROS node.
 """

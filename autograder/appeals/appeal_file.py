@@ -1,4 +1,4 @@
-"""Read and write appeal files: one check of one student, as JSON for people and for ``./course replay``."""
+"""Reads and writes appeal files: one check of one student, as JSON for people and for ``./course replay``."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ ABOUT = (
     f"One check of one student. To judge it again: {COMMAND} replay FILE. This file proves nothing by itself: any "
     "person can write one. Only the class that it names has the grade and what the judge saw."
 )
-"""The text at the top of each file."""
+"""The text at the top of each appeal file."""
 MAX_BYTES = 64_000_000
-"""Limit of a file, in bytes. The largest evidence takes a fifth of that."""
+"""The maximum size of an appeal file in bytes. The largest evidence takes a fifth of it."""
 _WIDTH = 120
-"""Limit of a line of JSON, in characters; longer values are broken if possible."""
+"""The maximum length of a line of JSON, in characters. Longer values are broken into lines if possible."""
 
 
 class BadAppeal(ValueError):
-    """The file is not a whole appeal file; the message says what to do."""
+    """The file is not a complete appeal file. The message says what to do."""
 
 
 class AppealedCell(msgspec.Struct, frozen=True):
-    """The student's text of one cell.
+    """The text of one cell that the student wrote.
 
     Attributes:
-        cell: The cell's name; empty for a cell that the student has added.
-        text: The lines of the cell.
+        cell: The name of the cell; empty for a cell that the student added.
+        text: The text of the cell, as a list of lines.
     """
 
     cell: str
@@ -51,10 +51,10 @@ class Appeal(msgspec.Struct, frozen=True):
         assignment: The assignment's name.
         notebook: The notebook's name.
         task: The task, in one sentence.
-        course: Identifies the version of the course that made the check.
+        course: The version of the course with which the check was made.
         solution: The student's cells that ran before the check, in order.
-        expected: The reference output of the check; None if the course has a newer one.
-        seen: The evidence, with the verdict in the gradebook.
+        expected: The reference output with which the check compared; None if the course has a newer one.
+        seen: The evidence, with the verdict that is in the gradebook.
     """
 
     student: str
@@ -68,7 +68,7 @@ class Appeal(msgspec.Struct, frozen=True):
 
 
 def dump(appeal: Appeal) -> bytes:
-    """Return the file's content: JSON, one event in each line."""
+    """Return the content of the file: JSON, with one event per line."""
     content = plain(msgspec.to_builtins(appeal))
     head = {"format": FORMAT, "about": ABOUT}
     return ("\n".join(_lines({**head, **content}, "")) + "\n").encode()
@@ -108,7 +108,7 @@ def read(path: Path) -> Appeal:
 
 
 def _lines(value: Any, indent: str, before: str = "", after: str = "") -> Iterator[str]:
-    """Yield lines of JSON in which short values take one line."""
+    """Yield lines of JSON. A short value takes a single line."""
     whole = _json(value)
     inside = (
         (list(value.items()) if isinstance(value, dict) else value) if isinstance(value, (dict, list)) else ()

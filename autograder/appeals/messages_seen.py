@@ -1,14 +1,14 @@
-"""Write the evidence of a check as MCAP: each event is a message in JSON, for Foxglove and other programs.
+"""Writes the evidence of a check as MCAP: each event is a message in JSON, for Foxglove and other programs.
 
-Messages are on their own topic and the log is on ``/rosout``; requests, answers, goals and so on are on the name of
-the service or action plus the kind of event, such as ``/add_two_ints/asked``; everything else is below ``/judge``.
-Each message has a field ``_judge`` with its part and look, and its time by the judge's
-clock and by the simulated clock.
+A topic's messages are on that topic, and the log is on ``/rosout``. Requests, answers, goals and so on are on the
+name of the service or action plus the kind of event, such as ``/add_two_ints/asked``. Everything else is below
+``/judge``. Each message has a field ``_judge`` that contains its part and look, and its time by the judge's clock and
+by the simulated clock.
 
-A second form, for ``ros2 bag play``, has only the messages of topics, in CDR with the definitions of their types: a
-player must know each type, and all messages must have the same encoding.
+A second form, for ``ros2 bag play``, contains only the messages of topics, in CDR with the definitions of their
+types. A player has to know each type, and all messages must have the same encoding.
 
-The runs of a check follow each other, in the order of the evidence.
+The runs of a check follow one after the other, in the order of the evidence.
 """
 
 from __future__ import annotations
@@ -27,24 +27,24 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part
 
 _ENDS = {"message": "publisher", "sent": "subscription"}
-"""The subject's endpoint for a message that it sends, and for one that it receives."""
+"""For a message that the subject sends, and for one that it receives, the role of its endpoint."""
 _OF_CALLS = (
     "asked", "answered", "request", "response", "goal", "goal_sent", "goal_answer", "goal_answered", "feedback",
     "feedback_heard", "cancel", "cancel_sent", "cancel_answer", "cancel_answered", "result_request", "result",
     "result_heard",
 )  # fmt: skip
-"""The traffic between the client and the server of a service or an action."""
+"""The kinds of events between the client and the server of a service or an action."""
 _JUDGE = "_judge"
-"""The field for everything that is not in the message itself."""
+"""The name of the field with everything that is not part of the message itself."""
 _SECOND = 1_000_000_000
 
 
 def write_messages(kept: Kept, stream: IO[bytes]) -> int:
-    """Write an MCAP file of a check, and return the number of its messages.
+    """Write the evidence of a check as an MCAP file, and return the number of messages.
 
     Args:
-        kept: What was seen.
-        stream: Where to.
+        kept: The evidence.
+        stream: The stream to write to.
     """
     file = MessageFile(stream)
     seen = list(_seen(kept))
@@ -79,14 +79,13 @@ def write_messages(kept: Kept, stream: IO[bytes]) -> int:
 
 
 def write_bag(kept: Kept, stream: IO[bytes]) -> tuple[int, int]:
-    """Write the messages of topics as ``ros2 bag record`` does. Return how many were written, and how many were not.
+    """Write the messages of topics as ``ros2 bag record`` does. Return how many were and were not written.
 
-    A message cannot be written if its type was not on the graph, is not in this environment, or does not have these
-    fields.
+    A message cannot be written if its type was not on the graph, is not installed here, or has different fields now.
 
     Args:
-        kept: What was seen.
-        stream: Where to.
+        kept: The evidence.
+        stream: The stream to write to.
     """
     file = MessageFile(stream, ROS_2)
     types = _types(kept)
@@ -119,9 +118,9 @@ def _in_cdr(kind: Any, fields: Mapping[str, Any]) -> bytes:
 
 
 def _channel_in_cdr(file: MessageFile, topic: str, type_name: str) -> tuple[int, Any] | None:
-    """Return the channel number of a topic and the class of its messages; None if the type is not known here."""
+    """Return the channel number of a topic and the class of its messages; None if the type is not installed here."""
     try:
-        # First the definition, then the class: looking for a class imports a module, and the file may name any module.
+        # The definition comes first, because looking for a class imports a module, and the file may name any module.
         text = definition(type_name)
         kind = interface(type_name)
     except LookupError:
@@ -131,7 +130,7 @@ def _channel_in_cdr(file: MessageFile, topic: str, type_name: str) -> tuple[int,
 
 
 def _seen(kept: Kept) -> Iterator[tuple[str, Event, int, dict[str, Any]]]:
-    """Yield each event with its topic, time and message."""
+    """Yield each event with its topic, its time and the message for it."""
     began = kept.at - kept.verdict.seconds
     for look in kept.looks:
         for part in look.parts:
@@ -180,7 +179,7 @@ def _types(kept: Kept) -> dict[tuple[str, str], str]:
 
 
 def _extend(schema: dict[str, Any], value: Any) -> None:
-    """Extend a JSON Schema to allow one more value."""
+    """Extend a JSON Schema so that it also allows this value."""
     if isinstance(value, dict):
         properties = schema.setdefault("properties", {})
         for key, inner in value.items():
@@ -193,7 +192,7 @@ def _extend(schema: dict[str, Any], value: Any) -> None:
                 _extend(items, inner)
     kind = _kind(value)
     if schema.setdefault("type", kind) != kind:
-        schema["type"] = "string"  # two kinds: a reader shows it as text
+        schema["type"] = "string"  # the values are of two kinds, so a reader shows them as text
 
 
 def _kind(value: Any) -> str:

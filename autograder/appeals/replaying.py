@@ -1,4 +1,4 @@
-"""Judge a check again from its evidence, with the present code."""
+"""Judges a check again from its evidence, with the current code."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
 
 
 class CannotReplay(ValueError):
-    """The check cannot be judged again; the message says why and what to do."""
+    """The check cannot be judged again. The message says why, and what to do."""
 
 
 @dataclass(frozen=True)
 class Replay:
-    """The result of a second judging.
+    """The result of judging a check a second time.
 
     Attributes:
-        then: The original verdict.
-        now: The verdict of the present code.
+        then: The verdict at that time.
+        now: The verdict of the current code.
         differences: One line for each important difference: state, points, criteria, diagnosis.
-        notes: Possible reasons, and differences in words only.
+        notes: Possible reasons for differences, and differences that are only in the wording.
     """
 
     then: Verdict
@@ -41,10 +41,10 @@ class Replay:
 
 
 def replay(kept: Kept) -> Replay:
-    """Decide the criteria and the diagnosis again.
+    """Decide the criteria and the diagnosis of a check again.
 
     Raises:
-        CannotReplay: The exercise is gone, or the evidence is not enough.
+        CannotReplay: The exercise no longer exists, or the evidence is not sufficient.
     """
     then = kept.verdict
     if kept.cut:
@@ -62,7 +62,7 @@ def replay(kept: Kept) -> Replay:
         now = trial.decide(exercise, evidence_of(kept, expected), then.seed)
     except NoEvidence as error:
         raise CannotReplay(f"{error} in this check, so there is nothing to judge again") from error
-    except Exception as error:  # evidence of another version, or written by hand, may lack anything
+    except Exception as error:  # evidence from another version, or written by hand, may lack any field
         raise CannotReplay(
             f"{exercise.id} cannot be decided from this evidence ({type(error).__name__}: {error}). It was edited, or "
             "comes from another version of the course: use that one."
@@ -89,7 +89,7 @@ def _differences(then: Verdict, now: Verdict) -> Iterator[str]:
 
 
 def _other_words(then: Verdict, now: Verdict) -> Iterator[str]:
-    """Yield differences in words that a student reads, on which no grade depends."""
+    """Yield differences in texts that a student reads, but on which no grade depends."""
     before = {criterion.name: criterion for criterion in then.criteria}
     for new in now.criteria:
         old = before.get(new.name)

@@ -1,7 +1,7 @@
-"""The tables of the bank: the description of each answer, and the answers that are stored as edits of a right one.
+"""The tables of the bank. They describe each answer, and contain the answers that are stored as edits of a right one.
 
-A folder of answers has two folders, ``right`` and ``wrong``, with programs and tables (``*.toml``). An entry of a
-table is named after the file of its answer::
+A folder of answers contains two folders, ``right`` and ``wrong``, with programs and tables (``*.toml``). An entry of
+a table is named after the file of its answer::
 
     "while_loop_sleep.py" = { why = "a loop with time.sleep keeps the rate" }      a file of the folder
 
@@ -23,8 +23,8 @@ table is named after the file of its answer::
     -        self.get_logger().info("Hello, ROS 2! From SimpleNode.")
     '''
 
-``shows`` is the first line of its program (by default ``Wrong: `` and ``why``), and ``change`` has the format of
-``autograder.authoring.edits``.
+``shows`` is the first line of the resulting program (by default ``Wrong: `` and ``why``). ``change`` has the format
+of ``autograder.authoring.edits``.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 KINDS = ("right", "wrong")
 WORKSPACE = ".workspace"
-"""The ending of the name of an answer that is a whole workspace."""
+"""The suffix of the name of an answer that is a whole workspace."""
 
 
 class BadTable(ValueError):
@@ -53,19 +53,19 @@ class BadTable(ValueError):
 
 
 class AnswerEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A table's entry about one answer.
+    """What a table says about one answer.
 
     Attributes:
-        why: Why it is right, or how the mistake shows.
-        diagnosis: The most useful key of ``docs/mistakes.md``; empty for a right answer.
-        also: Other keys that are right.
-        says: Words that its card must contain, if the key alone does not name the fault.
-        command: The command that runs it, if it differs from that of the folder.
-        base: The right answer that it changes, a file of the folder ``right``; empty for a whole program, and for a
-            workspace, which changes the folder's workspace.
-        shows: The first line of its program, without the characters that make it a docstring or a comment; empty for
+        why: Why the answer is right, or how its mistake shows.
+        diagnosis: The key in ``docs/mistakes.md`` that helps most; empty for a right answer.
+        also: Other keys that are accepted.
+        says: Words that the answer's card must contain, if the key alone does not identify the mistake.
+        command: The command that runs the answer, if it differs from the folder's.
+        base: The right answer that this one changes, a file in the folder ``right``. Empty for a whole program, and
+            for a workspace, which changes the folder's workspace.
+        shows: The first line of the program, without the characters that make it a docstring or comment. Empty for
             ``Wrong: `` (or ``Right: ``) and ``why``.
-        change: The changes to its base.
+        change: The changes to the base.
     """
 
     why: str
@@ -83,7 +83,7 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes:
         command: The command that runs an answer, with placeholders ``{file}`` and ``{workspace}``.
-        base: The workspace that answers in ``*.workspace`` change, as a path from the folder.
+        base: The workspace that answers named ``*.workspace`` change, as a path relative to the folder.
     """
 
     command: tuple[str, ...] = ("python3", "{file}")
@@ -92,12 +92,12 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True)
 class Listed:
-    """An answer and its entry in a table.
+    """An answer together with its entry in a table.
 
     Attributes:
-        file: Its program; for one stored as an edit, the path that the program would have.
-        entry: The entry.
-        table: The table.
+        file: The program; if it is stored as an edit, the path that the program would have.
+        entry: The entry in the table.
+        table: The file of the table.
     """
 
     file: Path
@@ -106,14 +106,14 @@ class Listed:
 
     @property
     def base(self) -> Path | None:
-        """The right answer that it changes; None for one that is stored whole, and for a workspace."""
+        """Return the right answer that this one changes; None for an answer stored whole, and for a workspace."""
         return self.file.parents[1] / KINDS[0] / self.entry.base if self.entry.base else None
 
     def text(self) -> str:
-        """The program; for a workspace, the text with its changes.
+        """Return the text of the program; for a workspace, the text with its changes.
 
         Raises:
-            BadTable: The edit does not fit its base.
+            BadTable: The edit does not fit the base.
         """
         if not self.entry.change:
             return self.file.read_text(encoding="utf-8")
@@ -134,7 +134,9 @@ class Listed:
         except CannotEdit as error:
             raise self._bad(f"its change does not fit {self.base.name}: {error}") from None
         if not text.startswith(("#", '"""')):
-            return f"# {shows}\n{changed}"  # its base begins with code, which stays
+            return (
+                f"# {shows}\n{changed}"  # the base begins with code, which is kept below the new first line
+            )
         _, _, rest = changed.partition("\n")
         return (f"# {shows}" if text.startswith("#") else f'"""{shows}"""') + f"\n{rest}"
 
@@ -143,7 +145,7 @@ class Listed:
 
 
 def usual_first_line(kind: str, why: str) -> str:
-    """Return the first line of a program whose entry has none."""
+    """Return the first line of a program whose entry does not give one."""
     return f"{kind.capitalize()}: {why}"
 
 
@@ -151,10 +153,10 @@ def listed(folder: Path) -> Iterator[Listed]:
     """Yield every answer of a folder, in the order of its tables.
 
     Args:
-        folder: A folder with the folders ``right`` and ``wrong``.
+        folder: A folder that contains the folders ``right`` and ``wrong``.
 
     Raises:
-        BadTable: A table cannot be read, or an entry has too little, too much, or the same as another one.
+        BadTable: A table cannot be read, or an entry is incomplete, has too much, or is listed twice.
     """
     names = set()
     for kind in KINDS:
@@ -167,7 +169,7 @@ def listed(folder: Path) -> Iterator[Listed]:
 
 
 def _look_at(answer: Listed, *, twice: bool) -> None:
-    """Raise an error for an invalid entry."""
+    """Raise an error if an entry is invalid."""
     file, entry = answer.file, answer.entry
     workspace = file.suffix == WORKSPACE
     needed = (entry.change,) if workspace else (entry.base, entry.change)

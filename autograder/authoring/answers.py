@@ -20,21 +20,21 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 _PROGRAMS = {name: str(installed_program(name)) for name in ("python3", "ros2")}
-"""The programs of this environment that run the answers."""
+"""The programs of this Python environment that run the answers."""
 
 
 @dataclass(frozen=True)
 class Answer:
-    """One program of the bank, and the verdict that the judge must reach.
+    """An answer in the bank, with the verdict that the judge must reach.
 
     Attributes:
         exercise: The exercise's id.
-        file: The program; for one stored as an edit, the path that the program would have.
-        command: The command that runs it, with placeholders ``{file}`` and ``{workspace}``.
-        diagnoses: The keys that are right; empty for a correct answer.
+        file: The program; if it is stored as an edit, the path that the program would have.
+        command: The command that runs the program, with placeholders ``{file}`` and ``{workspace}``.
+        diagnoses: The accepted keys of mistakes; empty for a right answer.
         base: The workspace that the answer changes; None for a program.
-        edit: Its entry in a table, if the program is stored there.
-        says: Words that the diagnosis must contain.
+        edit: The answer's entry in a table, if the program is stored there.
+        says: Words that the diagnosis has to contain.
     """
 
     exercise: str
@@ -52,20 +52,20 @@ class Answer:
 
     @property
     def short_name(self) -> str:
-        """The name without the exercise: ``wrong/topic_name.py``."""
+        """The name of the answer without the exercise, such as ``wrong/topic_name.py``."""
         return f"{self.file.parent.name}/{self.file.name}"
 
     @property
     def text(self) -> str:
-        """The program; for a workspace, the text with its changes.
+        """Return the text of the program; for a workspace, the text with its changes.
 
         Raises:
-            BadTable: The edit does not fit its base.
+            BadTable: The edit does not fit the base.
         """
         return self.edit.text() if self.edit else self.file.read_text(encoding="utf-8")
 
     def unpack(self, folder: Path) -> list[str]:
-        """Write the files that cannot run in their stored form into a folder.
+        """Write those files of the answer that cannot run in their stored form into a folder.
 
         Args:
             folder: An empty folder.
@@ -74,7 +74,7 @@ class Answer:
             The command that runs the answer.
 
         Raises:
-            BadTable: The edit does not fit its base.
+            BadTable: The edit does not fit the base.
         """
         file, workspace = self.file, folder / "ros2_ws"
         if self.base is not None:
@@ -85,7 +85,7 @@ class Answer:
         return [part.format(file=file, workspace=workspace) for part in self.command]
 
     def checked(self, seed: str) -> tuple[Verdict, Checked | None]:
-        """Judge it in this process. Return also the evidence, unless the judge itself failed."""
+        """Judge the answer in this process. Return the verdict and, unless the judge itself failed, the evidence."""
         from autograder.judge.subjects.command import checked_here
 
         exercise = exercises.get(self.exercise)
@@ -93,11 +93,11 @@ class Answer:
             return checked_here(exercise, self.unpack(folder.path), seed, None)
 
     def verdict(self, seed: str) -> bytes:
-        """Judge it in this process. Return the verdict as JSON."""
+        """Judge the answer in this process. Return the verdict as JSON."""
         return to_json(self.checked(seed)[0])
 
     def objection(self, verdict: Verdict) -> str:
-        """Return the difference from the expected verdict, or an empty string."""
+        """Return in words how a verdict differs from the expected one; empty if it does not."""
         if verdict.state == State.NOT_CHECKED:
             why = verdict.diagnosis.text if verdict.diagnosis and not verdict.detail else verdict.detail
             return f"could not be checked: {why}"
@@ -116,7 +116,7 @@ class Answer:
 
 
 def answers(of: Sequence[str] = ()) -> Iterator[Answer]:
-    """Yield the answers to some exercises, in the order of their tables.
+    """Yield the answers to exercises, in the order of their tables.
 
     Args:
         of: Ids of exercises; all exercises if empty.
@@ -138,7 +138,7 @@ def answers(of: Sequence[str] = ()) -> Iterator[Answer]:
 
 
 def named(name: str) -> Answer:
-    """Return the answer of that name, such as ``lab_1_2.talker/wrong/topic_name.py``.
+    """Return the answer with a name such as ``lab_1_2.talker/wrong/topic_name.py``.
 
     Raises:
         StopIteration: The answer does not exist.
@@ -152,5 +152,5 @@ def folder_of(exercise_id: str) -> Path:
 
 
 def longest_first(wanted: Iterable[Answer]) -> list[Answer]:
-    """Sort slow answers to the front, so that none of them runs alone at the end."""
+    """Return answers with the slow ones first, so that none of them runs alone at the end."""
     return sorted(wanted, key=lambda answer: -exercises.get(answer.exercise).limit)

@@ -1,4 +1,4 @@
-"""A text that is stored as its changes to another one, its base.
+"""Texts that are stored as their changes to another text, the base.
 
 The format is that of a diff without line numbers::
 
@@ -9,12 +9,12 @@ The format is that of a diff without line numbers::
     -        self.i += 1
     +        self.i += 2
 
-A line that begins with ``-`` is removed from the base, one with ``+`` is added, and one with a space is in the base
-and stays: it identifies the place if the other lines occur several times. An empty line is an empty line that stays.
-``...`` separates two places.
+A line that begins with ``-`` is removed from the base, and one with ``+`` is added. A line that begins with a space
+is in the base and stays; it identifies the place if the other lines occur several times. An empty line is an empty
+line that stays. ``...`` separates two places.
 
 A workspace is stored as its changes to a base that all answers to an exercise share. The first line says what the
-answer shows. Then come sections:
+answer shows. After it come sections:
 
     === src/my_robot_pkg/setup.py              the whole file, up to the next section
     === src/my_robot_pkg/setup.py (changed)    what is changed in it, in the form above
@@ -29,22 +29,22 @@ import shutil
 from pathlib import Path
 
 SEPARATOR = "..."
-"""The line between two places of a change."""
+"""The line that separates two places of a change."""
 
 
 class CannotEdit(ValueError):
-    """A change does not fit its base. The message says which lines, and what to do."""
+    """A change does not fit its base. The message names the lines, and says what to do."""
 
 
 def edited(base: str, change: str) -> str:
-    """Apply a change to a text.
+    """Return a text after applying a change.
 
     Args:
-        base: The text.
+        base: The original text.
         change: The changes, in the format above.
 
     Raises:
-        CannotEdit: Lines of the change are not in the base, or several times; or it is not a change.
+        CannotEdit: Lines of the change are not in the base, or are there several times; or the text is not a change.
     """
     lines = base.split("\n")
     places = []
@@ -62,7 +62,7 @@ def edited(base: str, change: str) -> str:
 
 
 def _sides(block: str) -> tuple[list[str], list[str]]:
-    """Return the lines of one place before and after the change."""
+    """Return the lines of one place, before and after the change."""
     old, new = [], []
     for line in block.split("\n"):
         if line[:1] not in ("", " ", "-", "+"):
@@ -83,7 +83,7 @@ def _sides(block: str) -> tuple[list[str], list[str]]:
 
 
 def _place(lines: list[str], old: list[str]) -> int:
-    """Return the index of the only place with these lines."""
+    """Return the index of the only place at which these lines occur."""
     found = [at for at in range(len(lines) - len(old) + 1) if lines[at : at + len(old)] == old]
     if len(found) == 1:
         return found[0]
@@ -104,15 +104,15 @@ _SECTION = re.compile(r"^=== (?P<path>\S+)(?: -> (?P<to>\S+)| \((?P<what>changed
 
 
 def unpack(answer: str, base: Path, folder: Path) -> None:
-    """Write the workspace of an answer.
+    """Write the workspace that an answer describes.
 
     Args:
-        answer: The text.
+        answer: The text of the answer.
         base: The workspace that it changes.
         folder: The folder of the new workspace.
 
     Raises:
-        CannotEdit: A section does not fit the base.
+        CannotEdit: A section of the answer does not fit the base.
     """
     shutil.copytree(base, folder)
     path, to, what, body = Path(), None, None, list[str]()

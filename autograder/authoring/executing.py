@@ -1,4 +1,4 @@
-"""``autograder execute``: run every notebook of the course and report what is wrong."""
+"""``autograder execute``: runs every notebook of the course, and reports what is wrong."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from autograder.boxes.execution import Cell, Execution
 
 REPORTS = "execution-reports"
-"""The course's folder for the pages about notebooks that failed."""
+"""The folder of the course for pages about notebooks that failed."""
 
 
 @dataclass(frozen=True)
@@ -32,9 +32,9 @@ class Executed:
 
     Attributes:
         planned: The notebook and its expected result.
-        execution: The result.
-        found: What is wrong; empty if nothing is.
-        report: The page that was kept, if something is wrong.
+        execution: The result of the execution.
+        found: The problems that were found; empty if there are none.
+        report: The path of the page about the problems; None if there are none.
     """
 
     planned: Planned
@@ -54,17 +54,17 @@ def execute_command(
     """Execute the notebooks of a course and print what is wrong.
 
     Args:
-        root: The folder with ``solutions`` and ``chapters``.
+        root: The top folder of the course, which contains ``solutions`` and ``chapters``.
         only: Names such as ``"lab_1_2"``; all notebooks if empty.
-        jobs: The number of notebooks at once; as many as processors and memory allow by default.
-        reports: The folder for pages about failed notebooks; pages of an earlier run are removed.
-        console: The console for progress and result; standard error by default.
+        jobs: The number of notebooks to execute at the same time; by default as many as processors and memory allow.
+        reports: The folder for pages about failed notebooks. Pages from an earlier run are removed.
+        console: The console for progress and result; by default standard error.
 
     Returns:
-        0 if all is well, 1 if a notebook failed.
+        0 if nothing is wrong, 1 if a notebook failed.
 
     Raises:
-        NothingToExecuteError: A name in ``only`` is unknown, or a chapter was not built.
+        NothingToExecuteError: A name in ``only`` does not exist, or a chapter has not been built.
         autograder.masters.master_errors.MasterError: A master cannot be used.
     """
     began = time.monotonic()
@@ -91,12 +91,12 @@ def execute_all(
     jobs: int | None = None,
     console: Console,
 ) -> list[Executed]:
-    """Execute notebooks in parallel, each with a kernel, a folder and a judge of its own.
+    """Execute notebooks in parallel, each with its own kernel, folder and judge.
 
     Args:
-        planned: What to execute.
+        planned: The notebooks to execute.
         reports: The folder for pages about failed notebooks.
-        jobs: The number of notebooks at once; as many as processors and memory allow by default.
+        jobs: The number of notebooks to execute at the same time; by default as many as processors and memory allow.
         console: The console for progress.
 
     Returns:
@@ -104,7 +104,7 @@ def execute_all(
     """
     of_task = {id(item.task): item for item in planned}
     results: dict[int, Executed] = {}
-    # Short, because the paths of Unix sockets begin with it.
+    # The prefix is short, because the paths of Unix sockets begin with it.
     with (
         HeldFolder("autograder-run-") as scratch,
         BatchProgress(console, len(planned), doing="executing", did="executed") as progress,
@@ -127,12 +127,12 @@ def execute_all(
 
 
 def _longest_first(planned: Sequence[Planned]) -> list[Planned]:
-    """Sort the longest notebooks to the front, so that no core waits long for the last one."""
+    """Return the notebooks with the longest first, so that no core waits long for the last one."""
     return sorted(planned, key=lambda item: -sum(_weight(cell) for cell in item.task.cells))
 
 
 def _weight(cell: Cell) -> float:
-    """Estimate the seconds that a cell takes: a build some, a terminal one, a check one, other code little."""
+    """Return an estimate of the seconds that a cell takes, by its kind: build, terminal, check or other code."""
     if cell.kind is not CellType.CODE:
         return 0.0
     if "colcon build" in cell.source:

@@ -1,4 +1,4 @@
-"""The notebooks to execute and their expected results: full marks for a master, no error for a chapter."""
+"""The notebooks to execute, with their expected results: full marks for a master, no error for a chapter."""
 
 from __future__ import annotations
 
@@ -21,16 +21,18 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 LIMITS = Limits(cell_seconds=180.0, notebook_seconds=900.0)
-"""More generous than for a submission: a cell may build a workspace, and several notebooks share the machine."""
+"""Limits that are more generous than for a submission, because a cell may build a workspace, and several notebooks
+share the machine.
+"""
 
 
 class NotebookKind(StrEnum):
     """The kind of a notebook, which decides its expected result."""
 
     MASTER = "master"
-    """Full marks."""
+    """The notebook has to earn full marks."""
     CHAPTER = "chapter"
-    """No marks, and no error."""
+    """The notebook has to earn no marks and raise no error."""
 
 
 @dataclass(frozen=True)
@@ -38,9 +40,9 @@ class Planned:
     """A notebook that will be executed.
 
     Attributes:
-        kind: The kind of notebook.
-        notebook: nbformat 4.5, without outputs.
-        task: The same for execution.
+        kind: Whether it is a master or a chapter.
+        notebook: The notebook in format 4.5, without outputs.
+        task: The same notebook as a task for execution.
     """
 
     kind: NotebookKind
@@ -49,21 +51,21 @@ class Planned:
 
     @property
     def label(self) -> str:
-        """The name in messages, such as ``"master lab_1_2"``."""
+        """The name of the notebook in messages, such as ``"master lab_1_2"``."""
         return f"{self.kind} {self.task.notebook}"
 
 
 class NothingToExecuteError(LookupError):
-    """The notebook does not exist, or a chapter was not built or is damaged; the message says what to do."""
+    """The notebook does not exist, or a chapter has not been built or is damaged. The message says what to do."""
 
 
 def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
     """Return the notebooks of a course, each as a master and as a chapter.
 
-    The chapter is the file that students open, not a newly built one.
+    As a chapter, the file that students open is executed, not a newly built one.
 
     Args:
-        root: The folder with ``solutions`` and ``chapters``.
+        root: The top folder of the course, which contains ``solutions`` and ``chapters``.
         only: Names such as ``"lab_1_2"``; all notebooks if empty.
 
     Raises:
@@ -86,7 +88,7 @@ def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
             raise NothingToExecuteError(f"{chapter.relative_to(root)} is not there: run `{COMMAND} build`.")
         try:
             built = nbformat_nodes.read(chapter.read_text(encoding="utf-8"))
-        except Exception as error:  # nbformat's libraries may raise any error
+        except Exception as error:  # nbformat passes on any error of the libraries that it uses
             raise NothingToExecuteError(
                 f"{chapter.relative_to(root)} is not a notebook: run `{COMMAND} build`."
             ) from error
@@ -104,7 +106,7 @@ def _planned(kind: NotebookKind, name: str, notebook: NotebookNode) -> Planned:
         seed=f"execute {name}",
         course="",
         limits=LIMITS,
-        # The course's own notebooks, on the machine of the author: they need no isolation.
+        # No isolation: these are the course's own notebooks, on the author's machine.
         boxed=False,
     )
     return Planned(kind, notebook, task)

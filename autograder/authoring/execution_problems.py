@@ -1,4 +1,4 @@
-"""The problems of an executed notebook, and the page that shows them above all cells."""
+"""The problems of an executed notebook, and a page that shows these problems above all cells."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
 TRACEBACK = "Traceback (most recent call last)"
 _SHELL = re.compile(r"^\s*(%%|!)", re.MULTILINE)
-"""Marks a cell that runs programs.
+"""Matches a cell that runs programs.
 
-Their standard error may contain more than errors, as that of colcon and ros2 does.
+The standard error of programs such as colcon and ros2 may contain more than errors.
 """
 
 _HOW_IT_ENDED = {
@@ -46,7 +46,7 @@ class Problem:
     """One problem.
 
     Attributes:
-        cell: Index of the cell, or None for the notebook as a whole.
+        cell: The index of the cell; None if the problem concerns the whole notebook.
         text: What is wrong, in words.
     """
 
@@ -73,7 +73,7 @@ def _of_cell(kind: NotebookKind, cell: Cell, run: CellRun, verdict: Verdict | No
     elif any(TRACEBACK in _text(output) for output in run.outputs):
         yield "shows a stray traceback"
     if not _SHELL.search(cell.source) and any(output.get("name") == "stderr" for output in run.outputs):
-        # nbgrader gives no points to a graded cell that does, and a student takes it for an error.
+        # nbgrader gives no points to a graded cell that writes there, and a student takes the output for an error.
         yield "writes to standard error"
     if cell.check is not None and run.ended is Ended.DONE:
         yield from _of_check(kind, cell.check.points, run, verdict)
@@ -92,7 +92,7 @@ def _of_check(kind: NotebookKind, points: float, run: CellRun, verdict: Verdict 
         if output["output_type"] == "execute_result"
     ]
     if not values or not _is_number(values[-1], verdict.score):
-        # Stock nbgrader takes partial credit from there.
+        # Unmodified nbgrader reads partial credit from the value of the cell.
         yield f"has the value {values[-1] if values else 'nothing'} instead of its score, {verdict.score:g}"
 
 
@@ -115,20 +115,20 @@ def _text(output: dict[str, Any]) -> str:
 
 
 def write_report(folder: Path, planned: Planned, execution: Execution, found: Sequence[Problem]) -> Path:
-    """Write the page.
+    """Write the page about the problems of a notebook.
 
     Args:
-        folder: The folder; made if it does not exist.
+        folder: The folder for the page, which is created if it does not exist.
         planned: The notebook.
         execution: The result of the execution.
         found: The problems.
 
     Returns:
-        The page's path.
+        The path of the page.
     """
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{planned.task.notebook}-{planned.kind}.html"
-    # By default nbconvert also looks for templates in the current folder, and runs what it finds there.
+    # By default, nbconvert also searches the current folder for templates, and runs what it finds there.
     exporter = HTMLExporter(extra_template_basedirs=[])
     exporter.anchor_link_text = ""
     page, _ = exporter.from_notebook_node(

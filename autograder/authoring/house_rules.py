@@ -1,4 +1,4 @@
-"""The house rules for each master of the course, also for new ones."""
+"""The house rules for every master of the course, including new ones."""
 
 from __future__ import annotations
 
@@ -17,18 +17,21 @@ if TYPE_CHECKING:
     from autograder.masters.source import NamedCell
 
 HEAD, BEFORE_A_TASK, SOLUTION = 150, 400, 8
-"""Limits: words before the first code cell, words before the first task, and a student's lines in one cell."""
+"""Maximum numbers: words before the first code cell, words before the first task, and lines that a student writes in
+one cell.
+"""
 _MINUTES = re.compile(r"^\*\d+ minutes · for ", re.MULTILINE)
 _PICTURE = re.compile(r"!\[[^\]]*\]\([^)]*\)")
-"""The text alternative of a figure is for readers who cannot see it."""
+"""Matches a figure, whose alternative text does not count, because it is for readers who cannot see the figure."""
 PREDICTION = "**Before you run it:**"
-"""The beginning of the question that students answer before they run commands that show something."""
+"""The beginning of a question that students answer before they run commands that only show something."""
 _PARAGRAPH = re.compile(r"\n\s*\n|\n(?=\d+\. |- )")
 _CODE = re.compile(r"`[^`]*`|\]\([^)]*\)")
-"""Code and links: their parentheses do not count."""
+"""Matches code and links, because parentheses in them do not count."""
 _PARENTHESIS = re.compile(r"\([^)]*\)")
 _FOLD = re.compile(r"<details>.*?</details>", re.DOTALL)
-"""Folded text does not delay the first task: students open it when they want it."""
+"""Matches folded text. It does not count as text before the first task, because students open it only if they want to.
+"""
 _SELF_CHECK = re.compile(
     r"\*\*Check yourself:\*\*.*?\n\n(?P<choices>(?:<details>.*?</details>\s*)*)", re.DOTALL
 )
@@ -39,7 +42,7 @@ def broken_rules(master: Path) -> list[str]:
     """Return the house rules that a master breaks, each with its name and what to write.
 
     Args:
-        master: A file ``lab.md``.
+        master: The path of a file ``lab.md``.
 
     Raises:
         autograder.masters.master_errors.MasterError: The file is not a valid master.
@@ -47,7 +50,7 @@ def broken_rules(master: Path) -> list[str]:
     copying = {cell.line for cell in parse_master(master) if COPY.search(cell.source)}
     cells = [
         one for one in named_cells(master) if one.cell.line
-    ]  # without the links to the labs before and after
+    ]  # without the last cell, which links to the neighboring labs
     return [
         *_beginning(cells),
         *_solutions(one for one in cells if one.cell.line not in copying),

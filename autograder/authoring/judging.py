@@ -1,4 +1,4 @@
-"""Judges many answers in parallel, in forks of a process that has done their common imports."""
+"""Judges many answers in parallel, each in a fork of a process that has made the common imports."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
 LIMIT = 240.0
-"""Seconds of wall time within which an answer must be judged."""
+"""Time limit in seconds of wall time for judging one answer."""
 
 
 class Judgeable(Protocol):
-    """Something that can be judged: an answer, or a mutant of one."""
+    """Something that can be judged: an answer, or a mutated answer."""
 
     @property
     def name(self) -> str:
-        """The name for people."""
+        """The name for use in messages."""
         ...
 
     def verdict(self, seed: str) -> bytes:
-        """Judge it in this process, a fork made for it. Return the verdict as JSON."""
+        """Judge it in this process, which was forked for that. Return the verdict as JSON."""
         ...
 
 
@@ -35,11 +35,11 @@ T = TypeVar("T", bound=Judgeable)
 
 @dataclass(frozen=True)
 class Turn(Generic[T]):
-    """One judging of one thing.
+    """A single judging of one subject.
 
     Attributes:
-        subject: The thing to judge.
-        seed: The seed of random inputs.
+        subject: The answer, or mutated answer, to judge.
+        seed: The seed of the random inputs.
     """
 
     subject: T
@@ -53,15 +53,15 @@ def judge_all(
     done: Callable[[Turn[T], Verdict], None],
     failed: Callable[[Turn[T], str], None],
 ) -> None:
-    """Judge, in this order, in forks of this process, which must have no other threads.
+    """Judge subjects, in this order, in forks of this process. The process must have no other threads.
 
-    A subject without a verdict is judged once more at the end, alone.
+    A subject that got no verdict is judged once more at the end, alone.
 
     Args:
-        turns: What to judge, and with which inputs.
-        jobs: The number of subjects at once.
-        done: Called with each verdict as it comes.
-        failed: Called with each subject without a verdict, and the reason.
+        turns: The subjects to judge, each with a seed.
+        jobs: The number of subjects to judge at the same time.
+        done: Called with each verdict when it is ready.
+        failed: Called with each subject that got no verdict, and the reason.
     """
     again: list[Turn[T]] = []
     for turn, verdict, _ in _judged(turns, jobs):
@@ -77,7 +77,7 @@ def judge_all(
 
 
 def _judged(turns: Iterable[Turn[T]], jobs: int) -> Iterator[tuple[Turn[T], Verdict | None, str]]:
-    """Judge several at once. Yield each with its verdict as it comes, or with the reason why there is none."""
+    """Judge several subjects at the same time. Yield each with its verdict, or with the reason why there is none."""
     from autograder.judge.serving.fork import Child
 
     waiting = deque(turns)
@@ -95,7 +95,7 @@ def _judged(turns: Iterable[Turn[T]], jobs: int) -> Iterator[tuple[Turn[T], Verd
 
 
 def _verdict_in_child(turn: Turn[T]) -> bytes:
-    # The parent's standard output is for verdicts.
+    # The standard output of the parent is used for verdicts, so the child must not print there.
     private_stdout().close()
     return turn.subject.verdict(turn.seed)
 

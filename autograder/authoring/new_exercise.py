@@ -1,4 +1,4 @@
-"""``new-exercise``: makes a working lab folder, copied from the example of a recipe, for its author to change."""
+"""``new-exercise``: makes the folder of a working lab, copied from a recipe's example, for its author to change."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 EXAMPLES = Path(__file__).with_name("examples")
-"""A course of examples: each of its labs is the example of the recipe with its name."""
+"""A course of examples. Each of its labs is the example for the recipe with the same name."""
 LEFT_OUT = shutil.ignore_patterns("__pycache__", f"*{exercises.REFERENCE}")
-"""Files that are made again for the copy."""
+"""Files that are not copied, because they will be made again."""
 
 DEFINITIONS = {"msg": 0, "srv": 1, "action": 2}
-"""The kinds of interfaces, and the number of lines ``---`` between the parts of each."""
+"""The kinds of interfaces, each with the number of lines ``---`` that separate its parts."""
 
 _INTERFACE = re.compile(
     r"(?P<package>[a-z][a-z0-9_]*)/(?P<kind>msg|srv|action)/(?P<name>[A-Z][A-Za-z0-9]*)", re.ASCII
@@ -35,11 +35,11 @@ _TITLE = re.compile(r"^# .*?: ", re.MULTILINE)
 
 
 class CannotMake(ValueError):
-    """The exercise cannot be made. The message says what to do instead; nothing was written."""
+    """The exercise cannot be made. The message says what to do instead. Nothing was written."""
 
 
 def recipes() -> dict[str, Path]:
-    """Return the folders of the examples, by the names of their recipes."""
+    """Return the folders of the examples, by the names of the recipes."""
     return {lab.name: lab for chapter in course.chapters(EXAMPLES) for lab in chapter.labs}
 
 
@@ -50,16 +50,17 @@ def new_exercise(
 
     Args:
         root: The top folder of the course.
-        exercise_id: Such as ``"lab_8_1.battery"``: the lab, a dot, the exercise.
-        recipe: The kind of subject, one of :func:`recipes`.
-        chapter: The folder of its chapter in ``solutions/``, made if it does not exist; None for the last chapter.
+        exercise_id: The lab, a dot, and the exercise, such as ``"lab_8_1.battery"``.
+        recipe: The kind of subject: a key of :func:`recipes`.
+        chapter: The folder of the chapter in ``solutions/``, which is created if it does not exist; None for the last
+            chapter.
         interfaces: The chapter's own interface types that its nodes need, such as ``"power_interfaces/srv/SetLevel"``.
 
     Returns:
         The new files, in order.
 
     Raises:
-        CannotMake: The id, the chapter or an interface is not a valid name, the lab exists already, or the recipe
+        CannotMake: The id, the chapter or an interface is not a valid name, the lab already exists, or the recipe
             does not exist.
     """
     lab = _lab_of(exercise_id)
@@ -80,7 +81,7 @@ def new_exercise(
 
 
 def _described(chapter: Path) -> list[Path]:
-    """Make the folder of a new chapter, with a description for its author to complete. Return the new files."""
+    """Make the folder of a new chapter, with a description that its author has to complete. Return the new files."""
     if chapter.is_dir():
         return []
     chapter.mkdir(parents=True)
@@ -107,7 +108,8 @@ def _interface_of(root: Path, chapter: Path, interface: str) -> re.Match[str]:
         for one in course.chapters(root)
         if package in one.interfaces and one.folder != chapter
     ]
-    own = (chapter / course.INTERFACES / package).is_dir()  # once built, it can be imported
+    # Once the package is built, it can also be imported, so this is checked first.
+    own = (chapter / course.INTERFACES / package).is_dir()
     taken = not own and (_is_a_module(package) or package in _listed(chapter))
     if elsewhere or taken:
         place = f"chapter {elsewhere[0]}" if elsewhere else "installation of ROS or of the course"
@@ -118,7 +120,7 @@ def _interface_of(root: Path, chapter: Path, interface: str) -> re.Match[str]:
 
 
 def _listed(chapter: Path) -> list[str]:
-    """Return the packages of interfaces in a chapter's description."""
+    """Return the interface packages that a chapter's description lists."""
     description = chapter / course.CHAPTER
     if not description.is_file():
         return []
@@ -126,7 +128,7 @@ def _listed(chapter: Path) -> list[str]:
 
 
 def _defined(chapter: Path, interface: re.Match[str]) -> list[Path]:
-    """Write a definition of a type, unless it exists, for its author to complete, and list its package."""
+    """Write a definition of an interface type, for its author to complete, and list its package in the chapter."""
     package, kind, name = interface.group("package", "kind", "name")
     definition = chapter / course.INTERFACES / package / kind / f"{name}.{kind}"
     if definition.exists():
@@ -182,7 +184,7 @@ def _chapter(root: Path, name: str | None) -> Path:
 
 
 def _refuse_what_is_there(root: Path, folder: Path) -> None:
-    # Two labs of one name would be one Python package, and one notebook for nbgrader.
+    # Two labs with one name would be the same Python package, and the same notebook for nbgrader.
     others = [lab for chapter in course.chapters(root) for lab in chapter.labs if lab.name == folder.name]
     for lab in (folder, *others):
         if lab.exists():
@@ -201,7 +203,7 @@ def _is_a_module(name: str) -> bool:
 
 
 def _rename(made: Path, old: str, new: str) -> None:
-    """Give a copied lab its own id, in its texts and in the names of its files."""
+    """Replace the old id by the new one in a copied lab: in its texts and in the names of its files."""
     old_name, new_name = old.partition(".")[2], new.partition(".")[2]
     for path in sorted(made.rglob("*")):
         if path.is_file():
@@ -214,7 +216,7 @@ def _rename(made: Path, old: str, new: str) -> None:
 
 
 def _lab_title(exercise_id: str) -> str:
-    """Return the name of a lab in its heading: ``Lab 9.1`` for ``lab_9_1``."""
+    """Return the title of a lab for its heading: ``Lab 9.1`` for ``lab_9_1``."""
     lab = exercise_id.partition(".")[0]
     number = _NUMBER.search(lab)
     words = (lab[: number.start()] if number else lab).replace("_", " ").strip().capitalize()

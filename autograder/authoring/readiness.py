@@ -1,4 +1,4 @@
-"""Tells an author early which faults of a new exercise tests and linters would report."""
+"""Tells an author early which faults of a new exercise the tests and linters would report."""
 
 from __future__ import annotations
 
@@ -22,9 +22,11 @@ if TYPE_CHECKING:
     from autograder.kit.model import Exercise
 
 ENOUGH = {"right": 5, "wrong": 8}
-"""The number of answers that say something about an exercise. With fewer it works, but its fairness is unknown."""
+"""The minimum number of answers, right and wrong, to judge an exercise by. With fewer the exercise works, but its
+fairness is unknown.
+"""
 MISTAKES = "docs/mistakes.md"
-"""The page on which students read about each diagnosis, below a heading with its key."""
+"""The page on which students read about each diagnosis. Each has a heading that is its key."""
 _PACKAGE = Path(course.__file__).resolve().parents[1]
 _SETTINGS = _PACKAGE / "pyproject.toml"
 
@@ -33,13 +35,13 @@ def still_to_do(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
     """Yield a line for each thing that an exercise still lacks before it can be committed.
 
     Args:
-        exercise_id: Such as ``"lab_1_2.talker"``.
-        listed: All answers to it.
+        exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
+        listed: All answers to the exercise.
 
     Raises:
         autograder.exercises.UnknownExercise: The exercise does not exist.
-        autograder.exercises.BrokenExercise: Its file is not a valid exercise.
-        autograder.masters.master_errors.MasterError: Its master cannot be used.
+        autograder.exercises.BrokenExercise: The exercise's file is not a valid exercise.
+        autograder.masters.master_errors.MasterError: The lab's master cannot be used.
     """
     yield from _of_answers(listed)
     yield from _of_mistakes(exercise_id, listed)
@@ -72,7 +74,7 @@ def _of_mistakes(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
 
 
 def _of_text(exercise_id: str, master: Path) -> Iterator[str]:
-    """Yield a line for each fault in the exercise's table of sentences and criteria."""
+    """Yield a line for each fault in the exercise's table of sentences and the criteria that judge them."""
     exercise = exercises.get(exercise_id)
     if not exercise.text:
         yield "text: the exercise does not say which words of the task are behind which criterion"
@@ -82,7 +84,7 @@ def _of_text(exercise_id: str, master: Path) -> Iterator[str]:
 
 
 def faults_of_text(exercise: Exercise, said: str) -> Iterator[str]:
-    """Yield sentences of ``Exercise.text`` that are not in the lab, and criteria that are missing or unknown.
+    """Yield the faults of ``Exercise.text``: sentences that are not in the lab; criteria that are missing or unknown.
 
     Args:
         exercise: The exercise.
@@ -97,7 +99,7 @@ def faults_of_text(exercise: Exercise, said: str) -> Iterator[str]:
 
 
 def _of_linters(lab: Path) -> Iterator[str]:
-    """Return the lines of ruff and mypy about the files of a lab, or that a linter is not installed."""
+    """Yield what ruff and mypy report about the files of a lab, or that a linter is not installed."""
     if not _SETTINGS.is_file():
         return
     programs = {name: installed_program(name) for name in ("ruff", "mypy")}

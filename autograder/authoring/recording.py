@@ -1,7 +1,7 @@
-"""Records reference outputs: each master's own solution, observed by the same judge as any answer.
+"""Records reference outputs. Each master's own solution is watched by the same judge as any answer.
 
-A reference output is made from the master alone, so expected behavior is never written a second time: change the
-solution, record, and the grader expects the new behavior.
+A reference output is made only from the master, so the expected behavior is never written down a second time. After a
+change of the solution, record again, and the grader expects the new behavior.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 RUN_LIMIT = 600.0
-"""Seconds of wall time for one reference solution; it may build a workspace twice."""
+"""Time limit in seconds of wall time for running one reference solution, which may build a workspace twice."""
 
 _CALL = """
 
@@ -42,18 +42,18 @@ class CannotRecord(RuntimeError):
 
 
 def record(wanted: Sequence[str], *, only_check: bool, tell: Callable[[str], object]) -> list[str]:
-    """Record reference outputs.
+    """Record reference outputs and store them.
 
     Args:
         wanted: Exercise ids; all exercises if empty.
-        only_check: Write nothing.
+        only_check: True to write nothing.
         tell: Called with one line for each exercise.
 
     Returns:
-        The ids whose reference output is new or differs from the stored one.
+        The ids of exercises whose reference output is new, or differs from the stored one.
 
     Raises:
-        CannotRecord: A solution could not be recorded; earlier ones are.
+        CannotRecord: A solution could not be recorded. Those before it are stored.
     """
     changed = []
     for exercise_id in wanted or exercises.all_ids():
@@ -75,7 +75,7 @@ def recording(exercise_id: str) -> str:
     """Return the reference output of an exercise, as text.
 
     Raises:
-        CannotRecord: No master has the exercise, or its solution fails its own criteria.
+        CannotRecord: No master has the exercise, or the solution fails the exercise's own criteria.
     """
     try:
         exercise = exercises.get(exercise_id)
@@ -93,7 +93,7 @@ def recording(exercise_id: str) -> str:
 
 
 def unsolved(exercise_id: str) -> Verdict | None:
-    """Return the verdict on the notebook as students get it; None if that ends before its check.
+    """Return the verdict on the notebook as students get it; None if the notebook ends before its check.
 
     Raises:
         CannotRecord: No master checks the exercise, or its master cannot be used.
@@ -103,7 +103,7 @@ def unsolved(exercise_id: str) -> Verdict | None:
 
 
 def _judged(exercise_id: str, text: str, *, record: bool) -> tuple[Report, str]:
-    """Run a program beside a judge; the judge's report, and what the program printed."""
+    """Run a program next to a judge. Return the judge's report, and what the program printed."""
     with HeldFolder("autograder-record-") as folder:
         file = folder.path / "reference_solution.py"
         file.write_text(text, encoding="utf-8")
@@ -121,7 +121,7 @@ def _judged(exercise_id: str, text: str, *, record: bool) -> tuple[Report, str]:
 
 
 def program(exercise_id: str, *, solved: bool = True) -> str:
-    """The program that is recorded: the solution of the master, or what students get in its place, and its check.
+    """Return the program to record: the master's solution, or what students get in its place; then its check.
 
     Raises:
         CannotRecord: No master checks the exercise, or its master cannot be used.
@@ -137,10 +137,10 @@ def program(exercise_id: str, *, solved: bool = True) -> str:
 
 
 def _run(file: Path, socket: Path) -> str:
-    """Run the program. Return its output, for the case that it fails."""
+    """Run the program. Return its output, which is shown if it fails."""
     done = subprocess.run(
         [str(installed_program("python3")), str(file)],
-        # A solution about files writes them into its working folder.
+        # A solution that consists of files writes them into its working folder.
         cwd=file.parent,
         env=os.environ | {SOCKET_VARIABLE: str(socket)},
         stdin=subprocess.DEVNULL,

@@ -1,4 +1,4 @@
-"""``try-exercise``: compares the judge's verdict on each right and wrong answer with its author's expectation."""
+"""``try-exercise``: compares the judge's verdicts on right and wrong answers with what their author expects."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 JOBS = 4
-"""The number of answers judged at once: each mostly waits."""
+"""The number of answers judged at the same time. Each mostly waits."""
 
 
 class NothingToTry(LookupError):
-    """The answer does not exist. The message lists those that do, or says where to write one."""
+    """There is no such answer. The message lists those that exist, or says where to write one."""
 
 
 @dataclass(frozen=True)
 class Surprise:
-    """An answer whose verdict differs from its author's expectation.
+    """An answer whose verdict differs from what its author expects.
 
     Attributes:
-        name: Such as ``"wrong/counter_stuck.py"``.
-        objection: The difference.
+        name: The name of the answer, such as ``"wrong/counter_stuck.py"``.
+        objection: The difference, in words.
         card: The card that a student would see.
     """
 
@@ -50,17 +50,17 @@ class Surprise:
 
 @dataclass(frozen=True)
 class Transcribed(Answer):
-    """An answer whose evidence is written into a file.
+    """An answer whose evidence is written into a file when it is judged.
 
     Attributes:
-        folder: The folder for a file about each answer, such as ``wrong/topic_name.py.txt``, with a line for each
-            event.
+        folder: The folder for the files, one for each answer, such as ``wrong/topic_name.py.txt``. Each has a line
+            for each event.
     """
 
     folder: Path = Path()
 
     def verdict(self, seed: str) -> bytes:
-        """Judge it in this process. Return the verdict as JSON."""
+        """Judge the answer in this process. Return the verdict as JSON."""
         verdict, found = self.checked(seed)
         if found is not None:
             file = self.folder / f"{self.short_name}.txt"
@@ -89,29 +89,29 @@ def try_exercise(
     transcript: Path | None = None,
     tell: Callable[[str], object],
 ) -> bool:
-    """Record or compare the reference output, judge the answers, and print what does not fit and what is still to do.
+    """Try an exercise: check its recording, judge the answers, and print surprises and what is left to do.
 
-    Edits that fit no line are told before anything runs. The notebook as students get it must earn no points. A
-    reference output that is not there is recorded. One that differs from what the solution does now is left as it is,
-    and no answer is judged by it: what is expected of students does not change unasked.
+    Edits that do not fit are reported before anything runs. The notebook as students get it must earn no points. If
+    there is no reference output, it is recorded. If the stored one differs from what the solution does now, it is
+    left unchanged and no answer is judged, because what is expected of students must not change unasked.
 
     Args:
-        exercise_id: Such as ``"lab_1_2.talker"``.
-        only: Parts of the names of answers; all answers where empty. If given, only these answers are looked at.
-        jobs: Answers that are judged at once.
-        repeat: How many times each answer is judged, each time with other random inputs.
-        transcript: A folder that gets what was seen of each answer, the last time; None to write none.
-        tell: Called with each line, or card, for the author.
+        exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
+        only: Parts of names. If given, only answers whose name contains one of them are judged; all if empty.
+        jobs: The number of answers to judge at the same time.
+        repeat: The number of times that each answer is judged, each time with different random inputs.
+        transcript: The folder for the evidence of each answer from its last run; None to write none.
+        tell: Called with each line or card for the author.
 
     Returns:
-        True if everything is as expected.
+        True if everything is as the author expects.
 
     Raises:
         autograder.exercises.UnknownExercise: The exercise does not exist.
-        autograder.exercises.BrokenExercise: Its file is not a valid exercise.
-        autograder.authoring.answer_tables.BadTable: A table of its answers cannot be used.
-        autograder.authoring.recording.CannotRecord: The solution of its master cannot be recorded.
-        NothingToTry: The answer does not exist.
+        autograder.exercises.BrokenExercise: The exercise's file is not a valid exercise.
+        autograder.authoring.answer_tables.BadTable: A table of the exercise's answers cannot be used.
+        autograder.authoring.recording.CannotRecord: The master's solution cannot be recorded.
+        NothingToTry: There is no such answer.
     """
     exercises.get(exercise_id)
     wanted: Sequence[Answer] = chosen(exercise_id, only)
@@ -139,11 +139,11 @@ def chosen(exercise_id: str, only: Sequence[str] = ()) -> list[Answer]:
     """Return the answers to an exercise, in the order of their tables.
 
     Args:
-        exercise_id: Such as ``"lab_1_2.talker"``.
-        only: Parts of their names; all answers if empty.
+        exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
+        only: Parts of the answers' names; all answers if empty.
 
     Raises:
-        NothingToTry: No answer has such a name.
+        NothingToTry: No answer has a name with one of these parts.
     """
     found = list(answers([exercise_id]))
     if not found:
@@ -163,16 +163,16 @@ def chosen(exercise_id: str, only: Sequence[str] = ()) -> list[Answer]:
 def judged(
     wanted: Sequence[Answer], *, jobs: int = JOBS, repeat: int = 1, tell: Callable[[str], object]
 ) -> list[Surprise]:
-    """Judge answers and print each result.
+    """Judge answers, and print each result.
 
     Args:
-        wanted: The answers.
-        jobs: The number of answers at once.
-        repeat: The number of times for each, with different random inputs.
+        wanted: The answers to judge.
+        jobs: The number of answers to judge at the same time.
+        repeat: The number of times to judge each answer, with different random inputs.
         tell: Called with a line for each result.
 
     Returns:
-        The differences, in the order of the answers: for each answer the first one.
+        The surprises, in the order of the answers. Each answer has at most one, the first.
     """
     turns = [Turn(answer, f"try {lap}" if lap else "try") for lap in range(repeat) for answer in wanted]
     surprises: dict[str, Surprise] = {}
@@ -202,10 +202,10 @@ def judged(
 
 
 def _fit(wanted: Sequence[Answer]) -> None:
-    """Unpack each answer once.
+    """Unpack each answer once, to see whether every edit fits.
 
     Raises:
-        BadTable: Edits do not fit their bases; a line for each.
+        BadTable: Edits do not fit their bases. The message has a line for each.
     """
     troubles = []
     for answer in wanted:
@@ -221,7 +221,7 @@ def _fit(wanted: Sequence[Answer]) -> None:
 
 
 def _given(exercise_id: str) -> Iterator[str]:
-    """Yield the criteria that hold for the notebook as students get it: what is given must not earn points."""
+    """Yield the criteria that pass for the notebook as students get it. Given code must not earn points."""
     verdict = recording.unsolved(exercise_id)
     for one in verdict.criteria if verdict is not None else ():
         if one.passed:
@@ -229,7 +229,7 @@ def _given(exercise_id: str) -> Iterator[str]:
 
 
 def _is_in_step(exercise_id: str, tell: Callable[[str], object]) -> bool:
-    """True if the reference output is the solution's present behavior; a missing one is recorded."""
+    """Return True if the reference output matches what the solution does now. A missing one is recorded."""
     there = exercises.reference_path(exercise_id).exists()
     changed = recording.record([exercise_id], only_check=there, tell=tell)
     if not (there and changed):

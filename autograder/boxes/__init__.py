@@ -1,1 +1,1 @@
-"""The execution of a submission's notebook: a kernel for it alone, limits on every resource, no process left behind."""
+"""The execution of a submission's notebook: a separate kernel, limits on every resource, no process left behind."""

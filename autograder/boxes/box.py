@@ -1,4 +1,4 @@
-"""A box, and the channel to the supervisor that makes and ends it."""
+"""A box, and the connection to the supervisor that makes and ends it."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 ANSWER_SECONDS = 30.0
-"""Seconds of wall time within which a supervisor has to answer."""
+"""Time limit in seconds of wall time for an answer from a supervisor."""
 
 
 class NoSandbox(RuntimeError):
-    """No box can be made here; the message gives the reason and what to do about it."""
+    """No box can be made here. The message gives the reason, and says what to do about it."""
 
 
 @dataclass(frozen=True)
@@ -24,12 +24,12 @@ class Box:
     """A running box.
 
     Attributes:
-        name: The name of this box among the boxes of its supervisor.
-        pid: The box's first process, as the host counts.
-        pidfd: A descriptor of that process. Send it to a fork server to enter the box. The supervision closes it; -1
-            for a command that ended at once.
+        name: The name of this box, unique among the boxes of its supervisor.
+        pid: The PID of the box's first process, as seen from the host.
+        pidfd: A pidfd of the box's first process. Send it to a fork server to enter the box. The supervision closes
+            it. It is -1 for a command that ended at once.
         guarded: True if the guard's limits apply to every process that enters the box.
-        supervision: The supervision that ends this box.
+        supervision: The connection to the supervisor, through which this box is ended.
     """
 
     name: str
@@ -40,31 +40,31 @@ class Box:
 
     @property
     def lost(self) -> bool:
-        """True if the supervisor, and so the box, is gone: then an exit code tells nothing about the student's code."""
+        """True if the supervisor, and so the box, has ended. An exit code then says nothing about the student."""
         return self.supervision.lost
 
     def end(self) -> int:
-        """Kill the box and wait until none of its processes is alive; may be called twice.
+        """Kill the box, and wait until none of its processes is alive. This may be called twice.
 
         Returns:
             The exit code of bubblewrap: that of the command, or 128 plus the number of a signal.
 
         Raises:
-            ChannelClosed: The supervisor is gone.
+            ChannelClosed: The supervisor has ended.
         """
         return self.supervision.end(self.name)
 
     def wait_end(self) -> int:
-        """Wait until the box ends by itself; returns the same as :meth:`end`.
+        """Wait until the box ends by itself. Return the same as :meth:`end`.
 
         Raises:
-            ChannelClosed: The box did not end in time, or the supervisor is gone.
+            ChannelClosed: The box did not end in time, or the supervisor has ended.
         """
         return self.supervision.wait_end(self.name)
 
 
 class Supervision:
-    """A connection to one supervisor process; safe to call from several threads.
+    """A connection to one supervisor process. Several threads may use it.
 
     Args:
         supervisors: The socket address of the fork server that starts supervisors.
@@ -92,10 +92,10 @@ class Supervision:
 
         Args:
             name: A name that no other box of this supervisor has.
-            descriptors: Standard input, output and error for the box's command, if it has one; the caller keeps its
-                copies.
-            guarded: See :class:`Box`.
-            words: The other arguments of the supervisor's `_start`.
+            descriptors: Standard input, output and error for the box's command, if it has one. The caller keeps its
+                own copies.
+            guarded: True if the guard's limits apply to every process that enters; see :class:`Box`.
+            words: The remaining arguments of the supervisor's method `_start`.
 
         Raises:
             NoSandbox: The supervisor could not make the box.
@@ -108,18 +108,18 @@ class Supervision:
 
     @property
     def lost(self) -> bool:
-        """True if the supervisor is gone, and with it all its boxes."""
+        """True if the supervisor has ended, and with it all its boxes."""
         return self._channel.hung_up
 
     def end(self, name: str) -> int:
-        """Kill the box of this name; see :meth:`Box.end`."""
+        """Kill the box with this name; see :meth:`Box.end`."""
         with self._turn:
             if name not in self._ended:
                 self._channel.send({"say": "kill", "name": name})
             return self.wait_end(name)
 
     def wait_end(self, name: str) -> int:
-        """Wait for the box of this name; see :meth:`Box.wait_end`."""
+        """Wait for the box with this name to end by itself; see :meth:`Box.wait_end`."""
         with self._turn:
             while name not in self._ended:
                 self._take(*self._channel.receive(ANSWER_SECONDS))
@@ -129,12 +129,12 @@ class Supervision:
             return self._ended[name]
 
     def close(self) -> None:
-        """End all boxes and wait until none of their processes is alive; may be called twice."""
+        """End all boxes, and wait until none of their processes is alive. This may be called twice."""
         try:
             for name in list(self._boxes):
                 self.end(name)
         except ChannelClosed:
-            pass  # the supervisor is gone, and its boxes with it
+            pass  # the supervisor has ended, and its boxes with it
         finally:
             self._channel.close()
             close_all([box.pidfd for box in self._boxes.values()])

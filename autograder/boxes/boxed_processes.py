@@ -1,4 +1,4 @@
-"""The processes of a box as their starter sees them: a child of a fork server, or a command."""
+"""The processes in a box, as seen by the process that started them: a child of a fork server, or a command."""
 
 from __future__ import annotations
 
@@ -22,24 +22,24 @@ if TYPE_CHECKING:
 
 _START_SECONDS = 60.0
 _CLOSING_SECONDS = 10.0
-"""Seconds that a command may go on after it closed its output."""
+"""Seconds for which a command may still run after it closed its output."""
 _ITS_TIME = 1e6
-"""Seconds; longer than any check lasts, because the judge decides how long a program runs."""
+"""Time limit in seconds, longer than any check, because the judge decides how long a program runs."""
 
 
 class ForkedProcess:
-    """A process that a fork server has forked for us.
+    """A process that a fork server has forked on request.
 
-    It is killed as soon as this object's channel is closed, even if this process crashes.
+    It is killed as soon as this object's connection is closed, even if this process crashes.
 
     Args:
         address: The socket address of the fork server.
-        entrance: The settings with which the process begins.
-        descriptors: File descriptors for the process. The caller keeps its copies.
-        box: The box that the process enters, and that ends with it; None if it runs outside any box.
+        entrance: The settings with which the process begins in its box.
+        descriptors: File descriptors for the process. The caller keeps its own copies.
+        box: The box that the process enters, and that ends with the process; None if it runs outside any box.
 
     Raises:
-        ChannelClosed: The fork server is gone, or the child could not enter its box.
+        ChannelClosed: The fork server has ended, or the child could not enter the box.
     """
 
     def __init__(
@@ -56,10 +56,10 @@ class ForkedProcess:
             self._channel.close()
             raise
         self.pid = int(message["pid"])
-        """The process id, as the host counts."""
+        """The process id, as seen from the host."""
 
     def fileno(self) -> int:
-        """The descriptor that becomes readable when the process has ended."""
+        """Return the descriptor that becomes readable when the process has ended."""
         return self._channel.fileno()
 
     @property
@@ -70,13 +70,13 @@ class ForkedProcess:
 
     @property
     def status(self) -> int | None:
-        """The process's wait status (wait(2)); None while it runs, or if the status is lost."""
+        """The wait status of the process (wait(2)); None while the process runs, or if the status is lost."""
         self._look(0.0)
         return self._status
 
     @property
     def lost(self) -> bool:
-        """True if its supervisor or box disappeared first: then its exit tells nothing about the student's code."""
+        """True if the supervisor or box ended first. Then the exit status says nothing about the student's code."""
         self._look(0.0)
         return self._lost or (self._box is not None and self._box.lost)
 
@@ -89,19 +89,19 @@ class ForkedProcess:
         """Wait for the process to end. Return True if it has ended.
 
         Args:
-            within: Seconds.
+            within: The maximum number of seconds to wait.
         """
         self._look(within)
         return self._status is not None or self._lost
 
     def end_box(self) -> None:
-        """Kill every process in the box, and keep the status of this one."""
+        """Kill every process in the box, and keep the exit status of this one."""
         if self._box is not None:
             with contextlib.suppress(OSError):
                 self._box.end()
 
     def end(self) -> None:
-        """Kill the process and everything that it started in its box; may be called twice."""
+        """Kill the process and everything that it started in its box. This may be called twice."""
         self.end_box()
         if self._channel.fileno() < 0:
             return
@@ -124,13 +124,13 @@ class ForkedProcess:
 
 @dataclass(frozen=True)
 class Finished:
-    """The result of a command in a box.
+    """The result of a command that ran in a box.
 
     Attributes:
-        returncode: As in :class:`subprocess.Popen`: the exit code; negative for a signal. None if the command was
-            stopped at its time limit.
-        output: Standard output and standard error, in the order of arrival, cut at the allowed number of bytes.
-        cut: True if there was more output.
+        returncode: As in :class:`subprocess.Popen`: the exit code, or a negative number if a signal ended it. None if
+            the command was stopped at its time limit.
+        output: Standard output and standard error, in the order of arrival, cut to the allowed number of bytes.
+        cut: True if there was more output than that.
     """
 
     returncode: int | None
@@ -139,7 +139,7 @@ class Finished:
 
 
 class Running:
-    """A command that runs in a box; leaving the context ends it and everything that it started."""
+    """A command that runs in a box. At the end of the ``with`` block, it and everything that it started are ended."""
 
     def __init__(self, box: Box, output: int, most: int) -> None:
         self._box, self._output, self._most = box, output, most
@@ -147,13 +147,13 @@ class Running:
         self._kept = bytearray()
         self._cut = False
         self.pid = box.pid
-        """The number, outside the box, of the box's first process."""
+        """The PID, as seen from outside the box, of the box's first process."""
 
     def read(self, within: float) -> bool:
         """Read available output. Return False once the command has ended.
 
         Args:
-            within: Seconds to wait for output.
+            within: The maximum number of seconds to wait for output.
         """
         piece = self.next_output(max(0.0, within))
         if piece is None:
@@ -165,14 +165,14 @@ class Running:
 
     @property
     def said(self) -> bytes:
-        """The output that has been read and kept so far."""
+        """Return the output that has been read and kept so far."""
         return bytes(self._kept)
 
     def wait(self, limit: float) -> Finished:
-        """Wait until the command ends; stop it at the limit.
+        """Wait until the command ends. At the limit, stop it.
 
         Args:
-            limit: Seconds of wall time since the command started.
+            limit: Seconds of wall time, counted from the start of the command.
         """
         deadline = self._began + limit
         running = True
@@ -184,10 +184,10 @@ class Running:
         return Finished(returncode, self.said, self._cut)
 
     def next_output(self, within: float) -> bytes | None:
-        """Return the output since the last call, without keeping it: None if there is none yet, b"" once it has ended.
+        """Return the output since the last call without keeping it: None if there is none yet, b"" at the end.
 
         Args:
-            within: Seconds to wait for output.
+            within: The maximum number of seconds to wait for output.
         """
         if not select.select([self._output], [], [], within)[0]:
             return None
@@ -200,14 +200,14 @@ class Running:
     def interrupt(self) -> None:
         """Send Ctrl-C as a terminal does: to the whole process group at once.
 
-        If each process got it in turn, a program could end, and `ros2 run` with it, before Ctrl-C reached `ros2 run`.
-        The first process of the box leads the group and ignores the signal, because it has no handler
+        If the processes got it one by one, a program could end, and `ros2 run` with it, before Ctrl-C reached `ros2
+        run`. The first process of the box leads the group. It ignores the signal, because it has no handler for it
         (pid_namespaces(7)).
         """
         signal_group(self.pid, signal.SIGINT)
 
     def end(self) -> None:
-        """Kill the command and everything that it started; may be called twice."""
+        """Kill the command and everything that it started. This may be called twice."""
         if self._output >= 0:
             self._box.end()
             os.close(self._output)
@@ -221,29 +221,29 @@ class Running:
 
 
 class WarmCommand:
-    """A command that a fork server has forked into a box of its own.
+    """A command that a fork server has forked into a separate box.
 
     Args:
-        process: The process of the command; the box ends with it.
-        output: A descriptor from which the command's output is read.
-        pid: The first process of the box, as the host counts.
+        process: The process of the command. The box ends with it.
+        output: A descriptor from which the output of the command is read.
+        pid: The PID of the box's first process, as seen from the host.
     """
 
     def __init__(self, process: ForkedProcess, output: int, pid: int) -> None:
         self._process, self._output, self.pid = process, output, pid
 
     def next_output(self, within: float) -> bytes | None:
-        """See :meth:`Running.next_output`. Processes that the command left behind end with it."""
+        """Return new output; see :meth:`Running.next_output`. Processes that the command left behind end with it."""
         process = self._process.fileno()
         ready = select.select([self._output, process], [], [], within)[0]
         if process in ready:
-            self._process.end_box()  # processes left behind may hold the output open, or write for ever
+            self._process.end_box()  # processes left behind may hold the output open, or write forever
         return os.read(self._output, 1 << 16) if ready else None
 
     def exit_code(self) -> int | None:
-        """Return the exit code, once there is no more output, as ``Finished.returncode``; None if it is lost."""
+        """Return the exit code once there is no more output, as in ``Finished.returncode``; None if it is lost."""
         if not self._process.wait(_CLOSING_SECONDS):
-            self._process.end_box()  # it closed its output but goes on; this is the last chance to stop it
+            self._process.end_box()  # the command closed its output but goes on; this is the last chance to stop it
             self._process.wait(ANSWER_SECONDS)
         status = self._process.status
         if status is None:
@@ -256,7 +256,7 @@ class WarmCommand:
         self._process.interrupt()
 
     def end(self) -> None:
-        """Kill the command and everything that it started; may be called twice."""
+        """Kill the command and everything that it started. This may be called twice."""
         if self._output >= 0:
             self._process.end()
             os.close(self._output)
@@ -264,5 +264,5 @@ class WarmCommand:
 
 
 def _returncode(status: int) -> int:
-    """The return code as :class:`subprocess.Popen` has it, from one in which a signal is 128 plus its number."""
+    """Return a code as :class:`subprocess.Popen` has it, given one in which a signal is 128 plus its number."""
     return status if status < 128 else 128 - status

@@ -1,8 +1,8 @@
-"""A cgroup for each submission, if the host allows it: exact counts, and an equal share of processors.
+"""Control groups (cgroups) for submissions, if the host allows them: exact counts, and equal shares of processors.
 
-Version 1 (one hierarchy for each controller) and version 2 (one for all) are both in use. Permissions, delegation and
-read-only mounts decide together whether a process can be put into a new group, so this is tried with a real process.
-See cgroups(7), and ``cgroup-v1/memory`` and ``cgroup-v2`` in the kernel's documentation.
+Both version 1 (one hierarchy for each controller) and version 2 (one for all) are in use. Whether a process can be
+put into a new group depends on permissions, delegation and read-only mounts together, so it is tried with a real
+process. See cgroups(7), and ``cgroup-v1/memory`` and ``cgroup-v2`` in the kernel's documentation.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 _KINDS = ("memory", "pids", "cpu", "cpuacct")
-"""Version 2 has no ``cpuacct``: each of its groups counts processor time."""
+"""The controllers that are used. Version 2 has no ``cpuacct``, because each of its groups counts processor time."""
 _PREFIX = "autograder-"
 _SURELY_LEFT = 60.0
-"""Seconds after which an empty group has certainly been left behind."""
+"""An empty group that is older than this many seconds has certainly been left behind."""
 _numbers = itertools.count()
 
 
 @dataclass(frozen=True)
 class Controller:
-    """A controller for which groups can be made.
+    """A cgroup controller for which groups can be made.
 
     Attributes:
-        base: The folder in which a new folder is a new group.
+        base: The folder in which creating a folder creates a group.
         version: 1 or 2.
     """
 
@@ -42,12 +42,12 @@ class Controller:
 
 
 class Group:
-    """The groups of one submission. Its processes together get the same share of the processors as any other group.
+    """The cgroups of one submission. Its processes together get the same share of the processors as any other group.
 
     Args:
-        memory_bytes: The limit for all its processes together, files in memory included.
-        processes: The limit on processes and threads.
-        controllers: The controllers for which groups can be made; None to find them.
+        memory_bytes: The memory limit in bytes for all its processes together, including files in memory.
+        processes: The maximum number of processes and threads.
+        controllers: The controllers for which groups can be made; None to detect them.
     """
 
     def __init__(
@@ -65,33 +65,33 @@ class Group:
 
     @property
     def procs(self) -> list[str]:
-        """The files into which a process writes 0 to join, together with everything that it starts later."""
+        """The files into which a process writes 0 to join the groups, together with everything that it starts later."""
         return sorted({str(folder / "cgroup.procs") for folder in self._folders.values()})
 
     @property
     def ran_out_of_memory(self) -> bool:
-        """True if the kernel killed a member because all members together used too much memory."""
+        """True if the kernel killed a process of the group because the group used too much memory."""
         return self._counted("memory", "memory.oom_control", "memory.events", "oom_kill")
 
     @property
     def ran_out_of_processes(self) -> bool:
-        """True if a member was refused another process or thread."""
+        """True if a process of the group was not allowed another process or thread."""
         return self._counted("pids", "pids.events", "pids.events", "max")
 
     @property
     def cpu_seconds(self) -> float | None:
-        """Processor time of every process that was ever a member, in seconds; None if it is not counted here."""
+        """The processor time, in seconds, of every process that was ever in the group; None if it is not counted."""
         with contextlib.suppress(OSError, ValueError, IndexError):
             if "cpuacct" in self._folders:
                 return int((self._folders["cpuacct"] / "cpuacct.usage").read_text()) / 1e9
             for kind, folder in self._folders.items():
                 if self._controllers[kind].version == 2:
-                    # The first line is usage_usec.
+                    # The first line contains usage_usec.
                     return int((folder / "cpu.stat").read_text().split()[1]) / 1e6
         return None
 
     def close(self) -> None:
-        """Remove the groups, once no process is in them; may be called twice."""
+        """Remove the groups, once no process is in them. This may be called twice."""
         for folder in set(self._folders.values()):
             with contextlib.suppress(OSError):
                 folder.rmdir()
@@ -117,22 +117,22 @@ class Group:
 
 
 def memberships(procs: Iterable[str]) -> list[int]:
-    """Open the files of :attr:`Group.procs` while their paths are visible, for :func:`join`."""
+    """Open the files in :attr:`Group.procs` while their paths are visible, for later use by :func:`join`."""
     return [os.open(file, os.O_WRONLY | os.O_CLOEXEC) for file in procs]
 
 
 def join(opened: Iterable[int]) -> None:
-    """Move this process, and so all that it starts later, into the groups; then close the descriptors."""
+    """Move this process, and so everything that it starts later, into the groups. Then close the descriptors."""
     for group in opened:
-        os.write(group, b"0")  # cgroups(7): 0 stands for the process that writes
+        os.write(group, b"0")  # the 0 stands for the process that writes (cgroups(7))
         os.close(group)
 
 
 @functools.cache
 def usable() -> Mapping[str, Controller]:
-    """Return the controllers of ``_KINDS`` for which groups can be made here.
+    """Return the controllers in ``_KINDS`` for which groups can be made here.
 
-    Also removes groups that a killed grader left behind.
+    It also removes groups that a killed grader left behind.
     """
     found = {}
     for kind in _KINDS:
@@ -148,9 +148,10 @@ def _settings(kind: str, version: int, memory_bytes: int, processes: int) -> Ite
     if kind == "pids":
         return [("pids.max", str(processes))]
     if kind in ("cpu", "cpuacct"):
-        return []  # a new group has the same share as each other one: cpu.shares of 1024, cpu.weight of 100
+        # Nothing to set: a new group has the same share as every other one (cpu.shares 1024, cpu.weight 100).
+        return []
     if version == 1:
-        # Swap counts too, if the kernel counts it at all; this limit may not be below the one on memory.
+        # Swap counts, too, if the kernel counts it at all. This limit must not be lower than the one on memory.
         return [
             ("memory.limit_in_bytes", str(memory_bytes)),
             ("memory.memsw.limit_in_bytes", str(memory_bytes)),
@@ -165,12 +166,12 @@ def _write(file: Path, value: str) -> None:
 
 
 def _candidates(kind: str, own: str, mounts: str) -> list[Controller]:
-    """Return the folders in which a group could be made, the nearest to our own group first.
+    """Return the folders in which a group might be made, those nearest to this process's own group first.
 
     Args:
-        kind: The controller.
-        own: ``/proc/self/cgroup``.
-        mounts: ``/proc/self/mountinfo``.
+        kind: The name of the controller.
+        own: The content of ``/proc/self/cgroup``.
+        mounts: The content of ``/proc/self/mountinfo``.
     """
     paths: dict[str, str] = {}
     for line in own.splitlines():
@@ -186,20 +187,21 @@ def _candidates(kind: str, own: str, mounts: str) -> list[Controller]:
             found.append(Controller(_inside(place, root, paths[kind]), 1))
         elif filesystem == "cgroup2" and "" in paths and kind in _text(f"{place}/cgroup.controllers").split():
             nearest = _inside(place, root, paths[""])
-            # In version 2, a group with members cannot have subgroups with limits; only the topmost group can.
+            # In version 2, a group that contains processes cannot have subgroups with limits, except the topmost
+            # group.
             above = [folder for folder in (nearest, *nearest.parents) if folder.is_relative_to(place)]
             found += [Controller(folder, 2) for folder in above]
     return found
 
 
 def _inside(place: str, root: str, path: str) -> Path:
-    """Return the folder of the group ``path``, given that its hierarchy is mounted from ``root`` on."""
+    """Return the folder of the group ``path`` in a hierarchy that is mounted from its folder ``root``."""
     inside = os.path.relpath(path, root)
     return Path(place) if inside.startswith("..") else Path(place) / inside
 
 
 def _can_hold_a_process(kind: str, controller: Controller) -> bool:
-    """Try it: put a process into a new group with a limit, then remove both."""
+    """Return True if a process can be put into a new group with a limit. This is tried out, and undone."""
     try:
         if controller.version == 2:
             enabled = controller.base / "cgroup.subtree_control"
@@ -222,7 +224,7 @@ def _sweep(base: Path) -> None:
     with contextlib.suppress(OSError):
         for folder in base.glob(f"{_PREFIX}*"):
             pid = folder.name.removeprefix(_PREFIX).partition("-")[0]
-            # Only old ones: a grader in another PID namespace may be making a new one right now.
+            # Remove only old ones, because a grader in another PID namespace may be creating a group right now.
             old = time.time() - folder.stat().st_mtime > _SURELY_LEFT
             if pid.isdecimal() and old and not Path(f"/proc/{pid}").exists():
                 with contextlib.suppress(OSError):

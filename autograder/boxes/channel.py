@@ -1,6 +1,6 @@
 """Messages between the grader's own processes: JSON and file descriptors over a Unix socket.
 
-No process in a box holds an end of such a socket. Each message is one packet, so a message always arrives whole.
+No process in a box holds an end of such a socket. Each message is one packet, so it always arrives complete.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, Any, Self
 if TYPE_CHECKING:
     from collections.abc import Sequence
 LARGEST = 200_000
-"""The largest message in bytes; Linux allows slightly more in a packet by default."""
+"""The maximum size of a message in bytes. Linux by default allows slightly more in a packet."""
 _MOST_DESCRIPTORS = 32
 
 
 class ChannelClosed(ConnectionError):
-    """The other end is gone."""
+    """The other end of the connection has closed it or has ended."""
 
 
 class Channel:
@@ -31,13 +31,13 @@ class Channel:
 
     @classmethod
     def to(cls, address: str) -> Self:
-        """Connect to a listener.
+        """Connect to a process that listens on a socket.
 
         Args:
-            address: The path of its socket.
+            address: The path of the socket.
 
         Raises:
-            ChannelClosed: Nothing listens at this address.
+            ChannelClosed: No process listens on this socket.
         """
         connection = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         try:
@@ -48,14 +48,14 @@ class Channel:
         return cls(connection)
 
     def fileno(self) -> int:
-        """The descriptor that is readable when a message has come or the other end is gone."""
+        """Return the descriptor that becomes readable when a message has come or the other end has closed."""
         return self._socket.fileno()
 
     def send(self, message: dict[str, Any], descriptors: Sequence[int] = ()) -> None:
-        """Send one message; the descriptors stay open here.
+        """Send one message. The descriptors stay open here.
 
         Raises:
-            ChannelClosed: The other end is gone.
+            ChannelClosed: The other end has closed.
         """
         try:
             socket.send_fds(self._socket, [json.dumps(message).encode()], list(descriptors))
@@ -66,13 +66,13 @@ class Channel:
         """Wait for a message.
 
         Args:
-            within: Seconds to wait; None to wait without a limit.
+            within: The maximum number of seconds to wait; None to wait without limit.
 
         Returns:
-            The message and the descriptors that came with it, which now belong to the caller.
+            The message, and the descriptors that came with it, which the caller now owns.
 
         Raises:
-            ChannelClosed: The other end is gone, or sent nothing in time.
+            ChannelClosed: The other end has closed, or sent nothing in time.
         """
         if within is not None and not select.select([self._socket], [], [], within)[0]:
             raise ChannelClosed(f"no answer within {within:g} s")
@@ -90,7 +90,7 @@ class Channel:
 
     @property
     def hung_up(self) -> bool:
-        """True if the other end is gone, even if messages from it are still unread."""
+        """True if the other end has closed, even if messages from it are still unread."""
         if self._socket.fileno() < 0:
             return False
         poll = select.poll()
@@ -98,7 +98,7 @@ class Channel:
         return bool(poll.poll(0))
 
     def close(self) -> None:
-        """Close the connection; may be called twice."""
+        """Close the connection. This may be called twice."""
         self._socket.close()
 
     def __enter__(self) -> Self:

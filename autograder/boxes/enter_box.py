@@ -1,4 +1,4 @@
-"""How a fork of a fork server enters a box: joins its namespaces, then gives up what a student must not have."""
+"""How a child of a fork server enters a box: it joins the box's namespaces, then gives up its rights."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from autograder.boxes.seccomp_filter import filter_for_boxes, filter_for_readers
 from autograder.process_trees import adopt_orphans, die_with_parent, end_descendants
 
 Run = Callable[[Mapping[str, Any], Sequence[int]], None]
-"""What a child runs: called with the request's ``call`` and its descriptors."""
+"""The function that a child runs, given the request's ``call`` and descriptors."""
 
 _ALL_NAMESPACES = (
     syscalls.CLONE_NEWUSER | syscalls.CLONE_NEWNS | syscalls.CLONE_NEWPID | syscalls.CLONE_NEWNET
@@ -35,14 +35,15 @@ class Entrance:
     Attributes:
         cwd: The working folder, as a path inside the box.
         environment: All environment variables.
-        boxed: True to enter the box whose first process's pidfd is the request's first descriptor. Otherwise the
-            child stays outside, which only a course's own notebooks and ``--unsafe-no-sandbox`` do.
+        boxed: True to enter a box. The first descriptor of the request is then a pidfd of the box's first process.
+            False to stay outside, only for the course's own notebooks and ``--unsafe-no-sandbox``.
         cgroups: The ``cgroup.procs`` files to join, as paths outside the box.
         rlimits: Limits on each process, by their names in :mod:`resource`.
-        hidden_memory: See :func:`autograder.boxes.seccomp_filter.filter_for_boxes`.
-        call: What ``run`` is told.
-        reader_seconds: Limit in seconds of processor time for a process that may only read its descriptors and write
-            to them (:func:`autograder.boxes.seccomp_filter.filter_for_readers`); 0 for any other process.
+        hidden_memory: True to allow memory that belongs to no process; see
+            :func:`autograder.boxes.seccomp_filter.filter_for_boxes`.
+        call: The argument for the function ``run``.
+        reader_seconds: The limit in seconds of processor time for a process that may only read from and write to its
+            descriptors (:func:`autograder.boxes.seccomp_filter.filter_for_readers`); 0 for any other process.
     """
 
     cwd: str
@@ -56,21 +57,22 @@ class Entrance:
 
 
 def enter(channel: Channel, run: Run) -> None:
-    """Serve one request in the child of a fork server: fork into the box, then watch over the process there.
+    """Serve one request in a child of a fork server: fork into the box, then watch the process there.
 
-    The answer is ``{"pid": …}`` as the host counts, and when that process has ended ``{"status": …}``, its wait
-    status. If the other end hangs up first, the process is killed.
+    The answer is ``{"pid": …}``, as seen from the host. When that process has ended, ``{"status": …}`` follows, its
+    wait status. If the other end closes first, the process is killed.
     """
     die_with_parent()
     message, descriptors = channel.receive()
     entrance = Entrance(**message)
-    # Opened here, while the paths are visible. Only the child joins, so that a box that is out of memory cannot take
-    # this watching process with it.
+    # The files are opened here, while their paths are visible. Only the child joins, so that a box that runs out of
+    # memory cannot take this watching process with it.
     groups = memberships(entrance.cgroups)
     if entrance.boxed:
         syscalls.setns(descriptors[0], _ALL_NAMESPACES)
     else:
-        # Without a PID namespace, daemons that a student's code starts become our children, and we end them.
+        # Without a PID namespace, daemons that a student's code starts become children of this process, which ends
+        # them.
         adopt_orphans()
     pid = os.fork()
     if pid == 0:
@@ -88,19 +90,19 @@ def enter(channel: Channel, run: Run) -> None:
 
 
 def _end_of(pid: int, channel: Channel) -> int:
-    """Wait for the process to end, or kill it when the other end of the channel is gone."""
+    """Wait for the process to end, or kill it when the other end of the connection closes. Return the wait status."""
     end = os.pidfd_open(pid)
     watched: list[Any] = [end, channel]
     ready, _, _ = select.select(watched, [], [])
     if end not in ready:
-        # No further message is expected: a readable channel means that the other end is gone.
+        # No further message is expected, so if the connection is readable, the other end has closed.
         os.kill(pid, signal.SIGKILL)
     _, status = os.waitpid(pid, 0)
     return status
 
 
 def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
-    """Run everything that the process in the box does after its fork."""
+    """Do everything that the process in the box does after its fork."""
     code = 1
     try:
         os.setsid()
@@ -113,7 +115,8 @@ def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
             descriptors = descriptors[1:]
             filters = filter_for_boxes(hidden_memory=entrance.hidden_memory)
             give_up_rights(b"" if entrance.reader_seconds else filters)
-        # Given up rights take this away (prctl(2)), so it comes after them. Our parent is in another PID namespace.
+        # This comes after giving up rights, which clears the setting (prctl(2)). The parent is in another PID
+        # namespace.
         die_with_parent()
         signal.signal(signal.SIGINT, signal.default_int_handler)
         if entrance.reader_seconds:
@@ -132,30 +135,30 @@ def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
 
 
 def give_up_rights(filters: bytes) -> None:
-    """No capability, none to be had by executing anything, and the filter of system calls."""
+    """Give up all capabilities, gaining any by executing a program, and the system calls that a box may not make."""
     syscalls.drop_capabilities()
     syscalls.filter_system_calls(filters)
-    # A process that changed its rights does not own its /proc/self any more, which programs read.
+    # A process that changed its rights no longer owns its /proc/self, which programs read, so make it dumpable again.
     syscalls.prctl(syscalls.PR_SET_DUMPABLE, 1)
 
 
 def _become_a_reader(seconds: int) -> None:
-    """Take the limit on processor time and the filter of readers, with which SIGXCPU cannot be caught.
+    """Set the limit on processor time and the system call filter for readers, under which SIGXCPU cannot be caught.
 
-    SIGXCPU comes a second before SIGKILL, so that it tells the limit from a machine that is out of memory.
+    SIGXCPU comes a second before SIGKILL, so that reaching the limit differs from a machine that is out of memory.
     """
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
     syscalls.filter_system_calls(filter_for_readers())
 
 
 def take_limits(cgroups: Sequence[str], rlimits: Mapping[str, int]) -> None:
-    """Apply the limits of a box to the process that is about to become bubblewrap."""
+    """Apply the limits of a box to this process, which is about to become bubblewrap."""
     join(memberships(cgroups))
     apply_rlimits(rlimits)
 
 
 def apply_rlimits(limits: Mapping[str, int]) -> None:
-    """Set limits of this process and its children, as far as the system allows."""
+    """Set the limits of this process and its children, as far as the system allows."""
     for name, value in limits.items():
         kind = getattr(resource, name)
         _, hard = resource.getrlimit(kind)

@@ -1,4 +1,4 @@
-"""The environment variables of a submission's kernel: what Python and ROS need, and nothing from the host."""
+"""The environment variables of a submission's kernel: what Python and ROS need, and nothing else from the host."""
 
 from __future__ import annotations
 
@@ -34,18 +34,18 @@ _KEPT_PREFIXES = (
     "_ROS_WHEELS_",
 )
 _NO_THREADS = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
-"""numpy's libraries start threads when they are loaded.
+"""Variables that keep numpy's libraries from starting threads when they are loaded.
 
-A fork loses these threads, and a program in which ROS imports numpy would then wait in a busy loop for work that
+A fork would lose these threads. A program in which ROS imports numpy would then wait in a busy loop for work that
 never comes.
 """
 
 
 def base_environment(given: Mapping[str, str] | None = None) -> dict[str, str]:
-    """Return the environment of a fork server and of every box: what Python and ROS need, nothing else.
+    """Return the environment of a fork server and of every box: what Python and ROS need, and nothing else.
 
     Args:
-        given: The environment to choose from; None for that of this process.
+        given: The environment to take values from; None for that of this process.
     """
     found = (os.environ if given is None else given).items()
     kept = {name: value for name, value in found if name in _KEPT or name.startswith(_KEPT_PREFIXES)}
@@ -56,11 +56,11 @@ def base_environment(given: Mapping[str, str] | None = None) -> dict[str, str]:
 def box_environment(
     extra: Mapping[str, str] | None = None, given: Mapping[str, str] | None = None
 ) -> dict[str, str]:
-    """Return the whole environment of a process in a box.
+    """Return the complete environment of a process in a box.
 
     Args:
         extra: Variables to set, whatever their values on the host.
-        given: See :func:`base_environment`.
+        given: The environment to take values from; None for that of this process.
     """
     return {
         **base_environment(given),
@@ -75,10 +75,10 @@ def box_environment(
 
 
 def kernel_environment(scratch: Path, extra: Mapping[str, str]) -> dict[str, str]:
-    """Return the whole environment of a kernel that has its home, temporary and log folders in ``scratch``.
+    """Return the complete environment of a kernel that has its home, temporary and log folders in ``scratch``.
 
     Args:
-        scratch: An existing folder; the folders inside it are made here.
+        scratch: An existing folder. The folders inside it are created here.
         extra: Variables to set, whatever their values on the host.
     """
     kept = {

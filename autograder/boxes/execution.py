@@ -1,4 +1,4 @@
-"""The input and the result of executing a notebook, as plain data that travels as JSON."""
+"""The input and the result of executing a notebook, as plain data that is sent as JSON."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annota
 
 
 class CellType(StrEnum):
-    """The type of a cell, in nbformat's words."""
+    """The type of a cell, with nbformat's names."""
 
     CODE = "code"
     MARKDOWN = "markdown"
@@ -19,15 +19,15 @@ class CellType(StrEnum):
 
 @dataclass(frozen=True)
 class CellCheck:
-    """The check that a check cell makes.
+    """The check that a check cell requests.
 
     Attributes:
         exercise: The exercise's id, such as ``"lab_1_2.talker"``.
-        title: The exercise's name as people see it.
-        points: The most points that the judge gives.
-        worth: The cell's points in the gradebook; the judge's score is scaled to them.
+        title: The exercise's title for people.
+        points: The maximum points that the judge gives.
+        worth: The cell's maximum points in the gradebook. The judge's score is scaled to them.
         limit: The judge's time limit in seconds of wall time.
-        asserts: True if the cell's own tests decide, by nbgrader's rules, instead of the judge.
+        asserts: True if the cell's own tests decide, by nbgrader's rules, and not the judge.
     """
 
     exercise: str
@@ -40,13 +40,13 @@ class CellCheck:
 
 @dataclass(frozen=True)
 class Cell:
-    """One cell to execute.
+    """A cell to execute.
 
     Attributes:
         source: The text of the cell.
-        kind: Only code cells are executed.
-        check: Set on a check cell.
-        name: The grade_id; empty for a cell that the student added.
+        kind: The type of the cell. Only code cells are executed.
+        check: The check, if this is a check cell.
+        name: The grade_id of the cell; empty for a cell that the student added.
         own: True if a student wrote the text.
     """
 
@@ -58,7 +58,7 @@ class Cell:
 
 
 class Ended(StrEnum):
-    """How the run of a cell ended."""
+    """How the execution of a cell ended."""
 
     DONE = "done"
     RAISED = "raised"
@@ -71,7 +71,7 @@ class Ended(StrEnum):
     TOO_MANY_LOCKS = "too_many_locks"
     TOO_MUCH_OUTPUT = "too_much_output"
     NOT_RUN = "not_run"
-    """The kernel was gone, or the notebook's time was up, before this cell could run."""
+    """The cell did not run, because the kernel had ended or the notebook's time was over."""
 
 
 @dataclass(frozen=True)
@@ -79,11 +79,11 @@ class CellRun:
     """The result of one cell.
 
     Attributes:
-        ended: How it ended.
-        outputs: nbformat outputs, limited in size and without anything that a browser would execute.
-        error: ``"NameError: name 'x' is not defined"`` for a cell that raised, else empty. The text comes from the
-            student's code.
-        seconds: Wall time.
+        ended: How the execution of the cell ended.
+        outputs: Outputs in nbformat's form, limited in size and without anything that a browser would execute.
+        error: For a cell that raised an error, a text such as ``"NameError: name 'x' is not defined"``, else empty.
+            The text comes from the student's code.
+        seconds: The duration in seconds of wall time.
     """
 
     ended: Ended
@@ -94,19 +94,19 @@ class CellRun:
 
 @dataclass(frozen=True)
 class Execution:
-    """The result of a notebook.
+    """The result of executing a notebook.
 
     Attributes:
-        cells: One result for each cell that was given, in order.
-        verdicts: By index of the check cell; every check cell has one.
-        trouble: A failure of the grader itself; empty if there was none. With a failure, no result is final.
-        seconds: Wall time, the start of the kernel included.
-        start_seconds: The part of it until kernel and judge were ready.
-        as_typed: The indexes of the cells whose text is too costly to render on a page.
+        cells: The results of the cells that were given, in the same order.
+        verdicts: The verdicts by the index of the check cell. Every check cell has one.
+        trouble: A failure of the grader itself; empty if there was none. With such a failure, no result is final.
+        seconds: The duration in seconds of wall time, including the start of the kernel.
+        start_seconds: The part of this time until kernel and judge were ready.
+        as_typed: The indexes of the cells whose text takes too long to render on a page.
         crowded_out: True if it failed or reached a limit perhaps only because other work ran at the same time.
-        cpu_seconds: Processor time used in the student's boxes; 0 if it is not counted.
-        evidence: What the judge's verdicts follow from, by exercise, as the judge packed it. It is not opened while a
-            class is graded.
+        cpu_seconds: The processor time in seconds that was used in the student's boxes; 0 if it is not counted.
+        evidence: The evidence for the judge's verdicts, by exercise, as the judge packed it. It is not unpacked while
+            a class is graded.
     """
 
     cells: tuple[CellRun, ...]
@@ -121,5 +121,5 @@ class Execution:
 
     @property
     def says_nothing(self) -> bool:
-        """True if it should be executed again, alone: other work may have used up what it lacked."""
+        """True if the notebook should run again, alone, because other work may have used what it lacked."""
         return bool(self.trouble) or self.crowded_out

@@ -1,13 +1,14 @@
-"""Fork servers: processes that have done the slow imports, and fork a child for each connection.
+"""Fork servers: processes that have made the slow imports, and fork a child for each connection.
 
-``python -P -m autograder.boxes.fork_server MODE MODULE DESCRIPTOR [WORD...]``: ``MODULE`` has ``prepare``, called
-once with the words, and ``run``, called in each child. In the mode ``inside`` the child first enters the box named in
-the request (:mod:`autograder.boxes.enter_box`); in the mode ``beside`` ``run`` gets the connection itself.
+``python -P -m autograder.boxes.fork_server MODE MODULE DESCRIPTOR [WORD...]``: ``MODULE`` has two functions:
+``prepare``, called once with the words, and ``run``, called in each child. In the mode ``inside``, the child first
+enters the box named in the request (:mod:`autograder.boxes.enter_box`). In the mode ``beside``, ``run`` gets the
+connection itself.
 
-A fork is safe because this process starts with a clean environment and makes no thread and no ROS context (LTTng,
-which rclpy loads, has two threads that sleep until there is a tracing daemon). It never reads a request: the child
-does. So no data of one submission is ever in the memory with which the next kernel begins. It ends, and its children
-with it, when its standard input ends.
+Forking is safe because this process starts with a clean environment, and makes no thread and no ROS context. (LTTng,
+which rclpy loads, has two threads, which sleep until a tracing daemon runs.) It never reads a request; the child
+does. So data of one submission is never in the memory with which the next kernel begins. The process ends when its
+standard input ends, and its children end with it.
 """
 
 from __future__ import annotations
@@ -40,12 +41,12 @@ if TYPE_CHECKING:
 
 BESIDE, INSIDE = "beside", "inside"
 FOLDER_PREFIX = "autograder-held-"
-"""The beginning of the names of fork servers' folders.
+"""The prefix of the names of the fork servers' folders.
 
-Older versions used another name and no lock; their folders are left alone.
+Older versions used another prefix and no lock. Their folders are left alone.
 """
 _LIBRARY_FOLDERS = 8
-"""More packages with libraries than any workspace of the course has."""
+"""The number of folders for libraries, more than any workspace of the course has packages with libraries."""
 SUPERVISOR_MODULE = "autograder.boxes.supervisor"
 KERNEL_MODULE = "autograder.boxes.kernel_process"
 PROGRAM_MODULE = "autograder.boxes.program_process"
@@ -77,11 +78,11 @@ _MIDDLEWARE = "librmw_fastrtps_cpp.so"
 
 
 def library_folders(address: str) -> list[Path]:
-    """Return the folders in which the forks of a fork server look for libraries first.
+    """Return the folders in which the forks of a fork server first look for libraries.
 
-    They are fixed because the loader reads the list only once. Outside a box they are empty. In a box they are links
-    to the box's folders with libraries, which a student may have made: a process that enters a box loads nothing by
-    name before it has given up its rights.
+    The list is fixed because the loader reads it only once. Outside a box, the folders are empty. In a box, they are
+    links to the box's folders with libraries, which a student may have made. This is safe because a process that
+    enters a box loads nothing by name before it has given up its rights.
 
     Args:
         address: The socket address of the fork server.
@@ -90,7 +91,7 @@ def library_folders(address: str) -> list[Path]:
 
 
 def main(arguments: list[str]) -> None:
-    """Serve until standard input ends.
+    """Serve requests until standard input ends.
 
     Args:
         arguments: The mode, the module, the descriptor of the listening socket, and the words for the module.
@@ -101,9 +102,9 @@ def main(arguments: list[str]) -> None:
     module = importlib.import_module(name)
     module.prepare(*words)
     gc.collect()
-    # Objects made so far are not collected in the children, so their memory remains shared.
+    # Objects that exist now are not collected in the children, so that their memory stays shared.
     gc.freeze()
-    # The exit status of a child is not needed, so no zombie is kept.
+    # The exit status of a child is not needed, so no zombie has to be kept.
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)
     while True:
         watched: list[Any] = [listener, 0]
@@ -119,7 +120,7 @@ def main(arguments: list[str]) -> None:
 
 
 def _tidy(address: str) -> None:
-    """Remove the socket, and its folder if that was made for it: the process that made it may have been killed."""
+    """Remove the socket, and the folder that was made for it, because their maker may have been killed."""
     socket_file = Path(address)
     with contextlib.suppress(OSError):
         socket_file.unlink(missing_ok=True)
@@ -154,17 +155,17 @@ def _child(mode: str, module: Any, listener: socket.socket, connection: socket.s
 
 
 def preload(modules: Iterable[str]) -> None:
-    """Import modules, and skip a missing one: the code that needs it will report it."""
+    """Import modules. A missing one is skipped; the code that needs it will report it."""
     for name in modules:
         with contextlib.suppress(Exception):
             importlib.import_module(name)
 
 
 def preload_ros(interfaces: Iterable[str]) -> None:
-    """Load the type support of interfaces, and everything that the first node and the first log line load.
+    """Load the type support of interfaces, and everything that the first node and the first log line would load.
 
     Args:
-        interfaces: Modules with generated interfaces.
+        interfaces: The names of modules with generated interfaces.
     """
     for name in interfaces:
         with contextlib.suppress(ImportError):
@@ -173,24 +174,25 @@ def preload_ros(interfaces: Iterable[str]) -> None:
                 if load is not None:
                     load()
     with contextlib.suppress(OSError):
-        # rclpy.init loads it; in a child it is then loaded already.
+        # rclpy.init loads this library. In a child it is then loaded already.
         ctypes.CDLL(_MIDDLEWARE)
     with contextlib.suppress(ImportError):
-        # A first log line looks for its caller among the files of all modules (rclpy/impl/rcutils_logger.py, and
-        # inspect.getmodule, which remembers them): 46 ms of processor time in each kernel, 8 if it was done here.
+        # A process's first log line searches the files of all modules for its caller (rclpy/impl/rcutils_logger.py,
+        # and inspect.getmodule, which remembers them). This takes 46 ms of processor time in each kernel, but 8 ms if
+        # it was done here before.
         importlib.import_module("rclpy.impl.rcutils_logger").CallerId()
 
 
 class ForkServer:
-    """A fork server that this process started; it ends with this object or with this process.
+    """A fork server that this process started. It ends with this object, or with this process.
 
     Args:
-        mode: ``BESIDE`` or ``INSIDE``, see :mod:`autograder.boxes.fork_server`.
+        mode: ``BESIDE`` or ``INSIDE``; see :mod:`autograder.boxes.fork_server`.
         module: The module that it serves.
-        address: The path of the socket to make. It must not be visible in any box.
-        log: The descriptor for its standard error; None to drop it.
+        address: The path of the socket to create. It must not be visible in any box.
+        log: The descriptor for its standard error; None to discard it.
         extra: More environment variables, which are set while modules are imported.
-        words: The arguments for the module's ``prepare``. The children can read them, and the environment.
+        words: The arguments for the module's ``prepare``. The children can read them and the environment.
     """
 
     def __init__(
@@ -205,7 +207,7 @@ class ForkServer:
         self.address = str(address)
         with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as listener:
             listener.bind(self.address)
-            # Clients can connect from now on; they are served when the imports are done.
+            # Clients can connect from now on. They are served once the imports are done.
             listener.listen(128)
             arguments = ("-m", "autograder.boxes.fork_server", mode, module, str(listener.fileno()), *words)
             variables = {**base_environment(), "PYDEVD_DISABLE_FILE_VALIDATION": "1", **(extra or {})}
@@ -214,7 +216,7 @@ class ForkServer:
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL if log is None else log,
                 pass_fds=(listener.fileno(),),
-                # Ctrl-C is for the grader, which then ends its boxes in good order.
+                # Ctrl-C must reach only the grader, which then ends its boxes in an orderly way.
                 start_new_session=True,
             )
 
@@ -228,7 +230,7 @@ class ForkServer:
         return self._process.pid
 
     def stop(self) -> None:
-        """End the server and all its children; may be called twice."""
+        """End the server and all its children. This may be called twice."""
         assert self._process.stdin is not None
         with contextlib.suppress(OSError):
             self._process.stdin.close()
@@ -239,13 +241,13 @@ class ForkServer:
 
 @dataclass(frozen=True)
 class Addresses:
-    """The addresses of the fork servers; sent to a worker on its command line.
+    """The addresses of the fork servers. A worker gets them on its command line.
 
     Attributes:
-        supervisors: For :class:`autograder.boxes.sandbox.Enclosure`. Empty without a sandbox.
-        kernels: For :class:`autograder.boxes.kernel.Kernel`.
-        judges: For the judge.
-        programs: For :meth:`autograder.boxes.sandbox.Enclosure.ros2`. Empty without a sandbox.
+        supervisors: The address used by :class:`autograder.boxes.sandbox.Enclosure`; empty without a sandbox.
+        kernels: The address used by :class:`autograder.boxes.kernel.Kernel`.
+        judges: The address used to start judges.
+        programs: The address used by :meth:`autograder.boxes.sandbox.Enclosure.ros2`; empty without a sandbox.
     """
 
     supervisors: str
@@ -255,16 +257,18 @@ class Addresses:
 
 
 class ForkServers:
-    """The fork servers of a batch, started together.
+    """The fork servers of a batch, which are started together.
 
     Args:
-        judge_module: The module that the judges' server serves; a parameter, because boxes do not import the judge.
-        boxed: True to start those for supervisors and programs, too.
+        judge_module: The module that the judges' fork server serves. It is a parameter, because boxes do not import
+            the judge.
+        boxed: True to start the fork servers for supervisors and programs, too.
         log: The descriptor for their standard error.
-        environment: More variables for all of them but the supervisors. Libraries read some when they are loaded.
-        of_judges: More variables for the judges alone, such as the course's folder.
-        interfaces: The modules of the course's interfaces, so that a kernel finds them imported. The kernel learns
-            nothing else about the course.
+        environment: More variables for all of them except the supervisors'. Libraries read some variables when they
+            are loaded.
+        of_judges: More variables for the judges only, such as the folder of the course.
+        interfaces: The modules of the course's interfaces, so that a kernel finds them already imported. The kernel
+            learns nothing else about the course.
     """
 
     def __init__(
@@ -299,7 +303,7 @@ class ForkServers:
         return all(process.alive for process in self._all())
 
     def stop(self) -> None:
-        """End them with all boxes, kernels and judges that they started; may be called twice."""
+        """End them with all boxes, kernels and judges that they started. This may be called twice."""
         for process in self._all():
             process.stop()
         self._folder.remove()

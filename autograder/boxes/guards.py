@@ -1,9 +1,9 @@
-"""The guards of a box's limits: cgroups if the host allows them, otherwise regular checks of the processes.
+"""Guards that enforce a box's limits: cgroups if the host allows them, otherwise regular checks of the processes.
 
-With cgroups the operating system itself refuses a process, or ends one, at a limit. Without them a watch reads the
-box's ``/proc`` several times a second and ends the box; limits on each single process stop what is faster than
-the watch. The watch also reads the most memory that a process ever had, so the verdict is the same, whichever limit a
-process reaches first. The watch always enforces the limit on processor time, because being late does no
+With cgroups, the operating system itself refuses or ends a process at a limit. Without them, a watch reads the box's
+``/proc`` several times a second and ends the box; limits on each single process stop whatever is faster than the
+watch. The watch also reads the largest amount of memory that a process ever had, so the verdict is the same whichever
+limit a process reaches first. The limit on processor time is always enforced by the watch, because being late does no
 harm there.
 """
 
@@ -34,14 +34,15 @@ INTERVAL = 0.25
 _SIZE = re2.compile(r"(?m)^(\w+):[ \t]+(\d+) kB$")
 _TICKS = os.sysconf("SC_CLK_TCK")
 _PAGES = re2.compile(r"(?m)^(?:TCP|UDP): .*\bmem (\d+)$")
-"""Memory that waits in the sockets of all networks, in pages; the lines include IPv6 and UDP-Lite sockets."""
+"""Matches the memory that waits in the sockets of all networks, in pages. The lines include IPv6 and UDP-Lite sockets.
+"""
 _PROTOCOLS = ("udp", "udp6", "tcp", "tcp6")
 _SOCKETS = re2.compile(r"(?m)^sockets: used (\d+)$")
 _PIECE = 1 << 16
 
 
 class BoxGuard:
-    """The guard of one submission's boxes. Close it after they have ended."""
+    """The guard of one submission's boxes. Close it after the boxes have ended."""
 
     def __init__(self, limits: Limits) -> None:
         self._limits = limits
@@ -54,7 +55,7 @@ class BoxGuard:
 
     @property
     def cgroups(self) -> list[str]:
-        """The files into which a process writes 0 before it enters a box."""
+        """The files into which a process writes 0, to join the cgroups, before it enters a box."""
         return self._group.procs
 
     @property
@@ -66,7 +67,7 @@ class BoxGuard:
     def rlimits(self) -> Mapping[str, int]:
         """Limits on each single process (setrlimit(2))."""
         limits = {
-            "RLIMIT_CORE": 1,  # 0 would still start a handler of core dumps (core(5))
+            "RLIMIT_CORE": 1,  # with 0, the system would still start a handler of core dumps (core(5))
             "RLIMIT_NOFILE": open_files_of_a_box(self._limits.open_files),
             "RLIMIT_FSIZE": self._limits.scratch_bytes,
             "RLIMIT_CPU": int(self._limits.cpu_seconds) + 1,
@@ -75,7 +76,8 @@ class BoxGuard:
             "RLIMIT_SIGPENDING": 1000,
         }
         if not self._memory:
-            # Writable address space, including the stacks of threads: it is always larger than the memory in use.
+            # This limits writable address space, including the stacks of threads, which is always larger than the
+            # memory in use.
             limits["RLIMIT_DATA"] = 2 * self._limits.memory_bytes
         if not self._processes and os.geteuid() != 0:
             limits["RLIMIT_NPROC"] = self._limits.processes
@@ -85,16 +87,16 @@ class BoxGuard:
         """Start checking the processes of a box.
 
         Args:
-            first: The number, outside the box, of the box's first process.
+            first: The PID of the box's first process, as seen from outside the box.
         """
         self._first = first
 
     def exceeded(self, *, at_once: bool = False) -> Ended | None:
-        """Return the limit that the last check found exceeded, or None; the caller must then end the box.
+        """Return the limit that the last check found exceeded, or None. After a limit, the caller must end the box.
 
         Args:
-            at_once: Check again now if only this watch enforces the limit on memory; otherwise a check is made every
-                ``INTERVAL`` seconds.
+            at_once: True to check again now, if only this watch enforces the limit on memory. Otherwise a check is
+                made every ``INTERVAL`` seconds.
         """
         now = time.monotonic()
         due = now >= self._next_look or (at_once and not self._memory)
@@ -104,7 +106,7 @@ class BoxGuard:
         return self._seen
 
     def reason(self) -> Ended | None:
-        """The limit that was exceeded, or at which the system refused or killed a process; None without one."""
+        """The limit that was exceeded, or at which the system refused or killed a process; None if there is none."""
         if self._seen is None and self._group.ran_out_of_memory:
             return Ended.OUT_OF_MEMORY
         if self._seen is None and self._group.ran_out_of_processes:
@@ -113,24 +115,24 @@ class BoxGuard:
 
     @property
     def cpu_seconds(self) -> float:
-        """Processor time used until now; without a cgroup, until the last check."""
+        """The processor time used until now, in seconds; without a cgroup, until the last check."""
         counted = self._group.cpu_seconds
         return self._seen_cpu if counted is None else counted
 
     def close(self) -> None:
-        """Remove the cgroups; may be called twice."""
+        """Remove the cgroups. This may be called twice."""
         self._first = 0
         self._group.close()
 
     def _look(self) -> Ended | None:
-        # Chance decides which process the kernel kills; that it killed any means that the memory was used up.
+        # Chance decides which process the kernel kills. That it killed any means that the memory was used up.
         if self._group.ran_out_of_memory:
             return Ended.OUT_OF_MEMORY
         use = use_of(self._first, None if self._memory else _memory_of)
         self._seen_cpu = max(self._seen_cpu, use.cpu_seconds)
         if self.cpu_seconds > self._limits.cpu_seconds:
             return Ended.OUT_OF_CPU
-        # Before the open files, because each forked process has the open files of its parent.
+        # This comes before the open files, because each forked process has the open files of its parent.
         if not self._processes and use.threads > self._limits.processes:
             return Ended.TOO_MANY_PROCESSES
         if use.files > self._limits.all_open_files:
@@ -157,11 +159,12 @@ class Use:
     """The resources that the processes of a box use together.
 
     Attributes:
-        threads: The number of threads; each process has at least one.
-        memory: Bytes that belong to no file; 0 if it was not measured.
-        most_memory: The largest such number of any one process at any time.
-        cpu_seconds: Processor time, including children that have ended and were waited for.
-        files: Open files, sockets and pipes. Data waiting in them and their event watches belong to no process.
+        threads: The number of threads. Each process has at least one.
+        memory: Memory in bytes that belongs to no file; 0 if it was not measured.
+        most_memory: The largest such amount that any single process had at any time.
+        cpu_seconds: Processor time in seconds, including that of children that have ended and were waited for.
+        files: The number of open files, sockets and pipes. They matter because data waiting in them, and event
+            watches on them, belong to no process.
     """
 
     threads: int
@@ -173,14 +176,16 @@ class Use:
 
 _NOTHING = Use(0, 0, 0, 0.0, 0)
 _MemoryOf = Callable[[str], tuple[int, int]]
-"""Returns the memory of the process with this folder: bytes now, and the most bytes until now."""
+"""A function that returns the memory of the process with this ``/proc`` folder, in bytes: now, and the largest until
+now.
+"""
 
 
 def use_of(first: int, memory_of: _MemoryOf | None) -> Use:
-    """Measure all processes of a PID namespace.
+    """Measure the resources of all processes in a PID namespace.
 
     Args:
-        first: The first process of the namespace, as the host counts; its ``/proc`` shows the others.
+        first: The PID, as seen from the host, of the first process in the namespace. Its ``/proc`` shows the others.
         memory_of: Measures the memory of a process; None to skip memory.
     """
     threads = memory = most_memory = files = 0
@@ -188,13 +193,13 @@ def use_of(first: int, memory_of: _MemoryOf | None) -> Use:
     try:
         own = f"/proc/{first}/root/proc"
         if Path(own).stat().st_dev == Path("/proc").stat().st_dev:
-            return _NOTHING  # it is about to enter the box and still sees the processes of the host
+            return _NOTHING  # the process is about to enter the box and still sees the processes of the host
         processes = [entry for entry in os.scandir(own) if entry.name.isdecimal()]
     except OSError:
         return _NOTHING
     for process in processes:
         try:
-            # After the name of the program, which may contain any character (proc(5)).
+            # The fields come after the name of the program, which may contain any character (proc(5)).
             fields = Path(process.path, "stat").read_text(errors="replace").rpartition(")")[2].split()
             threads += int(fields[17])
             seconds += sum(map(int, fields[11:15])) / _TICKS
@@ -203,14 +208,15 @@ def use_of(first: int, memory_of: _MemoryOf | None) -> Use:
             most_memory = max(most_memory, most)
             files += _files_of(process.path)
         except (OSError, ValueError, IndexError):
-            continue  # it has ended meanwhile
+            continue  # the process has ended meanwhile
     return Use(threads, memory, most_memory, seconds, files)
 
 
 def _files_of(process: str) -> int:
-    """Count open files.
+    """Return the number of files that a process has open.
 
-    Linux 6.2 and later give them as the folder's size (proc_pid_fd(5)); a process with none is rare.
+    Linux 6.2 and later give this number as the size of the folder (proc_pid_fd(5)). A process with no open file is
+    rare.
     """
     folder = f"{process}/fd"
     return os.stat(folder).st_size or len(os.listdir(folder))  # noqa: PTH116, PTH208 (several times a second)
@@ -221,9 +227,9 @@ class _Network:
     """The resources of a box's network that belong to no process (proc_pid_net(5)), and often to no cgroup.
 
     Attributes:
-        sockets: The number of sockets, also those that no process has open: a connection waits without a descriptor
-            until the listening program accepts it.
-        waiting: Bytes that wait in them.
+        sockets: The number of sockets, including those that no process has open: a connection has no descriptor until
+            the listening program accepts it.
+        waiting: The number of bytes that wait in the sockets.
     """
 
     sockets: int = 0
@@ -231,10 +237,10 @@ class _Network:
 
 
 def _network_of(first: int, most: int) -> _Network:
-    """Count the sockets of a box's network and the bytes waiting in them.
+    """Count the sockets of a box's network, and the bytes that wait in them.
 
     Args:
-        first: The box's first process, as the host counts.
+        first: The PID of the box's first process, as seen from the host.
         most: The allowed number of waiting bytes. Reading the tables of UDP and TCP takes ten milliseconds, so it is
             skipped if all networks of the machine together have no more than this.
     """
@@ -242,7 +248,7 @@ def _network_of(first: int, most: int) -> _Network:
     sockets = waiting = 0
     try:
         if Path(f"/proc/{first}/ns/net").stat().st_ino == Path("/proc/self/ns/net").stat().st_ino:
-            return _Network()  # it is about to enter the box
+            return _Network()  # the process is about to enter the box
         summary = (net / "sockstat").read_text()
         sockets = sum(map(int, _SOCKETS.findall(summary)))
         pages = sum(map(int, _PAGES.findall(summary)))
@@ -252,41 +258,42 @@ def _network_of(first: int, most: int) -> _Network:
                 waiting += int(sent, 16) + int(received, 16)
         waiting += sum(int(fields[4]) + int(fields[5]) for fields in _rows(net / "netlink"))
     except (OSError, ValueError, IndexError):
-        pass  # it has ended meanwhile
+        pass  # the process has ended meanwhile
     return _Network(sockets, waiting)
 
 
 def _locks_of(first: int, most: int) -> int:
-    """Count held and waiting file locks of a box: kernel memory that belongs to no process and no cgroup.
+    """Count the file locks of a box, held and waited for, because the kernel's memory for them is not counted anywhere.
 
-    A box's ``/proc/locks`` shows the locks of its own processes and, with -1 for a process, those that belong to an
-    open file of any process, which no process in a box may make (:mod:`autograder.boxes.seccomp_filter`).
+    A box's ``/proc/locks`` shows the locks of its own processes. It also shows, with -1 instead of a process, the
+    locks that belong to an open file of any process; no process in a box can make such a lock
+    (:mod:`autograder.boxes.seccomp_filter`).
 
     Args:
-        first: The box's first process, as the host counts.
-        most: Reading stops above this number, because the kernel's time grows with its square.
+        first: The PID of the box's first process, as seen from the host.
+        most: Reading stops above this number, because the time that the kernel needs grows with its square.
     """
     locks, rest = 0, b""
     try:
         own = Path(f"/proc/{first}/root/proc")
         if own.stat().st_dev == Path("/proc").stat().st_dev:
-            return 0  # it is about to enter the box
+            return 0  # the process is about to enter the box
         with (own / "locks").open("rb", buffering=0) as table:
             while locks <= most and (piece := table.read(_PIECE)):
                 *rows, rest = (rest + piece).split(b"\n")
                 locks += sum(b" -1 " not in row for row in rows)
     except OSError:
-        pass  # it has ended meanwhile
+        pass  # the process has ended meanwhile
     return locks
 
 
 def _rows(table: Path) -> list[list[str]]:
-    """The fields of each line below the heading; empty if the system does not have the protocol."""
+    """Return the fields of each line below the heading; none if the system does not have the protocol."""
     return [line.split() for line in table.read_text().splitlines()[1:]] if table.exists() else []
 
 
 def _scratch_of(first: int) -> int:
-    """Bytes of the files in a box's scratch, which are in memory and belong to no process."""
+    """Return the size in bytes of the files in a box's scratch, which are in memory and belong to no process."""
     try:
         inside, outside = (os.statvfs(place) for place in (f"/proc/{first}/root/tmp", "/tmp"))
     except OSError:
@@ -295,10 +302,10 @@ def _scratch_of(first: int) -> int:
 
 
 def _memory_of(process: str) -> tuple[int, int]:
-    """Measure memory. Pages that a fork shares count in each process, and so do page tables, which reading fills.
+    """Measure the memory of a process. Memory shared by forks counts in each of them, and page tables count as well.
 
-    ``VmHWM`` is the most that a process has had since it was forked or has become another program, pages of files
-    included (proc_pid_status(5)).
+    ``VmHWM`` is the most memory that a process has had since it was forked or became another program, including pages
+    of files (proc_pid_status(5)).
     """
     sizes = _sizes_in(Path(process, "status"))
     now = sizes["RssAnon"] + sizes["RssShmem"] + sizes["VmPTE"]
@@ -306,23 +313,23 @@ def _memory_of(process: str) -> tuple[int, int]:
 
 
 def _exact_memory_of(process: str) -> tuple[int, int]:
-    """Measure memory, counting a page that several processes share only once; takes the kernel a moment."""
+    """Measure memory, counting a page that several processes share only once. This takes the kernel a moment."""
     try:
         sizes = _sizes_in(Path(process, "smaps_rollup"))
     except PermissionError:
-        # The process is hidden (PR_SET_DUMPABLE, prctl(2)): count its shared pages, too.
+        # The process is hidden (PR_SET_DUMPABLE, prctl(2)), so its shared pages have to be counted in full.
         return _memory_of(process)
     now = sizes["Pss_Anon"] + sizes["Pss_Shmem"] + _sizes_in(Path(process, "status"))["VmPTE"]
     return now, now
 
 
 def _sizes_in(file: Path) -> Counter[str]:
-    """Return sizes by name, 0 for a missing name. A process may choose its name freely, so only whole lines count."""
+    """Return sizes by name, 0 for a missing name. Only whole lines count, because a process may choose its own name."""
     return Counter({name: int(size) * 1024 for name, size in _SIZE.findall(file.read_text(errors="replace"))})
 
 
 class NoGuard:
-    """The guard without a box: it measures nothing, and only the time limits apply."""
+    """The guard for execution without a box. It measures nothing, and only the time limits apply."""
 
     cpu_seconds = 0.0
 
@@ -339,7 +346,7 @@ Guard = BoxGuard | NoGuard
 
 
 def guards() -> Mapping[str, str]:
-    """Return what enforces each limit on this host, by limit, for ``autograder doctor``."""
+    """Return what enforces each limit on this host, by limit. ``autograder doctor`` shows this."""
     watched = "looked at four times a second (no cgroup can be made here)"
     return {
         "memory": _cgroup("memory") or watched,

@@ -1,9 +1,9 @@
-"""Hangs in a student's code: the first is given its full time, later ones only a little.
+"""Hangs in a student's code. The first one is given its full time, later ones only little.
 
-In a class with an endless loop, each cell that uses it hangs, and each would wait for its whole limit. The guilty
-name is certain only if a cell of the master, which ends with any right answer, uses exactly one name that the student
-defined. If it uses several, or if the student wrote the cell, no name is blamed. A check is never left out: one that
-reaches its verdict at the usual speed counts as usual.
+In a notebook with an endless loop, each cell that uses it hangs, and each would wait for its whole time limit. Which
+name is to blame is certain only if a cell of the master, which ends with any right answer, uses exactly one name that
+the student defined. If it uses several, or if the student wrote the cell, no name is blamed. A check is never left
+out, and one that reaches its verdict at the usual speed counts as usual.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from autograder.boxes.limits import Limits
 
 AGAIN_SECONDS = 10.0
-"""Seconds for a cell without points that uses a name that hung before."""
+"""Time limit in seconds for a cell without points that uses a name that hung before."""
 _SHARE_OF_A_CHECK = 0.25
-"""The share of the judge's time limit for a check whose earlier check under the same name hung. A check normally
-takes a twentieth of the limit.
+"""If an earlier check that uses the same name hung, a check gets this fraction of the judge's time limit. A check
+normally takes a twentieth of the limit.
 """
 
 
@@ -40,25 +40,25 @@ class Hangs:
 
     @classmethod
     def of(cls, cells: Iterable[Cell]) -> Hangs:
-        """For these cells."""
+        """Return an empty record for these cells."""
         own = (cell.source for cell in cells if cell.kind is CellType.CODE and cell.own)
         return cls(frozenset(name for source in own for name in _defined(source)))
 
     def note(self, cell: Cell, title: str) -> None:
-        """Note that a cell was stopped at its limit.
+        """Record that a cell was stopped at its time limit.
 
         Args:
             cell: The cell.
-            title: The cell's name in messages.
+            title: The title of the cell in messages.
         """
         used = [] if cell.own else self._used(cell)
         if len(used) == 1:
             self._hung.setdefault(used[0], title)
 
     def before(self, cell: Cell) -> tuple[str, str] | None:
-        """Return a name in the cell that hung before, and the title of the cell in which it did; None without one."""
+        """Return a name in the cell that hung before, and the title of the cell in which it hung, or None."""
         if not self._hung:
-            return None  # as in nearly every notebook: then no cell has to be parsed
+            return None  # as in nearly every notebook; then no cell has to be parsed
         return next(((name, self._hung[name]) for name in self._used(cell) if name in self._hung), None)
 
     def _used(self, cell: Cell) -> list[str]:
@@ -68,11 +68,11 @@ class Hangs:
 
 
 def seconds_again(cell: Cell, usual: float, limits: Limits) -> float:
-    """Return the limit of a cell that uses a name that hung before, in seconds of wall time.
+    """Return the time limit, in seconds of wall time, for a cell that uses a name that hung before.
 
     Args:
         cell: The cell.
-        usual: The limit if no such name is used.
+        usual: The limit if the cell used no such name.
         limits: All limits.
     """
     if cell.check is None or cell.check.asserts:
@@ -87,7 +87,7 @@ def _defined(source: str) -> list[str]:
 
 
 def _parsed(source: str) -> ast.Module | None:
-    """Parse Python. Return None for anything else: a magic, a syntax error, or unreadable text."""
+    """Return the syntax tree of Python code; None for anything else: a magic, a syntax error, or unreadable text."""
     try:
         return ast.parse(source)
     except (SyntaxError, ValueError, RecursionError, MemoryError):

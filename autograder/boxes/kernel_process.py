@@ -1,8 +1,8 @@
-"""A fork of the fork server: an IPython kernel on given sockets.
+"""A kernel that a fork server forks: an IPython kernel on sockets that it is given.
 
-The listening sockets come from the grader. So no folder of the host is open to the box, and no program in the box can
-replace a socket. Only two of Jupyter's five channels are used: requests and outputs. The others (control, input,
-heartbeat) are not reachable from outside.
+The grader provides the listening sockets. So no folder of the host is open to the box, and no program in the box can
+replace a socket. Only two of Jupyter's five channels are used, requests and outputs. The others (control, input,
+heartbeat) cannot be reached from outside.
 """
 
 from __future__ import annotations
@@ -42,17 +42,17 @@ _PRELOADED = (
 )
 _MAGIC = "autograder.notebook.cells.program_files"
 _PREPARED = ("autograder.cards.bundle",)
-"""The modules among them whose function ``prepare`` is called."""
+"""Those of the preloaded modules whose function ``prepare`` is called."""
 
 
 def prepare(*interfaces: str) -> None:
-    """Import what nearly every notebook of the course imports; skip missing modules, which a notebook will report.
+    """Import what nearly every notebook of the course imports. A missing module is skipped; a notebook will report it.
 
     Args:
         interfaces: The modules with the course's own interfaces. The process sees nothing else of the course.
     """
-    # JupyterLab's debugger is useless without a user, and it is a seventh of all that a kernel imports. ipykernel works
-    # without it if it is not installed (ipykernel/debugger.py).
+    # JupyterLab's debugger is useless without a user, and it makes up a seventh of everything that a kernel imports.
+    # ipykernel works without it if it is not installed (ipykernel/debugger.py).
     sys.modules.setdefault("debugpy", None)  # type: ignore[arg-type]
     preload((*RCLPY, *_PRELOADED, *_rehearsed()))
     for name in _PREPARED:
@@ -62,7 +62,7 @@ def prepare(*interfaces: str) -> None:
 
 
 def _rehearsed() -> list[str]:
-    """List the modules that a kernel imports until its first cell has run, by starting one in a child."""
+    """Return the modules that a kernel imports before its first cell has run, found by running one in a child."""
     before = set(sys.modules)
     reading, writing = os.pipe()
     pid = os.fork()
@@ -89,7 +89,8 @@ def _rehearse() -> None:
         app.initialize([])
         assert app.shell is not None
         app.shell.run_cell("import asyncio\n%time 1 + 1\nassert asyncio")
-        # Restore the streams before the folder is removed: by now they belong to the kernel, which has no client.
+        # Restore the streams before the folder is removed, because by now they belong to that kernel, which has no
+        # client.
         sys.stdout, sys.stderr = sys.__stdout__, sys.__stderr__
 
 
@@ -97,8 +98,8 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
     """Run a kernel until it is shut down.
 
     Args:
-        call: ``key``, which signs messages, and ``address``, the path in the names of the sockets.
-        descriptors: The listening sockets of the shell and iopub channels, and the descriptor for other output.
+        call: ``key``, with which messages are signed, and ``address``, the path in the names of the sockets.
+        descriptors: The listening sockets of the shell and iopub channels, and a descriptor for other output.
     """
     shell, iopub, log = descriptors
     for standard in (1, 2):
@@ -109,19 +110,20 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
     app = _kernel_app(call["key"].encode(), call["address"], {SHELL: shell, IOPUB: iopub})
     app.initialize([])
     app.start()
-    # The exit hooks, which write the last outputs among others: an interpreter runs them at exit, a fork does not.
+    # Run the exit hooks, which among other things write the last outputs. An interpreter runs them when it exits, but
+    # a fork does not.
     atexit._run_exitfuncs()
 
 
 def _arguments() -> list[str]:
-    """Return the ``sys.argv`` that JupyterLab sets, because some programs in cells parse the kernel's arguments."""
+    """Return the ``sys.argv`` that JupyterLab would set, because some programs in cells parse it."""
     launcher = importlib.util.find_spec("ipykernel_launcher")
     name = launcher.origin if launcher is not None and launcher.origin else "ipykernel_launcher.py"
     return [name, "-f", "kernel.json"]
 
 
 def _forget_the_fork() -> None:
-    """Reset state that a fork shares with its siblings: random numbers. Python itself reseeds ``random``."""
+    """Reset state that a fork shares with its siblings, such as numpy's random numbers. Python reseeds ``random``."""
     random.seed()
     numpy_random = sys.modules.get("numpy.random")
     if numpy_random is not None:
@@ -129,7 +131,7 @@ def _forget_the_fork() -> None:
 
 
 class _GivenSockets(IPKernelApp):
-    """A kernel application that uses the given sockets instead of binding its own."""
+    """A kernel application that uses the sockets it is given instead of binding its own."""
 
     given: Mapping[int, int]
     address: str
@@ -142,14 +144,14 @@ class _GivenSockets(IPKernelApp):
         self.session.key = self.key
 
     def write_connection_file(self, **_: Any) -> None:
-        """Do nothing: no program reads a connection file here."""
+        """Do nothing, because no program reads a connection file here."""
 
     def log_connection_info(self) -> None:
-        """Only note the ports, as the base class does: the connection details are not needed."""
+        """Only record the ports, as the base class does. The connection details need not be logged."""
         self._ports = {"shell": 1, "iopub": 2, "stdin": 3, "hb": 5, "control": 4}
 
     def init_heartbeat(self) -> None:
-        """Do nothing: the grader learns of a kernel's end from the operating system."""
+        """Do nothing, because the grader learns of a kernel's end from the operating system."""
         self.heartbeat = None
 
     def _try_bind_socket(self, s: Any, port: int) -> int:
@@ -158,14 +160,15 @@ class _GivenSockets(IPKernelApp):
             s.setsockopt(zmq.USE_FD, descriptor)
             s.bind(f"ipc://{self.address}-{port}")
             s.setsockopt(zmq.USE_FD, -1)
-        # An address inside the process: the debugger's socket connects to the last address of the shell channel.
+        # An address inside the process, because the debugger's socket connects to the last address of the shell
+        # channel.
         s.bind(f"inproc://channel-{port}")
         return port
 
 
 def _kernel_app(key: bytes, address: str, given: Mapping[int, int]) -> IPKernelApp:
     config = Config()
-    # No history file: it would be a needless write, and no user will press the up key.
+    # No history file: writing it would be a waste, as no user will press the up key.
     config.HistoryManager.hist_file = ":memory:"
     config.HistoryManager.enabled = False
     config.InteractiveShellApp.extensions = [_MAGIC]

@@ -1,4 +1,4 @@
-"""The limits for running a notebook, and functions that tell how much of a time is left."""
+"""The limits for running a notebook, and functions that tell how much time is left."""
 
 from __future__ import annotations
 
@@ -8,45 +8,50 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 Left = Callable[[], float]
-"""Returns the seconds that are left; zero or less when the time is up."""
+"""A function that returns the seconds that are left; zero or less when the time is over."""
 Patient = Callable[[float], Left]
-"""Turns a number of seconds into a function that returns how many of them are left, counted from the call on."""
+"""A function that, given a number of seconds, starts a time limit and returns a function for the seconds left of it."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """The limits of one notebook; the feedback names a limit that was reached.
+    """The limits of one notebook. If one is reached, the feedback names it.
 
     Attributes:
-        cell_seconds: Seconds for one cell on an idle machine; on a busy machine they stretch. A check cell gets its
-            exercise's limit and ``check_margin`` instead.
-        terminal_factor: How many times this limit a terminal's cell (``%%bash``) gets, because it may build.
+        cell_seconds: Time limit in seconds for one cell on an idle machine; on a busy machine it stretches. A check
+            cell gets its exercise's limit plus ``check_margin`` instead.
+        terminal_factor: A cell that is a terminal (``%%bash``) gets this many times the limit of a cell, because it
+            may build.
         check_margin: Seconds beyond the judge's own limit, so that the verdict arrives before the cell is stopped.
-        notebook_seconds: Wall time of all cells together, checks included.
-        interrupt_grace: Seconds that an interrupted cell has to end before its kernel is killed.
-        start_seconds: Wall time until a kernel must have answered.
-        cell_output_bytes: Output kept from one cell; the rest is dropped, and a line in the output tells so.
-        notebook_output_bytes: Output kept from all cells together.
-        message_bytes: The largest message that is read from a kernel.
-        flood_bytes: Output that a cell may send, kept or not, before it is stopped.
-        cpu_seconds: Processor time of a box's processes together, for each time that a submission is executed.
-        memory_bytes: Memory of a box's processes together, including files in its scratch.
-        beside_bytes: The limit on memory while other submissions run. A submission that needs more is executed again,
-            alone, so this limit never decides a result.
+        notebook_seconds: Wall time in seconds for all cells together, including checks.
+        interrupt_grace: Seconds for an interrupted cell to end before its kernel is killed.
+        start_seconds: Wall time in seconds within which a kernel must have answered.
+        cell_output_bytes: The maximum number of bytes kept of one cell's output. The rest is dropped, and a line in
+            the output says so.
+        notebook_output_bytes: The maximum number of bytes kept of all cells' output together.
+        message_bytes: The maximum size of a message that is read from a kernel.
+        flood_bytes: The number of bytes that a cell may output, kept or not, before it is stopped.
+        cpu_seconds: Processor time in seconds for all processes of a box together, each time that a submission is
+            executed.
+        memory_bytes: Memory in bytes for all processes of a box together, including files in the box's scratch.
+        beside_bytes: The memory limit in bytes while other submissions run. A submission that needs more is executed
+            again, alone, so this limit never decides a result.
         beside: True while other submissions run.
-        judge_bytes: Memory that the judge's process, and each of its checks, may write to; it bounds what a subject
-            can send to the judge.
-        processes: Processes and threads of a box together.
-        open_files: Open files, sockets and pipes of one process.
-        all_open_files: The same for all processes of a box together; also the most sockets in its network.
-        file_locks: Parts of files that all processes of a box may lock together; a database locks five.
-        socket_bytes: Bytes that may wait in the sockets of a box's network. The machine has one limit for all boxes
-            together; if that is used up, no box receives messages any more.
-        scratch_bytes: The size of a box's files together.
-        scratch_files: The number of files, folders and links in a box.
+        judge_bytes: Memory in bytes that the judge's process, and each of its checks, may write to. It limits what a
+            subject can send to the judge.
+        processes: The maximum number of processes and threads of a box together.
+        open_files: The maximum number of open files, sockets and pipes of one process.
+        all_open_files: The maximum number of these for all processes of a box together, and of sockets in the box's
+            network.
+        file_locks: The maximum number of file parts that all processes of a box may lock together; a database locks
+            five.
+        socket_bytes: The maximum number of bytes that may wait in the sockets of a box's network. The machine has one
+            limit for all boxes together; if that is used up, no box receives messages any more.
+        scratch_bytes: The maximum size of all files of a box together, in bytes.
+        scratch_files: The maximum number of files, folders and links in a box.
     """
 
-    # The needs of honest notebooks, and why these limits are several times that: docs/decisions.md, on limits.
+    # docs/decisions.md, on limits, says what honest notebooks need, and why these limits are several times that.
     cell_seconds: float = 60.0
     terminal_factor: float = 2.0
     check_margin: float = 10.0
@@ -72,17 +77,17 @@ class Limits:
 
     @property
     def of_the_judge(self) -> dict[str, int]:
-        """Limits of a judge's process (setrlimit(2)): writable address space, including the stacks of threads."""
+        """Limits for a judge's process (setrlimit(2)): writable address space, including the stacks of threads."""
         return {"RLIMIT_DATA": self.judge_bytes}
 
     @property
     def longest(self) -> float:
-        """The longest that a notebook can run before it is stopped, in seconds of wall time."""
+        """The longest time that a notebook can run before it is stopped, in seconds of wall time."""
         return self.start_seconds + self.notebook_seconds + self.interrupt_grace
 
     @property
     def memory_now(self) -> int:
-        """The memory that a box may use now, in bytes."""
+        """The memory that a box may use at the moment, in bytes."""
         return min(self.memory_bytes, self.beside_bytes) if self.beside else self.memory_bytes
 
 
@@ -101,15 +106,17 @@ BUILD_LIMITS = Limits(
 
 
 _MOST_OPEN_FILES = 1 << 20
-"""Programs that loop over all possible descriptors would take too long with the billion that some systems allow."""
+"""The maximum limit on open files. Some systems allow a billion, and programs that loop over all possible descriptors
+would take too long.
+"""
 
 
 def raise_own() -> None:
-    """Raise this process's limits to the most that its user may have, for resources that the system counts by user.
+    """Raise this process's limits, for resources that the system counts by user, to the most that the user may have.
 
-    The number of descriptors that a user may have in transit through sockets is the sender's limit on open files
-    (unix(7), ETOOMANYREFS), whichever process sent the others. A box of the same user must never be able to use as
-    many as the grader, so that the grader can always send one more.
+    A descriptor that is being sent through a socket counts for the user. If a user has as many of these in transit as
+    the sender may have open files, the sender can send no more (unix(7), ETOOMANYREFS). A box of the same user must
+    never be able to reach the grader's limit, so that the grader can always send one more.
     """
     for kind, most in (
         (resource.RLIMIT_NOFILE, _MOST_OPEN_FILES),
@@ -131,15 +138,15 @@ def open_files_of_a_box(wanted: int) -> int:
 
 
 def until(deadline: float) -> Left:
-    """Return the time left until a moment on the monotonic clock."""
+    """Return a function for the seconds left until a moment on the monotonic clock."""
     return lambda: deadline - time.monotonic()
 
 
 def wall_time(seconds: float) -> Left:
-    """Return the time left of ``seconds`` seconds of wall time from now on."""
+    """Return a function for the seconds left of this much wall time, counted from now."""
     return until(time.monotonic() + seconds)
 
 
 def first_of(*lefts: Left) -> Left:
-    """Return the time left until the first of several ends."""
+    """Return a function for the seconds left until the first of several time limits ends."""
     return lambda: min(left() for left in lefts)

@@ -2,8 +2,8 @@
 
 A box sees only what Python, ROS and the build of a workspace need, read-only: the system's programs and libraries,
 the Python installation, the environment with the course's packages, and this package. It sees no ``solutions/``, no
-class and no home folder, even if an installation lies below one. It can write only to the scratch, which has a size
-limit and vanishes with the box.
+class and no home folder, even if an installation lies inside one. It can write only to the scratch, which has a size
+limit and disappears with the box.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ ETC_FOLDERS = ("alternatives", "ld.so.conf.d")
 _SEARCH_PATHS = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH", "PATH")
 
 USER = "student"
-"""The user in a box; the id is that of the first user on many systems."""
+"""The name of the user in a box. The id is that of the first user on many systems."""
 USER_ID = 1000
 HOME = Path("/home") / USER
 WORK = HOME / "notebook"
-"""The folder for a notebook, the files next to it and the files that it writes."""
+"""The folder that contains the notebook's files: those next to the notebook, and those that it writes."""
 
 _PROC_HIDDEN = {"kcore", "kmsg", "keys", "key-users"}
-"""Files that tell more about the machine and its users than a program needs."""
+"""Files in ``/proc`` that say more about the machine and its users than a program needs."""
 
 ETC = "etc"
-"""The folder of the scratch in which no box can write."""
+"""The folder of the scratch to which no box can write."""
 TERMINALS = "pts"
-"""The folder of the scratch with the pseudo-terminals of all boxes of a supervisor."""
+"""The folder of the scratch that contains the pseudo-terminals of all boxes of a supervisor."""
 _ETC_FILES = {
     "passwd": f"{USER}:x:{USER_ID}:{USER_ID}::{HOME}:/bin/sh\n",
     "group": f"{USER}:x:{USER_ID}:\n",
@@ -49,7 +49,7 @@ _ETC_FILES = {
 
 @dataclass(frozen=True)
 class Bind:
-    """A file or folder of the host that is visible, but read-only, in a box.
+    """A file or folder of the host that a box can see, but only read.
 
     Attributes:
         source: The path on the host.
@@ -60,7 +60,7 @@ class Bind:
     place: Path | None = None
 
     def arguments(self) -> list[str]:
-        """The arguments for bubblewrap."""
+        """Return the arguments for bubblewrap."""
         return ["--ro-bind", str(self.source), str(self.place or self.source)]
 
 
@@ -70,26 +70,26 @@ class SymbolicLink:
 
     Attributes:
         place: The path of the link.
-        target: The path in the box to which it leads.
+        target: The path, in the box, to which the link leads.
     """
 
     place: Path
     target: Path
 
     def arguments(self) -> list[str]:
-        """The arguments for bubblewrap."""
+        """Return the arguments for bubblewrap."""
         return ["--symlink", str(self.target), str(self.place)]
 
 
 def box_arguments(
     scratch: Path, binds: Sequence[Bind | SymbolicLink], *, scratch_visible: bool = True
 ) -> list[str]:
-    """Return the arguments of bubblewrap for a box.
+    """Return the arguments with which bubblewrap makes a box.
 
     Args:
         scratch: The supervisor's file system in memory.
         binds: What the box sees in addition to the system, Python and this package.
-        scratch_visible: True if the scratch is the box's home, ``/tmp`` and ``/dev/shm``. Otherwise the box has small
+        scratch_visible: True if the scratch is the box's home, ``/tmp`` and ``/dev/shm``. If False, the box has small
             ones of its own.
     """
     words = [
@@ -119,14 +119,15 @@ def box_arguments(
     words += [word for folder in cover for word in ("--tmpfs", folder)]
     for bind in (*(Bind(path) for path in installation()), *binds):
         words += bind.arguments()
-    # The other folders that bubblewrap makes are file systems in memory without a limit, so they become read-only.
+    # The other folders that bubblewrap makes are file systems in memory without a size limit, so they are made
+    # read-only.
     return [*words, *(word for folder in ("/dev", "/", *cover) for word in ("--remount-ro", folder))]
 
 
 def _course_below_the_scratch() -> tuple[str, ...]:
     """Return the folder of the clone if it is below ``/tmp``: Python searches it, and a box could write there.
 
-    The folder of an installed package is a part of Python's own, which the box sees read-only.
+    An installed package is inside Python's own folder, which the box sees read-only.
     """
     folder = _PACKAGE.parent
     if folder.is_relative_to(sys.prefix) or not any(map(folder.is_relative_to, (HOME, Path("/tmp")))):
@@ -144,7 +145,7 @@ def _etc(scratch: Path) -> list[str]:
 
 @functools.cache
 def etc_files() -> Mapping[str, bytes]:
-    """Return the files of a box's ``/etc``: user, host name, linker and clock; no name service."""
+    """Return the files in a box's ``/etc``: user, host name, linker and clock, and no name service."""
     files = {name: text.encode() for name, text in _ETC_FILES.items()}
     for name in _ETC_OF_THE_HOST:
         with contextlib.suppress(OSError):
@@ -154,17 +155,17 @@ def etc_files() -> Mapping[str, bytes]:
 
 @functools.cache
 def _proc_covers() -> tuple[str, ...]:
-    """Cover the files in ``/proc`` that belong to the whole machine and are writable for their owner.
+    """Return the arguments that hide those files in ``/proc`` that affect the whole machine and are writable.
 
-    If the grader is root, the kernel treats the owner of a box's files as root. In a fresh ``/proc`` root may write
-    to settings of the machine (``/proc/sys``), even without a capability.
+    If the grader is root, the kernel treats the owner of a box's files as root. In a new ``/proc``, root may write to
+    settings of the machine (``/proc/sys``), even without any capability.
     """
     words: list[str] = []
     for path in sorted(Path("/proc").iterdir()):
         if path.name.isdecimal() or path.is_symlink():
             continue
         if path.is_dir():
-            # bubblewrap reads the list of mounts again for each bind, so there are no more than needed.
+            # bubblewrap reads the list of mounts again for each bind, so there are only as many as needed.
             words += ["--ro-bind", str(path), str(path)] if _can_be_written_below(path) else []
         elif path.name in _PROC_HIDDEN or path.stat().st_mode & 0o222:
             words += ["--ro-bind", "/dev/null", str(path)]
@@ -181,7 +182,7 @@ def _can_be_written_below(folder: Path) -> bool:
 
 
 def system() -> list[str]:
-    """The programs and libraries of the system, as arguments of bubblewrap."""
+    """Return the programs and libraries of the system, as arguments for bubblewrap."""
     words: list[str] = []
     for name in SYSTEM:
         path = Path(name)
@@ -196,8 +197,8 @@ def system() -> list[str]:
 def installation() -> tuple[Path, ...]:
     """Return the folders of Python, ROS and this package that lie outside the system's folders.
 
-    An environment has its own prefix and that of the Python that made it. A sourced ROS has the folders that its
-    search paths name. Of a search path, only an installation is used: a folder below the prefix of ROS
+    A virtual environment has its own prefix and that of the Python that made it. A sourced ROS has the folders that
+    its search paths name. A folder from a search path is used only if it is an installation: below the prefix of ROS
     (``share/ament_index``) or of conda.
     """
     return _installation(os.environ)
@@ -229,7 +230,7 @@ def _in_system(path: Path) -> bool:
 
 
 def _outermost(paths: Iterable[Path]) -> list[Path]:
-    """Return the folders that are not inside another of them."""
+    """Return those folders that are not inside another one of them."""
     every = sorted(set(paths))
     return [
         path for path in every if not any(path != other and path.is_relative_to(other) for other in every)

@@ -1,6 +1,7 @@
 """The boxes in which a notebook runs, or their replacement if the user asked for no sandbox.
 
-Each class starts the two processes of a notebook, its kernel and its judge, and leaves no process behind.
+Each of the two classes starts the two processes of a notebook, its kernel and its judge, and leaves no process
+behind.
 """
 
 from __future__ import annotations
@@ -27,19 +28,21 @@ if TYPE_CHECKING:
     from autograder.boxes.limits import Limits
 
 SHARED_FOLDER = Path("/run/judge")
-"""The path, in the student's box, of the folder that it shares with its grader."""
+"""The path, in the student's box, of the folder that the box shares with its grader."""
 _STUDENT, _JUDGE = "student", "judge"
 _PROGRAMS_SCRATCH_BYTES, _PROGRAMS_SCRATCH_FILES = 1_000_000, 1_000
-"""Only the supervisor writes there; what a program writes is in the memory of its own box."""
+"""The limits of the programs' scratch. Only the supervisor writes there; what a program writes is in the memory of its
+own box.
+"""
 
 
 @dataclass(frozen=True)
 class JudgeSetting:
-    """The settings of a judge's process; the grader passes them, because boxes do not import the judge.
+    """The settings of a judge's process. The grader passes them, because boxes do not import the judge.
 
     Attributes:
         environment: More environment variables.
-        readable: Folders that only a judge may see, such as the reference outputs.
+        readable: Folders that only a judge may see, such as the one with the reference outputs.
     """
 
     environment: Mapping[str, str] = field(default_factory=dict)
@@ -49,19 +52,19 @@ class JudgeSetting:
 class BoxedPlace:
     """The boxes of one submission, in one network or in two.
 
-    The student's box and its judge's box share the notebook's network. Programs that the grader builds from submitted
-    sources and starts for a check run on another network, with another judge: no process in the student's box can
-    send anything there.
+    The student's box and the judge's box share the notebook's network. Programs that the grader builds from submitted
+    sources and starts for a check run on a second network, with another judge. No process in the student's box can
+    send anything to that network.
 
     Args:
-        addresses: The fork servers.
-        folder: A folder for this object alone; its path is short, because it will contain Unix sockets.
+        addresses: The addresses of the fork servers.
+        folder: A folder that nothing else uses. Its path must be short, because it will contain Unix sockets.
         files: The files next to the notebook.
         variables: More environment variables for the kernel.
         socket_variable: The environment variable that tells the kernel the path of the judge's socket.
-        judge: The settings of the judge's process.
-        limits: The limits of the kernel and everything that it starts.
-        programs: True to make a second network for programs.
+        judge: The settings for the judge's process.
+        limits: The limits for the kernel and everything that it starts.
+        programs: True to make a second network, for programs.
 
     Raises:
         NoSandbox: The namespaces could not be made.
@@ -106,16 +109,16 @@ class BoxedPlace:
 
     @property
     def judge_socket(self) -> Path:
-        """The path of the judge's socket; its folder is all that the student's box sees of the judge."""
+        """The path of the judge's socket. The student's box sees only this socket's folder of the judge."""
         return self._shared / _JUDGE
 
     @property
     def shared(self) -> Path:
-        """The folder that the student's box sees, read-only, as ``SHARED_FOLDER``."""
+        """The folder that the student's box sees, read-only, at the path ``SHARED_FOLDER``."""
         return self._shared
 
     def start_kernel(self, channels: Channels) -> ForkedProcess:
-        """Start the kernel: a fork of the fork server enters the student's box."""
+        """Start the kernel: a child of the fork server enters the student's box."""
         box = self.enclosure.box(_STUDENT, [Bind(self._shared, SHARED_FOLDER)], guarded=True)
         self.guard.watch(box.pid)
         return self.enclosure.enter(
@@ -128,12 +131,12 @@ class BoxedPlace:
         )
 
     def start_judge(self, listener: int, orders: int, *, of_programs: bool = False) -> ForkedProcess:
-        """Start a judge: a fork of the judges' fork server enters a box made for it.
+        """Start a judge: a child of the judges' fork server enters a box that is made for it.
 
         Args:
-            listener: The listening socket for the notebook.
-            orders: The listening socket for the grader.
-            of_programs: True for the network of programs instead of the notebook's.
+            listener: The socket that listens for the notebook.
+            orders: The socket for the grader's orders.
+            of_programs: True for the network of programs, False for the notebook's.
         """
         enclosure = self.programs if of_programs else self.enclosure
         name = f"{_JUDGE} {next(self._judges)}"
@@ -155,9 +158,10 @@ class BoxedPlace:
 
 
 class UnboxedPlace:
-    """No boxes: the processes run with the rights of the user who grades.
+    """A replacement for the boxes: the processes run with the rights of the user who grades.
 
-    For the course's own notebooks, and for ``--unsafe-no-sandbox``. Arguments as for :class:`BoxedPlace`.
+    It is used for the course's own notebooks, and for ``--unsafe-no-sandbox``. For the arguments see
+    :class:`BoxedPlace`.
     """
 
     def __init__(
@@ -172,7 +176,7 @@ class UnboxedPlace:
         *,
         programs: bool = False,
     ) -> None:
-        del programs  # the host's network is the only one
+        del programs  # not needed, because there is only one network, the host's
         self._addresses, self._folder, self._judge, self._limits = addresses, folder, judge, limits
         self.guard = NoGuard()
         self._cwd = write_files(files, folder / "work")

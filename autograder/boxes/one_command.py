@@ -1,4 +1,4 @@
-"""Boxes for one command: for a program that a user runs by hand, and for one that reads a single file."""
+"""Boxes for one command: for a program that a user runs by hand, and for a program that reads a single file."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ _OF_PYTHON = ("PYTHONUNBUFFERED", "PYTHONFAULTHANDLER")
 
 
 class OneCommandBox:
-    """A network for this process alone, in which each start of a command gets a box.
+    """A network for this process, in which each start of a command gets a separate box.
 
     Args:
-        scratch: An empty folder. Only this process and the boxes see the files made in it.
-        folder: The user's folder that a command sees, read-only and at the same path. It is the working folder.
-        command: The command, to check whether it names a file that would not be visible.
+        scratch: An empty folder. Only this process and the boxes see the files that are made in it.
+        folder: The folder of the user that a command sees, read-only and at the same path. It is the working folder.
+        command: The command, which is checked for names of files that would not be visible.
 
     Raises:
         ValueError: The folder contains files that no box may see, or the command needs files outside it. The message
@@ -61,21 +61,21 @@ class OneCommandBox:
         return any(Path(os.path.normpath(file)).is_relative_to(place) for place in places)
 
     def enter(self) -> None:
-        """Leave the host's network for one with only a loopback interface. The process must have no threads.
+        """Leave the host's network for one that has only a loopback interface. The process must have no other threads.
 
         Raises:
-            OSError: The system allows no such namespaces.
+            OSError: The system does not allow such namespaces.
         """
         syscalls.leave_the_host()
         syscalls.bring_loopback_up()
         furnish(self._scratch, SCRATCH_BYTES, SCRATCH_INODES)
 
     def start_of(self, command: Sequence[str], environment: Mapping[str, str]) -> tuple[list[str], list[int]]:
-        """Return the command line that starts a command in a box, and its descriptors, which the caller closes.
+        """Return the command line that starts a command in a box, and its descriptors, which the caller has to close.
 
         Args:
             command: The command.
-            environment: The command's environment outside a box; variables that Python and ROS need are kept.
+            environment: The command's environment outside a box. Variables that Python and ROS need are kept.
         """
         words = box_arguments(self._scratch, [Bind(self._folder)])
         python = {name: value for name, value in environment.items() if name in _OF_PYTHON}
@@ -86,24 +86,24 @@ class OneCommandBox:
         return [*begin, *command], descriptors
 
     def limit(self) -> None:
-        """Apply the limits of the box; call it in the child, before the command is executed."""
+        """Apply the limits of the box. Call this in the child, before the command is executed."""
         take_limits(self._guard.cgroups, self._guard.rlimits)
 
     def close(self) -> None:
-        """Remove what is left once every command has ended."""
+        """Remove everything that was made. Call this after every command has ended."""
         self._guard.close()
 
 
 def run_alone(command: Sequence[str], file: Bind, output: int, limits: Limits) -> int:
-    """Run a program in a box without a network and without a place to write to, and return its exit code.
+    """Run a program in a box that has no network and cannot write anywhere. Return the exit code.
 
-    If a limit was met, that is the negative number of a signal, or what the program makes of it.
+    If a limit was reached, this is the negative number of a signal, or an exit code that the program chose.
 
     Args:
-        command: A program of the system, of Python or of the package.
-        file: The only file of the user that it sees.
-        output: A descriptor of a file for standard output.
-        limits: Of its memory, its processes, the size of the output and the time.
+        command: A program of the system, of Python or of this package, with its arguments.
+        file: The only file of the user that the program sees.
+        output: The descriptor of a file for standard output.
+        limits: The limits on the program's memory, processes, output and time.
     """
     guard = BoxGuard(limits)
     words = ["--unshare-all", "--uid", str(USER_ID), "--gid", str(USER_ID), "--cap-drop", "ALL"]

@@ -1,12 +1,12 @@
-"""A fork of the fork server that runs `ros2 run`, and the student's program, without their slow imports.
+"""A process, forked by a fork server, that runs `ros2 run` and the student's program without their slow imports.
 
-Most of a program's start-up is imports that all programs share. So this process, forked from one that has made these
-imports, is the course's own `ros2` (``environment.ros2_command``), with its search for programs and its messages. It
-differs in one point: a Python script for this interpreter becomes another fork instead of a new process. That fork
-has the arguments, path, standard streams, ``__main__`` and exit of a process of its own.
+Most of a program's start-up time is spent on imports that all programs share. This process is forked from one that
+has already made these imports. It runs the course's own `ros2` (``environment.ros2_command``), with its search for
+programs and its messages. It differs in one point: a Python script for this interpreter becomes another fork, not a
+new process. That fork has its own arguments, path, standard streams, ``__main__`` and exit, like a new process.
 
-Everything else is started as `ros2 run` starts it: another interpreter's script, a program in another language, and a
-script with a module or library of its own whose name is already loaded in this process.
+Everything else is started as `ros2 run` starts it: a script for another interpreter, a program in another language,
+and a script that has a module or library of its own whose name is already loaded in this process.
 """
 
 from __future__ import annotations
@@ -34,17 +34,18 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 _OF_SCRIPTS = ("environment.ros2_command.pkg", "ament_index_python.packages", "importlib.metadata", "re")
-"""Modules that `ros2 run` imports, and the scripts that setuptools makes."""
+"""Modules that are imported by `ros2 run` and by the scripts that setuptools makes."""
 _AT_START = ("sitecustomize", "usercustomize")
-"""The modules that Python imports by itself at start (documentation of ``site``)."""
+"""The modules that Python imports by itself when it starts (documentation of ``site``)."""
 _UNBUFFERED = 2
-"""``_IONBF`` of stdio.h."""
+"""The value of ``_IONBF`` in stdio.h."""
 _HEAD = 1024
-"""Bytes of a script that contain its first line."""
+"""The number of bytes to read of a script to get its first line."""
 _FOR_THE_LOADER = "LD_LIBRARY_PATH"
-"""Read once, when a process starts (ld.so(8)); the folders in it are opened at each search."""
+"""A variable that the loader reads once, when a process starts (ld.so(8)). It opens the folders in it at each search.
+"""
 _OF_PROCESSORS = "glibc-hwcaps"
-"""A folder that the loader searches first, if it existed at the loader's first search (ld.so(8))."""
+"""A folder that the loader searches first, but only if it existed at the loader's first search (ld.so(8))."""
 _environment: dict[str, str] = {}
 """The environment of every box."""
 _library_folders: list[str] = []
@@ -56,7 +57,7 @@ def prepare(libraries: str, *library_folders: str) -> None:
 
     Args:
         libraries: The ``LD_LIBRARY_PATH`` of every box.
-        library_folders: Folders in this process's own path before that.
+        library_folders: The folders that come before it in this process's own library path.
     """
     _environment.update({**os.environ, _FOR_THE_LOADER: libraries})
     _library_folders.extend(library_folders)
@@ -66,10 +67,11 @@ def prepare(libraries: str, *library_folders: str) -> None:
 
 
 def _never_unload() -> None:
-    """Let this process and its forks end before shared libraries are unloaded, which ``exit`` does last.
+    """Make this process and its forks end before shared libraries are unloaded, the last thing that ``exit`` does.
 
-    LTTng, which rclpy loads, would then stop two threads that a fork does not have, and crash (``lttng_ust_exit``).
-    Handlers run in reverse order (atexit(3)), so anything imported after this is cleaned up as usual.
+    LTTng, which rclpy loads, would otherwise stop two threads that a fork does not have, and crash
+    (``lttng_ust_exit``). Handlers run in reverse order (atexit(3)), so everything imported after this call is cleaned
+    up as usual.
     """
     libc = ctypes.CDLL(None)
     libc.on_exit(libc._exit, None)
@@ -80,11 +82,11 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
     """Run `ros2 run` until its program has ended.
 
     Args:
-        call: ``words``, the words after `ros2` on the command line.
+        call: Contains ``words``, the words after `ros2` on the command line.
         descriptors: The descriptors for standard output and standard error.
 
     Raises:
-        SystemExit: With the exit code of `ros2`.
+        SystemExit: Always, with the exit code of `ros2`.
     """
     (output,) = descriptors
     for standard in (1, 2):
@@ -96,7 +98,7 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
 
 
 def _start(command: Sequence[str]) -> ros2_run.Process:
-    """Start a program; as a fork if the program cannot tell the difference.
+    """Start a program: as a fork if the program cannot tell the difference, else as a new process.
 
     Args:
         command: The program and its arguments.
@@ -113,7 +115,7 @@ def _start(command: Sequence[str]) -> ros2_run.Process:
 
 
 def _loads_the_same_libraries() -> bool:
-    """True if this process finds each library in the same file as a new process with the same environment would."""
+    """Return True if this process finds each library in the same file as a new process with this environment would."""
     given, wanted = (
         path.split(os.pathsep) if (path := environment.get(_FOR_THE_LOADER)) else []
         for environment in (_environment, os.environ)
@@ -129,7 +131,7 @@ def _loads_the_same_libraries() -> bool:
 
 
 def _loaded_libraries() -> set[str]:
-    """The names of the libraries in this process, in the form of :func:`_names_in`."""
+    """Return the names of the libraries loaded in this process, in the form of :func:`_names_in`."""
     lines = Path("/proc/self/maps").read_text(encoding="utf-8", errors="replace").splitlines()
     return {line.rpartition("/")[2].partition(".")[0] for line in lines if ".so" in line}
 
@@ -139,7 +141,7 @@ def _python_path(environment: Mapping[str, str]) -> list[str]:
 
 
 def _is_ours(script: str) -> bool:
-    """True for a Python script for this interpreter, including the script of an archive (``zipapp``)."""
+    """Return True if a file is a Python script for this interpreter, including that of an archive (``zipapp``)."""
     line = _head(Path(script)).split(b"\n")[0]
     return line == f"#!{INTERPRETER}".encode() and pkgutil.get_importer(script) is None
 
@@ -164,11 +166,12 @@ def _names_in(folders: Sequence[str]) -> set[str]:
 
 
 class _Fork:
-    """A forked program, with the methods of :class:`subprocess.Popen` that `ros2 run` uses."""
+    """A forked program, with those methods of :class:`subprocess.Popen` that `ros2 run` uses."""
 
     def __init__(self, command: Sequence[str], standard_path: Sequence[str]) -> None:
         self._code: int | None = None
-        # Until the fork sets its own handlers it has those of `ros2 run`, which expects its program to handle Ctrl-C.
+        # Until the fork sets its own handlers, it has those of `ros2 run`, which expects its program to handle
+        # Ctrl-C.
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         self._pid = os.fork()
         if self._pid == 0:
@@ -181,7 +184,7 @@ class _Fork:
             os.kill(self._pid, number)
 
     def wait(self) -> int:
-        """Wait for the end. Return the exit code, negative for a signal."""
+        """Wait for the program to end. Return the exit code, negative if a signal ended it."""
         if self._code is None:
             _, status = os.waitpid(self._pid, 0)
             self._code = os.waitstatus_to_exitcode(status)
@@ -189,9 +192,9 @@ class _Fork:
 
 
 def _be(command: Sequence[str], standard_path: Sequence[str]) -> NoReturn:
-    """Run a Python script in this process, until the end of the interpreter."""
+    """Run a Python script in this process, until the interpreter ends."""
     script, *_ = command
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # as in a new process in which Python has not started yet
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # as in a new process, in which Python has not started yet
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     signal.signal(signal.SIGINT, signal.default_int_handler)
     if os.environ.get("PYTHONFAULTHANDLER"):
@@ -207,9 +210,9 @@ def _be(command: Sequence[str], standard_path: Sequence[str]) -> NoReturn:
 
 
 def _open_standard_streams() -> None:
-    """Open the streams as Python does at start (config_init_stdio, create_stdio in Python/pylifecycle.c)."""
+    """Open the streams as Python does when it starts (config_init_stdio, create_stdio in Python/pylifecycle.c)."""
     at_once = bool(os.environ.get("PYTHONUNBUFFERED"))
-    if at_once:  # this also covers the lines of ROS's log, which C code writes
+    if at_once:  # this also makes the lines of ROS's log unbuffered, which C code writes
         libc = ctypes.CDLL(None)
         libc.setvbuf(ctypes.c_void_p.in_dll(libc, "stdout"), None, _UNBUFFERED, ctypes.c_size_t(0))
     for name, number, errors in (("stdout", 1, None), ("stderr", 2, "backslashreplace")):
@@ -227,9 +230,9 @@ def _open_standard_streams() -> None:
 
 
 def _exit_code(script: str) -> int:
-    """Run a script as ``__main__``. Return Python's exit code, if the script has not ended the process itself.
+    """Run a script as ``__main__``. Return Python's exit code, unless the script has ended the process itself.
 
-    Python's own function for a script runs it, and reports the error that ended it.
+    Python's own function for running a script is used, and reports the error that ended the script.
     """
     main = sys.modules["__main__"] = ModuleType("__main__")
     main.__dict__.update(__builtins__=builtins, __annotations__={})
@@ -240,6 +243,6 @@ def _exit_code(script: str) -> int:
     if ctypes.pythonapi.PyRun_SimpleFileExFlags(file, name, 1, None) == 0:
         return 0
     if getattr(sys, "last_type", None) is KeyboardInterrupt:
-        # Python then ends by SIGINT, after its clean-up, when none of its code runs any more (Py_RunMain).
+        # Python then ends itself by SIGINT, after its clean-up, when none of its code runs any more (Py_RunMain).
         libc.__cxa_atexit(libc["raise"], ctypes.c_void_p(signal.SIGINT), None)
     return 1

@@ -1,7 +1,7 @@
-"""Executes a rebuilt notebook cell by cell; the judge observes each check cell.
+"""Executes a rebuilt notebook cell by cell. The judge watches each check cell.
 
-The notebook's output, errors and values decide nothing. The result of a check cell is what the judge reports
-after the cell; without a report it is zero points, with the reason.
+The notebook's output, errors and values decide nothing. The result of a check cell is what the judge reports after
+the cell. Without a report, the result is zero points, with the reason.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 
 
 _TERMINAL = ("%%bash", "%%sh", "%%script")
-"""The beginning of a terminal's cell."""
+"""The magics with which a cell that is a terminal begins."""
 
 
 class Unfinished(RuntimeError):
-    """The judge had not finished when its time was up."""
+    """The judge had not finished the check when its time was over."""
 
 
 class Judge(Protocol):
@@ -42,10 +42,10 @@ class Judge(Protocol):
         ...
 
     def close(self) -> Verdict | None:
-        """End the exercise's check. Return its verdict, or None if no check was requested.
+        """End the exercise's check. Return the verdict; None if no check was requested.
 
         Raises:
-            Unfinished: The check was not finished. Any other exception is a failure of the judge as well.
+            Unfinished: The check was not finished. Any other exception also means that the judge failed.
         """
         ...
 
@@ -60,20 +60,20 @@ def run_notebook(
     guard: Guard | None = None,
     patient: Patient = wall_time,
 ) -> Execution:
-    """Execute a notebook in a kernel of its own.
+    """Execute a notebook in a separate kernel.
 
     Args:
         cells: The cells of the rebuilt notebook.
-        judge: Opened while the kernel starts; leaving the context ends it.
-        start: Starts the kernel's process.
-        folder: The folder for the kernel's sockets, a short path.
-        limits: All limits.
-        guard: Reports that a limit of the box is exceeded.
-        patient: Turns the limits on cells into deadlines; the deadlines may stretch while the machine is busy.
+        judge: Entered while the kernel starts. At the end of its context, the judge is ended.
+        start: Starts the process of the kernel.
+        folder: The folder for the kernel's sockets. Its path must be short.
+        limits: The limits of the notebook.
+        guard: Reports if a limit of the box is exceeded.
+        patient: Turns a cell's time limit into a deadline, which may stretch while the machine is busy.
 
     Returns:
-        The execution. Nothing in the notebook can make this function raise; a failure of the grader itself (no
-        kernel, no judge) is in ``trouble``, and the checks it affects are "not checked".
+        The execution. Nothing in the notebook can make this function raise. A failure of the grader itself (no
+        kernel, no judge) is in ``trouble``, and the checks that it affects are "not checked".
     """
     began = time.monotonic()
     run = _Run(cells, limits, patient)
@@ -95,7 +95,7 @@ def run_notebook(
 
 
 class _Run:
-    """The execution of one notebook in progress."""
+    """The execution of a notebook, while it is in progress."""
 
     def __init__(self, cells: Sequence[Cell], limits: Limits, patient: Patient = wall_time) -> None:
         self._cells = cells
@@ -119,7 +119,7 @@ class _Run:
             self._collectors[index].handle(message_type, content)
 
     def all_cells(self, kernel: Kernel, judge: Judge) -> None:
-        """Run every cell that is to run, as long as the kernel lives and time is left."""
+        """Run every cell that has to run, as long as the kernel is alive and time is left."""
         of_notebook = wall_time(self._limits.notebook_seconds)
         for index, cell in enumerate(self._cells):
             if cell.kind is not CellType.CODE:
@@ -139,7 +139,7 @@ class _Run:
                     self._hangs.note(cell, _title(cell))
 
     def _allow(self, index: int, cell: Cell) -> None:
-        """Set a cell's time limit: a name that hung before does not get the full time again."""
+        """Set the time limit of a cell. A cell that uses a name that hung before does not get the full time again."""
         if (before := self._hangs.before(cell)) is not None:
             self._hung_before[index] = before
             self._allowed[index] = seconds_again(cell, self._allowed[index], self._limits)
@@ -170,14 +170,14 @@ class _Run:
         return [(_title(self._cells[index]), runs[index]) for index in recent]
 
     def failed(self, reason: str, seconds: float) -> Execution:
-        """Return the execution if the grader itself failed: none of its checks counts."""
+        """Return the execution for the case that the grader itself failed: none of its checks counts."""
         runs = tuple(self._cell_run(index) for index in range(len(self._cells)))
         verdicts = {i: grader_trouble(cell.check, reason) for i, cell in enumerate(self._cells) if cell.check}
         return Execution(runs, verdicts, reason, seconds)
 
     @contextlib.contextmanager
     def _watched(self, index: int, cell: Cell, judge: Judge) -> Iterator[None]:
-        """Let the judge observe a check cell; any other cell runs without the judge."""
+        """Let the judge watch a check cell. Any other cell runs without the judge."""
         if cell.check is None or cell.check.asserts:
             yield
             return
@@ -191,16 +191,16 @@ class _Run:
         try:
             verdict = judge.close()
         except Unfinished as error:
-            # A cell that ended early with its check unfinished did not wait; otherwise a student could choose
-            # when to stop a check.
+            # If a cell ended early while its check was unfinished, the cell did not wait. Then the failed check
+            # counts, because otherwise a student could choose when to stop a check.
             if self._ended[index] is Ended.TIMED_OUT:
                 self._judge_failed(index, cell.check, error)
             return
         except Exception as error:
             self._judge_failed(index, cell.check, error)
             return
-        # A cell stopped at a limit has not shown everything: a fail would depend on how much the judge saw until
-        # then.
+        # A cell that was stopped at a limit has not shown everything, so a failed verdict would depend on how much
+        # the judge had seen by then.
         if verdict is not None and (verdict.passed or self._ended[index] not in LIMITS):
             self._count(index, cell.check, verdict)
 
@@ -234,7 +234,7 @@ class _Run:
 
 
 def _title(cell: Cell) -> str:
-    """Return the first line of a cell that is neither empty nor a comment, as its name."""
+    """Return the title of a cell: its first line that is neither empty nor a comment."""
     lines = [line.strip() for line in cell.source.splitlines()]
     telling = [line for line in lines if line and not line.startswith("#")]
     return (telling or lines or [""])[0][:60]

@@ -1,4 +1,4 @@
-"""The boxes of one submission: make, enter, run a command in, end.
+"""The boxes of one submission: makes them, lets processes enter, runs commands in them, and ends them.
 
 .. code-block:: python
 
@@ -6,9 +6,9 @@
         box = enclosure.box("student", [Bind(folder_of_the_socket, Path("/run/judge"))])
         done = enclosure.run(["ros2", "run", "my_robot_pkg", "talker"], limit=30.0)
 
-All boxes of an enclosure share one network namespace that has only the loopback interface: their ROS nodes can reach
-each other and no other node, whatever the domain. When the enclosure is closed, or its process is killed, all
-processes of its boxes end and the scratch is removed.
+All boxes of an enclosure share one network namespace, which has only the loopback interface. So their ROS nodes can
+reach each other and no other node, whatever the domain. When the enclosure is closed, or its process is killed, all
+processes in its boxes end and the scratch is removed.
 """
 
 from __future__ import annotations
@@ -43,15 +43,16 @@ OUTPUT_BYTES = 1_000_000
 
 
 class Enclosure:
-    """The network, the scratch and the boxes of one submission; safe to call from several threads.
+    """The network, the scratch and the boxes of one submission. Several threads may use it.
 
     Args:
         supervisors: The socket address of the fork server that starts supervisors.
-        folder: A short-lived folder for this object alone, made if missing. A box sees only what is bound from it.
-        files: Files for the notebook's folder, by relative path.
-        scratch_bytes: The size limit of all files that the boxes write together.
-        scratch_inodes: The most files, folders and links in the scratch.
-        guard: Enforces the limits on the commands, together with everything else it guards.
+        folder: A short-lived folder that nothing else uses; it is created if it does not exist. A box sees only those
+            parts of it that are bound.
+        files: Files to put into the notebook's folder, by relative path.
+        scratch_bytes: The maximum size in bytes of all files that the boxes write together.
+        scratch_inodes: The maximum number of files, folders and links in the scratch.
+        guard: Enforces the limits on the commands, together with everything else that it guards.
 
     Raises:
         NoSandbox: The supervisor could not make the namespaces.
@@ -92,9 +93,9 @@ class Enclosure:
         Args:
             name: A name that no other box of this enclosure has.
             binds: What the box sees in addition to the system, Python and this package.
-            scratch: True to give it the enclosure's scratch; otherwise it has a small one of its own.
-            guarded: True if the guard's limits apply to every process that enters, and to the first processes of the
-                box, which a program inside could control.
+            scratch: True if the box gets the enclosure's scratch; False if it gets a small one of its own.
+            guarded: True if the guard's limits apply to every process that enters the box, and to the box's own first
+                processes, which a program inside could control.
 
         Raises:
             NoSandbox: The box could not be made.
@@ -118,19 +119,19 @@ class Enclosure:
         call: Mapping[str, Any] | None = None,
         rlimits: Mapping[str, int] | None = None,
     ) -> ForkedProcess:
-        """Start a process: a fork of a fork server enters a box.
+        """Start a process: a child of a fork server enters a box.
 
         Args:
             box: A box of this enclosure.
-            server: The socket address of that fork server.
-            descriptors: File descriptors for the process; the caller keeps its copies.
+            server: The socket address of the fork server.
+            descriptors: File descriptors for the process. The caller keeps its own copies.
             cwd: The working folder.
             environment: All environment variables.
-            call: The argument for the process's module.
+            call: The argument for the ``run`` function of the fork server's module.
             rlimits: Limits for a process in a box without a guard (setrlimit(2)).
 
         Raises:
-            ChannelClosed: The fork server is gone, or the fork could not enter the box.
+            ChannelClosed: The fork server has ended, or its child could not enter the box.
         """
         entrance = Entrance(
             cwd=str(cwd),
@@ -150,16 +151,16 @@ class Enclosure:
         cwd: Path = WORK,
         output_bytes: int = OUTPUT_BYTES,
     ) -> Finished:
-        """Run a command, with the scratch, in a new box until it ends; otherwise as :meth:`start`.
+        """Run a command in a new box with the scratch until the command ends. Otherwise like :meth:`start`.
 
-        On return no process of that box is alive, daemons included.
+        When this returns, no process of that box is alive, not even a daemon.
 
         Args:
-            command: See :meth:`start`.
-            limit: Seconds of wall time; then the whole box is killed.
-            binds: See :meth:`start`.
+            command: The program and its arguments; see :meth:`start`.
+            limit: Time limit in seconds of wall time, at which the whole box is killed.
+            binds: What the box sees in addition; see :meth:`start`.
             cwd: The working folder.
-            output_bytes: The most bytes of output to keep.
+            output_bytes: The maximum number of bytes of output to keep.
 
         Raises:
             NoSandbox: The box could not be made.
@@ -179,15 +180,18 @@ class Enclosure:
     ) -> Running:
         """Start a command in a new box, in the submission's network namespace.
 
-        Leaving the context of the returned object ends the command and everything that it started.
+        The returned object is a context manager. At the end of its ``with`` block, the command and everything that it
+        started are ended.
 
         Args:
-            command: Program and arguments, with paths as in the box.
+            command: The program and its arguments, with paths as seen in the box.
             binds: What the box sees in addition to the system, Python and this package.
-            environment: All environment variables; None for :func:`autograder.boxes.environment.box_environment`.
+            environment: All environment variables; None for those of
+                :func:`autograder.boxes.environment.box_environment`.
             cwd: The working folder.
-            output_bytes: The most bytes of output to keep.
-            scratch: See :meth:`box`. Commands with the scratch see each other's files.
+            output_bytes: The maximum number of bytes of output to keep.
+            scratch: True if the box gets the enclosure's scratch; see :meth:`box`. Commands that have it see each
+                other's files.
 
         Raises:
             NoSandbox: The box could not be made.
@@ -221,12 +225,12 @@ class Enclosure:
         environment: Mapping[str, str],
         cwd: Path = WORK,
     ) -> WarmCommand:
-        """Start `ros2` with these words in a new box without the scratch, from the fork server of programs.
+        """Start `ros2` with these words in a new box without the scratch, from the fork server for programs.
 
         Args:
             programs: The socket address of that fork server.
-            words: The words of the command line, beginning with ``run``.
-            binds: See :meth:`start`.
+            words: The words after `ros2` on the command line, beginning with ``run``.
+            binds: What the box sees in addition; see :meth:`start`.
             environment: All environment variables.
             cwd: The working folder.
         """
@@ -252,7 +256,7 @@ class Enclosure:
         return WarmCommand(process, reading, box.pid)
 
     def close(self) -> None:
-        """End all boxes and wait until none of their processes is alive; may be called twice."""
+        """End all boxes, and wait until none of their processes is alive. This may be called twice."""
         self._supervision.close()
 
     def __enter__(self) -> Self:
@@ -275,7 +279,7 @@ class Enclosure:
 
 
 def _own_libraries(environment: Mapping[str, str]) -> list[Path]:
-    """Return the folders of libraries that an environment has in addition to those of every box."""
+    """Return the library folders that an environment has in addition to those of every box."""
     of_every_box = box_environment().get("LD_LIBRARY_PATH", "").split(os.pathsep)
     folders = environment.get("LD_LIBRARY_PATH", "").split(os.pathsep)
     return [Path(folder) for folder in folders if folder not in of_every_box]
@@ -283,9 +287,9 @@ def _own_libraries(environment: Mapping[str, str]) -> list[Path]:
 
 @functools.cache
 def why_impossible() -> str:
-    """Return why no sandbox is possible here and what to do, in one sentence; empty if it is possible.
+    """Return one sentence that says why no sandbox is possible here and what to do; empty if one is possible.
 
-    It tries to make one.
+    This is tried out by making one.
     """
     if shutil.which("bwrap") is None:
         return "bubblewrap is not installed. On Debian or Ubuntu, type: sudo apt-get install -y bubblewrap"
@@ -307,7 +311,7 @@ def why_impossible() -> str:
 
 
 def _reason(error: str) -> str:
-    """Return the usual meaning of an error of bubblewrap."""
+    """Return what an error of bubblewrap usually means."""
     apparmor = Path("/proc/sys/kernel/apparmor_restrict_unprivileged_userns")
     if os.geteuid() != 0 and apparmor.exists() and apparmor.read_text().strip() == "1":
         return (
@@ -323,7 +327,9 @@ def _reason(error: str) -> str:
     return "no box could be made here"
 
 
-if __name__ == "__main__":  # the doctor runs this file, because the doctor may not run in the course's Python
+if (
+    __name__ == "__main__"
+):  # doctor runs this file as a program, because doctor may run outside the course's Python
     from autograder.boxes.guards import guards
 
     print(json.dumps({"why_impossible": why_impossible(), "guards": dict(guards())}))

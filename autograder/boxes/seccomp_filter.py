@@ -1,4 +1,4 @@
-"""The system calls that no program in a box may make, as a seccomp filter.
+"""The system calls that programs in a box may not make, as a seccomp filter.
 
 The namespaces decide what a box can reach. The filter forbids calls that no answer to an exercise needs and in which
 kernels had security holes: tracing other processes, mounting, namespaces in namespaces, keys, BPF, io_uring. It
@@ -17,9 +17,9 @@ of a process that shares its table of open files and has ended. The guard counts
 (:mod:`autograder.boxes.guards`). Of the network protocols, a box has those whose waiting data the guard counts: UDP,
 TCP, and netlink to list the interfaces.
 
-A refused call fails with EPERM, as for any user without the right to it. Attributes of files fail with EOPNOTSUPP, as
-on a file system without them, which ``cp -p`` expects. ``clone3`` does not exist (ENOSYS), because its flags are in
-memory that a filter cannot read; libraries then use ``clone``.
+A refused call fails with EPERM, as for any user without the right to make it. Calls for attributes of files fail with
+EOPNOTSUPP, as on a file system without attributes, which ``cp -p`` expects. ``clone3`` fails as if it did not exist
+(ENOSYS), because its flags are in memory that a filter cannot read. Libraries then use ``clone``.
 
 The numbers come from the kernel's own tables (asm/unistd_64.h, asm-generic/unistd.h), which never change.
 """
@@ -86,39 +86,47 @@ _READERS: Mapping[str, Mapping[str, int]] = {
         "mprotect": 226, "madvise": 233,
     },
 }  # fmt: skip
-"""The system calls of a reader. None of them opens, starts, sends or waits, and none sets up a handler of signals."""
+"""The system calls that a reader may make. None of them opens, starts, sends or waits, and none sets a signal handler.
+"""
 _FUTEX = {"x86_64": 202, "aarch64": 98}
 _FUTEX_WAKE = (1, 129)
-"""FUTEX_WAKE, and the same in one process (linux/futex.h). A lock that was free calls it; nothing can wait for one."""
+"""FUTEX_WAKE, and its variant for a single process (linux/futex.h). Releasing a lock calls it even if no thread waits.
+A call that waits for a lock is not allowed.
+"""
 _BY_ARGUMENT = {"clone", "clone3", "socket", "socketpair", "setsockopt", "ioctl", "fcntl", "prctl"}
 _ATTRIBUTES = {"setxattr", "lsetxattr", "fsetxattr", "setxattrat"}
 _HIDDEN_MEMORY = {"memfd_create", "shmget", "vmsplice"}
-"""Memory that belongs to no process: refused if the guard counts process by process, without a cgroup.
+"""Calls that allocate memory that belongs to no process. They are refused if the guard has no cgroup and counts process
+by process.
 
-A hundred pipes with pages of a process (``vmsplice``) hold 3 GB after the process has given these pages back.
+For example, a hundred pipes with pages of a process (``vmsplice``) hold 3 GB after the process has freed these pages.
 """
 
 _NETLINK, _ROUTE = 16, 0
 """AF_NETLINK, and its protocol for listing the network interfaces (linux/netlink.h)."""
 _COUNTED = (0, socket.IPPROTO_TCP, socket.IPPROTO_UDP)
-"""The protocols whose waiting data a guard finds in tables of ``/proc``; 0 is the default of a kind of socket.
+"""The protocols whose waiting data a guard can find in tables of ``/proc``; 0 is the default of a socket type.
 
-MPTCP, SCTP and SMC have no such table.
+MPTCP, SCTP and SMC have no such table, so they are not allowed.
 """
 _PROTOCOLS = {socket.AF_INET: _COUNTED, socket.AF_INET6: _COUNTED, _NETLINK: (_ROUTE,)}
-"""By family.
+"""The allowed protocols by address family.
 
-AF_UNIX has none. AF_VSOCK in particular is missing: it reaches the host of a virtual machine past every network
-namespace.
+AF_UNIX is not here because it has no protocols. AF_VSOCK is left out on purpose: it reaches the host of a virtual
+machine past every network namespace.
 """
 _SOL_SOCKET, _SOCKET_FILTERS = 1, (26, 50, 51, 52)
-"""SO_ATTACH_FILTER, SO_ATTACH_BPF and those of SO_REUSEPORT (asm-generic/socket.h)."""
+"""SOL_SOCKET; then SO_ATTACH_FILTER, SO_ATTACH_BPF and the two filters of SO_REUSEPORT (asm-generic/socket.h)."""
 _TERMINAL_TRICKS = (0x5412, 0x541C)
-"""TIOCSTI types into a terminal, TIOCLINUX pastes into a console (asm-generic/ioctls.h)."""
+"""TIOCSTI, which types into a terminal, and TIOCLINUX, which pastes into a console (asm-generic/ioctls.h)."""
 _OTHERS_WAIT = (fcntl.F_SETLEASE, fcntl.F_NOTIFY, 1040)
-"""Leases, signals when a folder changes, and a combination of both (F_SETDELEG, Linux 6.19; linux/fcntl.h)."""
+"""Commands for leases, for signals when a folder changes, and for a combination of both (F_SETDELEG, Linux 6.19;
+linux/fcntl.h).
+"""
 _LOCKS_OF_NOBODY = (37, 38)
-"""F_OFD_SETLK and F_OFD_SETLKW: locks of an open file description, not of a process (asm-generic/fcntl.h)."""
+"""F_OFD_SETLK and F_OFD_SETLKW: locks that belong to an open file description and not to a process
+(asm-generic/fcntl.h).
+"""
 _NAMESPACES = (
     syscalls.CLONE_NEWNS | syscalls.CLONE_NEWCGROUP | syscalls.CLONE_NEWUTS | syscalls.CLONE_NEWIPC
     | syscalls.CLONE_NEWUSER | syscalls.CLONE_NEWPID | syscalls.CLONE_NEWNET
@@ -130,9 +138,9 @@ class Architecture:
     """The system calls of a processor architecture.
 
     Attributes:
-        audit: The architecture's number for seccomp (linux/audit.h).
-        calls: Numbers by name.
-        x32: True if a second table of calls is selected by a bit of the number.
+        audit: The number of the architecture for seccomp (linux/audit.h).
+        calls: The numbers of the calls by name.
+        x32: True if a bit of the call's number selects a second table of calls.
     """
 
     audit: int
@@ -148,17 +156,17 @@ ARCHITECTURES = {
 _LOAD, _JUMP_EQUAL, _JUMP_AT_LEAST, _JUMP_BITS, _RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
 _ALLOW, _KILL, _ERRNO = 0x7FFF0000, 0x80000000, 0x00050000
 _NUMBER, _ARCH, _ARGUMENTS = 0, 4, 16
-"""Offsets in the data that a filter reads (linux/seccomp.h, struct seccomp_data); an argument has 8 bytes, low half
-first.
+"""Offsets in the data that a filter reads (struct seccomp_data in linux/seccomp.h): the call's number, the
+architecture, the arguments. An argument has 8 bytes, the low half first.
 """
 
 
 def filter_for_boxes(*, hidden_memory: bool = True, machine: str = "") -> bytes:
-    """Return the filter's program for a machine; empty if its system calls are not known here.
+    """Return the filter program for a machine; empty if the machine's system calls are not known here.
 
     Args:
         hidden_memory: True to allow memory that belongs to no process, because a cgroup counts it.
-        machine: The machine as in ``uname -m``; this machine by default.
+        machine: The machine as in ``uname -m``; by default this machine.
     """
     known = ARCHITECTURES.get(machine or platform.machine())
     if known is None:
@@ -187,13 +195,13 @@ def filter_for_boxes(*, hidden_memory: bool = True, machine: str = "") -> bytes:
 
 
 def filter_for_readers(machine: str = "") -> bytes:
-    """Return the filter of a process that only reads what it was given and writes its answer.
+    """Return the filter for a process that only reads what it was given and writes its answer.
 
-    Such a process can open nothing, start nothing, reach no other process, and not sleep: it ends, or its processor
-    time is used up. So processes of several students can be in one box, and nothing of one is left for the next.
+    Such a process cannot open, start or reach anything, and it cannot sleep: it either ends or uses up its processor
+    time. So processes for several students can be in one box, and nothing of one is left for the next.
 
     Args:
-        machine: As for :func:`filter_for_boxes`.
+        machine: The machine as in ``uname -m``; by default this machine.
     """
     machine = machine or platform.machine()
     known = ARCHITECTURES.get(machine)
@@ -210,7 +218,7 @@ _Instruction = tuple[int, int, int, int]
 
 
 def _beginning(known: Architecture) -> list[_Instruction]:
-    """Kill a process that makes calls of another architecture, and load the number of the call."""
+    """Return instructions that kill a process that uses another architecture's calls, and load the call's number."""
     program = [
         (_LOAD, 0, 0, _ARCH),
         (_JUMP_EQUAL, 1, 0, known.audit),
@@ -231,18 +239,18 @@ def _fail(number: int) -> _Instruction:
 
 
 def _where(call: int, decide: Sequence[_Instruction]) -> list[_Instruction]:
-    """For one call, decide by its arguments; the call is allowed unless ``decide`` refuses it."""
+    """Return instructions that decide about one call by its arguments; it is allowed unless ``decide`` refuses it."""
     body = [*decide, (_RETURN, 0, 0, _ALLOW)]
     return [(_JUMP_EQUAL, 0, len(body), call), *body]
 
 
 def _load(argument: int) -> _Instruction:
-    """Load the low half of an argument; the kernel also uses no more of a flag, a family or a command."""
+    """Return an instruction that loads the low half of an argument; the kernel uses no more of a flag or a command."""
     return (_LOAD, 0, 0, _ARGUMENTS + 8 * argument)
 
 
 def _only_if(argument: int, value: int) -> list[_Instruction]:
-    """Allow the call if an argument has any other value."""
+    """Return instructions that allow the call unless an argument has this value."""
     return [_load(argument), (_JUMP_EQUAL, 1, 0, value), (_RETURN, 0, 0, _ALLOW)]
 
 
@@ -259,7 +267,7 @@ def _refuse_others(argument: int, values: Sequence[int], why: int) -> list[_Inst
 
 
 def _decide_on_clone() -> list[_Instruction]:
-    """Refuse namespaces, and processes other than threads that share a table of open files."""
+    """Return instructions that refuse new namespaces, and processes (not threads) that share a table of open files."""
     return [
         _load(0),
         (_JUMP_BITS, 0, 1, _NAMESPACES),

@@ -1,11 +1,11 @@
-"""The supervisor of one submission's boxes: it owns their network namespace and their scratch, and ends them.
+"""The supervisor of one submission's boxes: it owns their network namespace and scratch, and ends the boxes.
 
-It is forked from a fork server of its own (:mod:`autograder.boxes.fork_server`), which has few imports. It enters new
-user, network and mount namespaces, and bubblewrap makes the boxes from there. Each box gets another user namespace,
+It is forked by a separate fork server (:mod:`autograder.boxes.fork_server`), which has few imports. It enters new
+user, network and mount namespaces, in which bubblewrap then makes the boxes. Each box gets a further user namespace,
 so that no process in a box has rights over the network. When the connection to the worker is lost, for whatever
 reason, the supervisor kills all boxes and exits.
 
-The worker sends ``open`` (once), ``start`` (a box or a command) and ``kill``. The supervisor answers ``opened``,
+The worker sends ``open`` (once), ``start`` (for a box or a command) and ``kill``. The supervisor answers ``opened``,
 ``started``, ``ended`` or ``failed``.
 """
 
@@ -33,19 +33,19 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 SCRATCH_FOLDERS = ("home", "tmp", "shm", "work")
-"""The folders in the scratch; a box sees each of them at another path."""
+"""The folders in the scratch. A box sees each of them at a different path."""
 
 MOST_TERMINALS = 32
-"""A notebook's line with an exclamation mark takes one terminal while it runs."""
+"""The maximum number of terminals. A notebook's line that begins with an exclamation mark takes one while it runs."""
 
 
 def prepare() -> None:
-    """Read the files for every box's ``/etc`` once; the imports above are all that is needed otherwise."""
+    """Read the files for every box's ``/etc`` once. Apart from them, the imports above are all that is needed."""
     etc_files()
 
 
 def run(channel: Channel) -> None:
-    """Serve one submission until its worker hangs up."""
+    """Serve one submission until its worker disconnects."""
     die_with_parent()
     supervisor = _Supervisor(channel)
     try:
@@ -59,9 +59,9 @@ def run(channel: Channel) -> None:
 @dataclass
 class _Started:
     process: subprocess.Popen[bytes]
-    """bubblewrap outside the box.
+    """The bubblewrap process outside the box.
 
-    It ends when the first process of the box has ended, and all others end with that one.
+    It ends when the first process of the box has ended; all other processes of the box end with that one.
     """
     end: int
     """The pidfd of bubblewrap."""
@@ -81,7 +81,7 @@ class _Supervisor:
         self._started: dict[str, _Started] = {}
 
     def serve(self) -> None:
-        """Carry out the worker's messages, and report what has ended."""
+        """Carry out the worker's messages, and report which boxes have ended."""
         while True:
             watched: list[Any] = [self._channel, *(started.end for started in self._started.values())]
             ready, _, _ = select.select(watched, [], [])
@@ -117,7 +117,7 @@ class _Supervisor:
 
     def _open(self, scratch: str, size: int, inodes: int, files: str) -> None:
         syscalls.leave_the_host()
-        die_with_parent()  # the change of rights cleared this setting
+        die_with_parent()  # again, because the change of rights cleared this setting
         syscalls.bring_loopback_up()
         place = Path(scratch)
         furnish(place, size, inodes)
@@ -138,13 +138,13 @@ class _Supervisor:
     ) -> None:
         """Start a box with bubblewrap.
 
-        Without a command the box stays empty until a process enters it, and lives until it is killed. With a command,
-        the descriptors that came with the message are its standard input, output and error.
+        Without a command, the box stays empty until a process enters it, and lives until it is killed. With a
+        command, the descriptors that came with the message are the command's standard input, output and error.
         """
         if name in self._started:
             raise ValueError(f"there is a box named {name} already")
         info, writing = os.pipe()
-        # A session of its own: Ctrl-C is for the command and its process group, not for bubblewrap.
+        # In a separate session, because Ctrl-C is meant for the command and its process group, not for bubblewrap.
         words = [*arguments, "--new-session", "--info-fd", str(writing)]
         words, kept = bubblewrap(words, hidden_memory=hidden_memory)
         kept.append(writing)
@@ -157,7 +157,8 @@ class _Supervisor:
                 stdout=subprocess.PIPE if idle else descriptors[1],
                 stderr=subprocess.STDOUT if idle else descriptors[2],
                 pass_fds=kept,
-                preexec_fn=lambda: take_limits(cgroups, rlimits or {}),  # this process has no thread
+                # Safe because this process has no other threads.
+                preexec_fn=lambda: take_limits(cgroups, rlimits or {}),
                 start_new_session=True,
             )
         finally:
@@ -167,7 +168,7 @@ class _Supervisor:
             text = told.read()
         first = json.loads(text)["child-pid"] if text else 0
         if first:
-            with contextlib.suppress(ProcessLookupError):  # a command that ended at once
+            with contextlib.suppress(ProcessLookupError):  # it was a command that ended at once
                 started.first = os.pidfd_open(first)
         if not idle:
             self._tell_started(name, first)
@@ -177,7 +178,7 @@ class _Supervisor:
             process.stdin.write(b"\n")
             process.stdin.flush()
         assert process.stdout is not None
-        # The program that waits in an empty box echoes what is sent to it: an echo means that the box is complete.
+        # The program that waits in an empty box echoes what is sent to it, so an echo means that the box is complete.
         with process.stdout as said:
             line = said.readline()
             if line != b"\n":
@@ -187,7 +188,7 @@ class _Supervisor:
         self._tell_started(name, first)
 
     def _tell_started(self, name: str, first: int) -> None:
-        """Send the pidfd of the first process in the box: a process uses it to enter the box."""
+        """Send a pidfd of the box's first process, which another process uses to enter the box."""
         pidfd = self._started[name].first
         self._channel.send({"say": "started", "name": name, "pid": first}, [pidfd] if pidfd >= 0 else [])
 
@@ -195,7 +196,7 @@ class _Supervisor:
         self._channel.send({"say": "ended", "name": name, "status": self._reap(name)})
 
     def _reap(self, name: str) -> int:
-        """Wait for the end of a box."""
+        """Wait for a box to end. Return its exit code."""
         started = self._started.pop(name)
         status = started.process.wait()
         close_all([started.end, *([started.first] if started.first >= 0 else [])])
@@ -206,12 +207,12 @@ class _Supervisor:
 
 
 def furnish(place: Path, size: int, inodes: int) -> None:
-    """Mount the scratch and make the folders of every box in it, in this process's mount namespace only.
+    """Mount the scratch, visible only in this process's mount namespace, and make the folders of every box in it.
 
     Args:
         place: An existing folder.
-        size: Bytes that the scratch can hold.
-        inodes: The number of files, folders and links that it can hold.
+        size: The maximum number of bytes in the scratch.
+        inodes: The maximum number of files, folders and links in the scratch.
     """
     syscalls.mount_tmpfs(place, size, inodes)
     for name in (*SCRATCH_FOLDERS, TERMINALS):
@@ -224,21 +225,23 @@ def furnish(place: Path, size: int, inodes: int) -> None:
 
 
 def bubblewrap(arguments: Sequence[str], *, hidden_memory: bool) -> tuple[list[str], list[int]]:
-    """Return the start of a command line, to be followed by the command, and the descriptors that it needs.
+    """Return the beginning of a command line, to be followed by the command, and the descriptors that it needs.
 
     Args:
         arguments: The description of the box (:func:`autograder.boxes.mounts.box_arguments`).
-        hidden_memory: See :func:`autograder.boxes.seccomp_filter.filter_for_boxes`.
+        hidden_memory: True to allow memory that belongs to no process; see
+            :func:`autograder.boxes.seccomp_filter.filter_for_boxes`.
 
     Returns:
-        The words, and the descriptors to be inherited; the caller closes them.
+        The words, and the descriptors that the command must inherit. The caller closes them.
     """
     kept = []
     seccomp = filter_for_boxes(hidden_memory=hidden_memory)
     if seccomp:
         kept.append(_file_with(seccomp))
         arguments = [*arguments, "--seccomp", str(kept[-1])]
-    # In a file, because a box sees the command line of its first process, which would contain folders of the host.
+    # The arguments are passed in a file, because a box sees the command line of its first process, which would name
+    # folders of the host.
     kept.append(_file_with(b"".join(os.fsencode(word) + b"\0" for word in arguments)))
     return ["bwrap", "--args", str(kept[-1]), "--"], kept
 

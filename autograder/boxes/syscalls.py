@@ -43,12 +43,12 @@ def _check(result: int, what: str) -> None:
 
 
 def unshare(namespaces: int) -> None:
-    """Leave the parent's namespaces for new ones (unshare(2))."""
+    """Move this process into new namespaces of its own (unshare(2))."""
     _check(_libc.unshare(namespaces), "unshare")
 
 
 def setns(descriptor: int, namespaces: int) -> None:
-    """Enter namespaces of the process of a pidfd (setns(2), Linux 5.8 or later)."""
+    """Enter namespaces of the process to which a pidfd belongs (setns(2), Linux 5.8 or later)."""
     _check(_libc.setns(descriptor, namespaces), "setns")
 
 
@@ -74,8 +74,8 @@ def filter_system_calls(program: bytes) -> None:
     """Install a seccomp filter for all later system calls of this process and its children.
 
     Args:
-        program: Instructions of 8 bytes each (linux/filter.h, struct sock_filter). Empty to only forbid gaining
-            rights by executing a program (no_new_privs).
+        program: Instructions of 8 bytes each (linux/filter.h, struct sock_filter). If empty, the process only loses
+            the ability to gain rights by executing a program (no_new_privs).
     """
     prctl(PR_SET_NO_NEW_PRIVS, 1)
     if not program:
@@ -94,19 +94,19 @@ def leave_the_host() -> None:
 
 
 def map_only_user(inside: int, user: int, group: int) -> None:
-    """Map this process's only user and group to ``inside`` in a new user namespace."""
+    """Map the only user and group of this process to the id ``inside`` in a new user namespace."""
     Path("/proc/self/setgroups").write_text("deny")
     Path("/proc/self/uid_map").write_text(f"{inside} {user} 1")
     Path("/proc/self/gid_map").write_text(f"{inside} {group} 1")
 
 
 def mount_tmpfs(place: Path, size: int, inodes: int) -> None:
-    """Mount an empty file system in memory, visible in this process's mount namespace only.
+    """Mount an empty file system in memory, visible only in this process's mount namespace.
 
     Args:
         place: An existing folder.
-        size: Bytes that it can hold.
-        inodes: The number of files, folders and links that it can hold.
+        size: The maximum number of bytes in the file system.
+        inodes: The maximum number of files, folders and links in it.
     """
     _check(_libc.mount(b"none", b"/", None, ctypes.c_ulong(_MS_REC | _MS_PRIVATE), None), "mount")
     options = f"size={size},nr_inodes={inodes},mode=0755".encode()
@@ -119,7 +119,8 @@ def mount_terminals(place: Path, most: int) -> None:
 
     Args:
         place: An existing folder.
-        most: The most terminals at once. The machine has a few thousand for all such file systems together.
+        most: The maximum number of terminals at the same time. The machine has a few thousand for all such file
+            systems together.
     """
     options = f"newinstance,ptmxmode=0666,mode=620,max={most}".encode()
     flags = ctypes.c_ulong(_MS_NOSUID | _MS_NOEXEC)
@@ -127,7 +128,7 @@ def mount_terminals(place: Path, most: int) -> None:
 
 
 def bring_loopback_up() -> None:
-    """Bring up ``lo``, the only interface of a new network namespace, which starts down."""
+    """Bring up ``lo``, the only interface of a new network namespace, which is down at first."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as any_socket:
         request = struct.pack("16sH14x", b"lo", 0)
         flags = struct.unpack("16sH14x", fcntl.ioctl(any_socket, _SIOCGIFFLAGS, request))[1]

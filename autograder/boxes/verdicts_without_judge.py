@@ -1,8 +1,8 @@
-"""Give verdicts on check cells without the judge: from plain tests, or zero points with a reason and advice.
+"""Gives verdicts on check cells without the judge: from plain tests, or zero points with a reason and advice.
 
 A cell of plain tests follows nbgrader's rules. It runs in the student's own kernel, so a student can make it print
-anything; the judge's checks in the same notebook are not affected. One rule differs from nbgrader: a line on standard
-error costs nothing, because ROS and many libraries log there when all is well.
+anything, but the judge's checks in the same notebook are not affected. One rule differs from nbgrader: a line on
+standard error costs nothing, because ROS and many libraries log there when nothing is wrong.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 _SYNTAX_ERRORS = ("SyntaxError", "IndentationError", "TabError")
 _ASSERTION = "AssertionError"
 _NO_INPUT = "StdinNotImplementedError"
-"""The error that ``input()`` raises in a kernel without a user."""
+"""The error that ``input()`` raises in a kernel that has no user."""
 _STUB = "NotImplementedError"
-"""The error that nbgrader's replacement for a solution raises."""
+"""The error that nbgrader's stub for a removed solution raises."""
 
 LIMITS = {
     Ended.OUT_OF_MEMORY: (
@@ -50,7 +50,7 @@ LIMITS = {
         "Look for a loop that prints without waiting, or print less.",
     ),
 }
-"""For each limit of a box: what the student is told, and the advice."""
+"""For each limit of a box, what the student is told, and the advice."""
 _SHORTAGES = {
     "OSError: [Errno 28]": (
         "disk_full",
@@ -66,24 +66,26 @@ _SHORTAGES = {
     "RuntimeError: can't start new thread": ("too_many_processes", *LIMITS[Ended.TOO_MANY_PROCESSES]),
     "MemoryError": ("out_of_memory", *LIMITS[Ended.OUT_OF_MEMORY]),
 }
-"""Limits that reach a program as an error: how the error begins, then diagnosis, message and advice."""
+"""Limits that a program sees as an error. For the beginning of the error's text: the diagnosis, the message and the
+advice.
+"""
 
 
 def zero_points(check: CellCheck, key: str, reason: str, next_step: str, detail: str = "") -> Verdict:
-    """A failed check without criteria.
+    """Return the verdict of a failed check without criteria.
 
     Args:
         check: The check that should have been made.
         key: The key of the diagnosis.
-        reason: What happened, for the student.
-        next_step: What to do now.
-        detail: More text, such as the end of a traceback.
+        reason: What happened, in words for the student.
+        next_step: What the student should do now.
+        detail: Further text, such as the end of a traceback.
     """
     return failed(check.exercise, check.title, check.points, Diagnosis(key, reason, next_step), detail)
 
 
 def grader_trouble(check: CellCheck, reason: str) -> Verdict:
-    """A failure of the grader itself: not the student's fault, and worth another run."""
+    """Return the verdict after a failure of the grader itself: not the student's fault, and worth another run."""
     return not_checked(
         check.exercise,
         check.title,
@@ -100,12 +102,12 @@ def without_verdict(
     limit: float,
     hung: tuple[str, str] | None = None,
 ) -> Verdict:
-    """Return the reason why a check cell has no verdict.
+    """Return a verdict that says why the judge gave none for a check cell.
 
     Args:
         check: The check that should have been made.
-        run: The result of the check cell.
-        before: The cells since the last check, each with its first line, in order.
+        run: The result of executing the check cell.
+        before: The cells since the last check, in order, each with its title.
         limit: The time limit of the check cell in seconds of wall time.
         hung: A name in the cell that hung before, and the title of the cell in which it hung; None if there is none.
     """
@@ -183,7 +185,7 @@ def _out_of_time(check: CellCheck, before: list[tuple[str, CellRun]]) -> Verdict
 
 
 def _stopped_by_error(check: CellCheck, run: CellRun, before: list[tuple[str, CellRun]]) -> Verdict:
-    """Say which error stopped the cell; often an earlier cell that should have defined a name is the cause."""
+    """Return a verdict that names the error that stopped the cell. Its cause is often an earlier cell."""
     title, cause = next(
         ((title, cell) for title, cell in before if cell.ended in (Ended.RAISED, Ended.TIMED_OUT, *LIMITS)),
         ("", None),
@@ -244,11 +246,11 @@ def verdict_by_tests(check: CellCheck, run: CellRun) -> Verdict | None:
     """Return the verdict on a cell of plain tests.
 
     Args:
-        check: The cell's check; its points are those of the gradebook.
-        run: The result of the cell.
+        check: The check of the cell. Its points are those of the gradebook.
+        run: The result of executing the cell.
 
     Returns:
-        None if the cell was stopped by anything but a failing test.
+        The verdict; None if the cell was stopped by something other than a failing test.
     """
     if run.ended is Ended.RAISED and run.error.startswith(_ASSERTION):
         said = run.error.removeprefix(_ASSERTION).lstrip(": ").strip()
@@ -269,7 +271,7 @@ def verdict_by_tests(check: CellCheck, run: CellRun) -> Verdict | None:
 
 
 def _partial_credit(outputs: Iterable[Mapping[str, Any]], most: float) -> float:
-    """Return the value of the cell if it is a number of points, else all of them."""
+    """Return the value of the cell as points if it is a number; otherwise all points."""
     values = [one["data"].get("text/plain", "") for one in outputs if one["output_type"] == "execute_result"]
     try:
         score = float(values[0]) if values else most

@@ -1,4 +1,4 @@
-"""Place moments from left to right: by time, or one after the other if time stood still."""
+"""Places moments from left to right: by time, or one after the other if all are at the same time."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ if TYPE_CHECKING:
     from autograder.cards.traffic import TrafficPart
 
 CHARACTER = 6.7
-"""Pixels of one character of the 11-pixel monospaced label font; lane names are one pixel larger."""
+"""The width in pixels of a character of the 11-pixel monospaced label font. Names of lanes are one pixel larger."""
 MARGIN = 10.0
 SHORTEST = 0.002
-"""Least length of an axis, in seconds."""
+"""The minimum length of an axis, in seconds."""
 TURNS = "one after the other"
-"""The label of an axis without seconds."""
+"""The label of an axis that does not show seconds."""
 
 
 @dataclass(frozen=True)
 class Tick:
-    """A tick of the axis: pixels from the left, its text and its ``text-anchor``."""
+    """A tick of the axis: its distance from the left in pixels, its text, and the text's ``text-anchor``."""
 
     x: float
     text: str
@@ -31,9 +31,9 @@ class Tick:
 
 @dataclass(frozen=True)
 class Axis:
-    """Maps a position to pixels: ``start`` to the margin, ``end`` to ``right``.
+    """Converts a position to pixels: ``start`` is at the left margin, ``end`` at ``right``.
 
-    A position is a time in seconds or, if ``seconds`` is not set, the number of a moment.
+    A position is a time in seconds or, if ``seconds`` is false, the number of a moment.
     """
 
     start: float
@@ -67,11 +67,11 @@ class Axis:
         return cls(start, end, right, width, seconds=not part.stands_still)
 
     def x(self, place: float) -> float:
-        """Return the pixels from the left."""
+        """Return the distance from the left, in pixels, of a position."""
         return MARGIN + (place - self.start) / (self.end - self.start) * (self.right - MARGIN)
 
     def ticks(self) -> Iterator[Tick]:
-        """Yield round values that cover the axis, including the space right of the last moment."""
+        """Yield ticks at round values that cover the axis, including the space to the right of the last moment."""
         if not self.seconds:
             yield Tick(0.0, TURNS, "start")
             return
@@ -94,6 +94,6 @@ def places_of(part: TrafficPart) -> list[float]:
 
 
 def round_step(step: float) -> float:
-    """Return the next larger of 1, 2 and 5 times a power of ten."""
+    """Return the next number, at least this large, that is 1, 2 or 5 times a power of ten."""
     power = 10.0 ** math.floor(math.log10(step))
     return next(factor * power for factor in (1, 2, 5, 10) if factor * power >= step * (1 - 1e-9))

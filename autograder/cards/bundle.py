@@ -1,8 +1,8 @@
-"""Turn a verdict into the MIME bundle that a notebook displays: its text, and one self-contained piece of HTML.
+"""Turns a verdict into the MIME bundle that a notebook displays: its text, and one self-contained piece of HTML.
 
-The HTML contains no script, no id and no URL, so several cards can share a page and nothing is loaded.
-JupyterLab's sanitizer removes ``<style>``, ``<svg>`` and ``aria-*`` from a notebook that is not trusted. Even then the
-card is a heading, sentences and tables in the right order.
+The HTML contains no script, no id and no URL, so several cards can share a page and nothing is loaded. From a
+notebook that is not trusted, JupyterLab's sanitizer removes ``<style>``, ``<svg>`` and ``aria-*``. Even then the card
+is a heading, sentences and tables in the right order.
 """
 
 from __future__ import annotations
@@ -29,12 +29,13 @@ if TYPE_CHECKING:
 
 _SYMBOLS = {State.PASSED: "✓", State.FAILED: "✗", State.NOT_CHECKED: "?"}
 
-# Used only in an untrusted notebook, which has no style sheet: legible on white and on black.
+# These colors are used only in an untrusted notebook, which has no style sheet. They are legible on white and on
+# black.
 _PLAIN_COLOURS = {State.PASSED: "#2f8f57", State.FAILED: "#c8641a", State.NOT_CHECKED: "#6482c8"}
 
 
 def mimebundle(verdict: Verdict, **choices: Unpack[Choices]) -> dict[str, str]:
-    """Return the card for ``display(..., raw=True)``: HTML for browsers, text for other front ends."""
+    """Return the card as ``display(..., raw=True)`` takes it: HTML for browsers, text for other front ends."""
     html, text = card_html(verdict, buttons=True, **choices), card_text(verdict, **choices)
     return {"text/html": html, "text/plain": text}
 
@@ -44,8 +45,8 @@ def waiting_bundle(title: str, doing: str, *, over: bool = False) -> dict[str, s
 
     Args:
         title: The title of the exercise.
-        doing: The present step, or why there is no result.
-        over: True if the check has ended. Otherwise JupyterLab ends the card when the kernel ends.
+        doing: The current step, or why there is no result.
+        over: True if the check has ended. If False, JupyterLab ends the card when the kernel ends.
     """
     css, template = _templates()
     waiting = template.environment.get_template("waiting.html.j2")
@@ -60,12 +61,13 @@ def prepare() -> None:
 
 
 def card_html(verdict: Verdict, *, buttons: bool = False, **choices: Unpack[Choices]) -> str:
-    """Return a verdict as HTML for JupyterLab, nbgrader's feedback or any page; everything is escaped.
+    """Return a verdict as HTML, with all texts escaped: for JupyterLab, nbgrader's feedback or any other page.
 
     Args:
         verdict: The verdict.
-        buttons: True to add Check, Watch and Next, which only JupyterLab with the course's commands shows.
-        choices: Further options.
+        buttons: True to add the buttons Check, Watch and Next, which appear only in JupyterLab with the course's
+            commands.
+        choices: Further options for the card.
     """
     css, template = _templates()
     card = Card.of(verdict, ON_A_PAGE, **choices)
@@ -84,7 +86,7 @@ def card_html(verdict: Verdict, *, buttons: bool = False, **choices: Unpack[Choi
 
 @dataclass(frozen=True)
 class _Part:
-    """A part of the traffic: its picture, and a table row for each moment (time, lane, direction, words)."""
+    """A part of the traffic: its picture, and a row of the table for each moment (time, lane, direction, words)."""
 
     title: str
     label: str
@@ -117,8 +119,8 @@ class _Part:
 
 @cache
 def _templates() -> tuple[Any, Template]:
-    """Return the style sheet and the card's template; they are read once."""
-    # Imported on first use, because a terminal that only prints text does not need it.
+    """Return the style sheet and the template of the card. They are read only once."""
+    # Imported at the first use, because a terminal that only prints text does not need it.
     from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup
 
@@ -129,14 +131,14 @@ def _templates() -> tuple[Any, Template]:
     shapes: Any = environment.get_template("shapes.html.j2").module
     environment.globals |= {"shape": shapes.shape, "wording": wording}
     for name in environment.list_templates(extensions=["j2"]):
-        # Compile the included templates, too; otherwise the first card would wait for that.
+        # Compile the included templates now, or the first card would have to wait for that.
         environment.get_template(name)
     css = (files("autograder.cards") / "card.css").read_text(encoding="utf-8")
     return Markup(css), environment.get_template("card.html.j2")
 
 
 def _breakable(text: str) -> Any:
-    """Return ``text`` escaped, with a possible line break after each slash, because ROS names are long."""
+    """Return ``text`` escaped, with a possible line break after each slash, because names in ROS are long."""
     from markupsafe import Markup, escape
 
     return Markup("/<wbr/>").join(escape(part) for part in text.split("/"))

@@ -1,4 +1,4 @@
-"""Prepare the content of both kinds of card, HTML and text, as strings that are safe to show."""
+"""Prepares the content of both kinds of card, HTML and text, as strings that are safe to show."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ if TYPE_CHECKING:
     from autograder.verdict import CriterionResult, State, Verdict
 
 UNFOLDED = 16
-"""Longest traceback that is shown unfolded, in lines."""
+"""The maximum length of a traceback, in lines, that is shown unfolded."""
 SOLUTION_LINES = 120
 SOLUTION_COLUMNS = 200
-"""Limits of a cell of the reference solution, in lines and columns."""
+"""The maximum numbers of lines, and of characters in a line, of a cell of the reference solution."""
 
 
 @dataclass(frozen=True)
 class Form:
-    """The marks and limits of one kind of card.
+    """The marks and limits of one kind of card, HTML or text.
 
     Attributes:
-        mark: Replaces the part that is cut out of a text.
-        nothing: Replaces an empty text.
-        moments: Approximate limit of the moments of the traffic.
-        lines: Limit of a traceback or of output, in lines.
-        columns: Limit of such a line, in characters.
+        mark: The text that stands for a part that was cut out.
+        nothing: The text that stands for an empty text.
+        moments: The approximate maximum number of moments of the traffic.
+        lines: The maximum number of lines of a traceback or of output.
+        columns: The maximum length of such a line, in characters.
     """
 
     mark: str
@@ -46,13 +46,13 @@ IN_A_TERMINAL = Form("...", "-", moments=30, lines=60, columns=240)
 
 @dataclass(frozen=True)
 class Solution:
-    """The reference solution, which a card offers with full marks only.
+    """The reference solution, which a card offers only with full marks.
 
     Attributes:
         code: The solution cells, in order.
-        why: The reason why it is written this way, in one or two sentences.
-        other_way: The advantage of another way to write it; empty if there is none worth showing.
-        other_code: The code of that way.
+        why: One or two sentences about why it is written this way.
+        other_way: The advantage of another way to write it; empty if no other way is worth showing.
+        other_code: The code of that other way.
     """
 
     code: tuple[str, ...]
@@ -61,18 +61,18 @@ class Solution:
     other_code: str = ""
 
     def readable(self) -> Solution:
-        """Return the solution as strings that are safe to show."""
+        """Return the solution with strings that are safe to show."""
         code = tuple(_code(cell) for cell in self.code)
         other_way, other_code = paragraph(self.other_way, 600), _code(self.other_code)
         return Solution(code, paragraph(self.why, 600), other_way, other_code)
 
 
 class Choices(TypedDict, total=False):
-    """Options for showing a card.
+    """Options for how a card is shown.
 
     Attributes:
-        before: The points of the check before this one, if there was one.
-        notice: Why the card is out of date; the card is then dimmed. Empty if it is up to date.
+        before: The points of the previous check; None if there was none.
+        notice: Why the card is out of date, in which case it is dimmed; empty if it is up to date.
         solution: The reference solution, shown only with full marks.
         short: True to show only the points, what happened and what to do next.
     """
@@ -85,7 +85,7 @@ class Choices(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class CriterionRow:
-    """A criterion, with its points in words and as its share of the bar."""
+    """A criterion as the card shows it, with its points in words and as a fraction of the bar."""
 
     passed: bool
     word: str
@@ -121,14 +121,14 @@ class Card:
 
     Attributes:
         score_line: The points in words.
-        before: The points of the check before, if they were different; otherwise empty.
-        notice: Why the card is out of date; empty if it is not.
-        traffic: The traffic on the wire; its texts come from the subject.
-        traffic_notes: What is left out of the traffic.
-        place: The student's line in which the traceback ends.
+        before: The points of the previous check, if they were different; otherwise empty.
+        notice: Why the card is out of date; empty if it is up to date.
+        traffic: The traffic on the wire. Its texts come from the subject.
+        traffic_notes: Which parts of the traffic are left out.
+        place: The student's line in which the traceback ends; None if there is none.
         unfolded: True if the detail is short enough to be shown unfolded.
-        facts: The facts to quote in a question.
-        solution: The reference solution, if it is shown.
+        facts: The facts that a student should quote in a question.
+        solution: The reference solution; None if it is not shown.
     """
 
     state: State
@@ -164,7 +164,7 @@ class Card:
         solution: Solution | None = None,
         short: bool = False,
     ) -> Card:
-        """Return the card of a verdict in one form; the other arguments are its :class:`Choices`."""
+        """Return the card of a verdict in one form. For the other arguments see :class:`Choices`."""
         mark = form.mark
         advice = wording.advice(verdict)
         shown = traffic(verdict.timeline, at_most=form.moments)

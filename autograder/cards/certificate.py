@@ -1,4 +1,4 @@
-"""Draw the certificate for all points of a chapter, as one self-contained picture."""
+"""Draws the certificate for earning all points of a chapter, as one self-contained picture."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 WORDS = "Made on your own machine, and checked by the judge there. It is not a grade."
 """The line on each certificate that says what the certificate means."""
 _WIDTH = 42
-"""Limit of a line of the title, in characters."""
+"""The maximum length of a line of the title, in characters."""
 
 
 def certificate_svg(title: str, points: float, finished: float) -> str:
-    """Draw the certificate; everything is escaped.
+    """Return the certificate as SVG, with all texts escaped.
 
     Args:
-        title: The chapter's.
-        points: All of its points.
-        finished: When the last one was reached, in seconds since the epoch.
+        title: The title of the chapter.
+        points: The total points of the chapter.
+        finished: The Unix time in seconds at which the last point was reached.
     """
     return _template().render(
         label=certificate_text(title, points, finished),
@@ -42,15 +42,15 @@ def certificate_text(title: str, points: float, finished: float) -> str:
     """Return the certificate in words.
 
     Args:
-        title: The chapter's.
-        points: All of its points.
-        finished: When the last one was reached, in seconds since the epoch.
+        title: The title of the chapter.
+        points: The total points of the chapter.
+        finished: The Unix time in seconds at which the last point was reached.
     """
     return f"Chapter complete: {one_line(title, 160)}. {_points(points)}, {_date(finished)}. {WORDS}"
 
 
 def mimebundle(title: str, points: float, finished: float) -> dict[str, str]:
-    """The card for ``display(..., raw=True)``; the arguments are those of :func:`certificate_svg`."""
+    """Return the certificate as ``display(..., raw=True)`` takes it. For the arguments see :func:`certificate_svg`."""
     return {
         "text/html": f'<div class="agc-certificate">{certificate_svg(title, points, finished)}</div>',
         "text/plain": certificate_text(title, points, finished),

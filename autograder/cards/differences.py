@@ -1,4 +1,4 @@
-"""Compare two texts that should be the same, and mark what is missing and what is too much."""
+"""Compares two texts that should be equal, and marks what is missing and what is too much."""
 
 from __future__ import annotations
 
@@ -15,17 +15,18 @@ if TYPE_CHECKING:
     from autograder.verdict import CriterionResult
 
 ALIKE = 0.5
-"""Least similarity of two texts, from 0 to 1; a difference between unlike texts does not help."""
+"""The minimum similarity of two texts, from 0 to 1, to show their difference. Between unlike texts it would not help.
+"""
 LONGEST = 120
-"""Limit of a compared text, in characters: the time grows with the square of the length."""
+"""The maximum length of a compared text, in characters, because the time grows with the square of the length."""
 _QUOTED = re2.compile("“([^“”]*)”")
 _BLANK = "␣"
 _PLACE = "N"
-"""Stands for any whole number in an expected text."""
+"""The letter that stands for any whole number in an expected text."""
 
 
 class DiffTag(StrEnum):
-    """The kind of a piece of the text."""
+    """The kind of a piece of text: equal, missing, or too much."""
 
     SAME = "same"
     MISSING = "missing"
@@ -34,7 +35,7 @@ class DiffTag(StrEnum):
 
 @dataclass(frozen=True)
 class TextPiece:
-    """Successive characters of one kind."""
+    """A run of characters of the same kind."""
 
     kind: DiffTag
     text: str
@@ -51,7 +52,7 @@ class TextPiece:
 def difference(criterion: CriterionResult) -> tuple[TextPiece, ...]:
     """Return the difference between the first quoted text that was seen and the first one that was expected.
 
-    It is empty if the criterion holds, if either has no such text, or if the texts are equal or unlike.
+    It is empty if the criterion is met, if one of the two has no quoted text, or if the texts are equal or unlike.
     """
     if criterion.passed:
         return ()

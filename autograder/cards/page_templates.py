@@ -1,4 +1,4 @@
-"""Load templates of pages. Values are escaped, and an undefined name is an error."""
+"""Loads templates of HTML pages. Values are escaped, and an undefined name is an error."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 
 def page_templates(package: str) -> Environment:
-    """Return the templates in a package's folder.
+    """Return the templates in the folder of a package.
 
     Args:
         package: The name of the package, such as ``"autograder.student"``.

@@ -1,8 +1,8 @@
-r"""Make text that a student's program produced safe and legible to show.
+r"""Makes text from a student's program safe and legible to show.
 
-A subject may log anything: color codes, bidirectional overrides that reverse a line, a megabyte on one
-line. A card must show what was really said, so nothing is dropped silently: a character is written as an escape that
-a Python programmer knows (``\x1b``), or the text is cut in the middle with a mark.
+A subject may log anything: color codes, bidirectional overrides that reverse a line, a megabyte on one line. A card
+must show what was really said, so nothing is dropped silently. A special character is written as an escape that a
+Python programmer knows (``\x1b``). A long text is cut in the middle, with a mark.
 """
 
 from __future__ import annotations
@@ -13,53 +13,54 @@ import unicodedata
 
 import re2
 
-# Sets a color or style in a terminal and contains no text (ECMA-48, "SGR").
+# Matches a code that sets a color or style in a terminal and contains no text (ECMA-48, "SGR").
 _COLOUR_CODE = re2.compile(r"\x1b\[[0-9;:]*m")
 
-# Joiners shape Persian words and family emoji; the other format characters are invisible or reorder a line.
+# These are kept: joiners shape Persian words and family emoji. All other format characters are invisible or reorder a
+# line.
 _HARMLESS_FORMAT = frozenset("\u200c\u200d\u00ad")
 
 _NAMED_ESCAPES = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
 
 def printable(text: str) -> str:
-    """Return ``text`` of any length, with characters that could forge a line or move the cursor as escapes."""
+    """Return ``text`` with those characters written as escapes that could forge a line or move the cursor."""
     return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
 
 
 def printable_json(text: str) -> str:
-    """Return JSON in which characters that move the cursor or reverse a line are escaped; its value is the same.
+    """Return equivalent JSON in which characters that move the cursor or reverse a line are escaped.
 
     Args:
-        text: JSON on one line.
+        text: JSON on a single line.
     """
     return "".join(c if c.isprintable() else json.dumps(c)[1:-1] for c in text)
 
 
 def one_line(text: str, limit: int, *, mark: str = "…") -> str:
-    """Return ``text`` on one line, with control characters as escapes, cut in the middle to ``limit``.
+    """Return ``text`` on one line, with control characters as escapes, cut in the middle to ``limit`` characters.
 
     Args:
-        text: Any text, even with lone surrogates and NUL.
-        limit: Limit of the result in characters, with the mark.
-        mark: Replaces the part that is cut out.
+        text: Any text; it may contain lone surrogates and NUL.
+        limit: The maximum length of the result in characters, including the mark.
+        mark: The text that stands for the part that was cut out.
     """
-    # Escaping makes a text longer, never shorter. So cut first, instead of escaping a megabyte.
+    # Cut first, because escaping makes a text only longer, and escaping a megabyte would take long.
     text = _cut(text, 4 * limit, mark)
-    # All escaped characters are not printable (Python's "isprintable"), and few texts contain any.
+    # Characters that need escaping are never printable (Python's "isprintable"), and few texts contain any.
     return _cut(text if text.isprintable() else "".join(map(_escaped, text)), limit, mark)
 
 
 def paragraph(text: str, limit: int, *, mark: str = "…") -> str:
-    """Return ``text`` as one paragraph: white space becomes one blank, the rest is as in `one_line`."""
+    """Return ``text`` as one paragraph: each run of whitespace becomes a space; otherwise as in `one_line`."""
     return one_line(" ".join(_cut(text, 8 * limit, mark).split()), limit, mark=mark)
 
 
 def block(text: str, *, max_lines: int, max_columns: int, mark: str = "…") -> list[str]:
-    """Return the lines of a traceback or of output, without color codes, with other control characters escaped.
+    """Return the lines of a traceback or of output without color codes, and with other control characters escaped.
 
-    Of more than ``max_lines`` lines, some of the first and twice as many of the last are kept: a traceback says
-    the most at its end.
+    If there are more than ``max_lines`` lines, some of the first and twice as many of the last are kept, because a
+    traceback says the most at its end.
     """
     lines = _COLOUR_CODE.sub("", text).replace("\r\n", "\n").strip("\n").split("\n")
     if len(lines) > max_lines:
@@ -71,16 +72,16 @@ def block(text: str, *, max_lines: int, max_columns: int, mark: str = "…") -> 
 
 
 def width(text: str) -> int:
-    """Return the columns of ``text`` in a fixed-width font: East Asian characters take two, accents none."""
+    """Return the width of ``text`` in columns of a fixed-width font. East Asian characters take two, accents none."""
     return len(text) if text.isascii() else sum(map(_columns, text))
 
 
 def wrap(text: str, limit: int, first: str = "", later: str = "") -> list[str]:
-    """Break one line into lines of at most ``limit`` columns, at blanks if possible.
+    """Break one line into lines of at most ``limit`` columns, at spaces if possible.
 
     Args:
         text: A line without control characters.
-        limit: Columns, with the indent; the indents must leave room for a wide character.
+        limit: The maximum width in columns, including the indent. The indents must leave space for a wide character.
         first: The indent of the first line.
         later: The indent of all others.
     """

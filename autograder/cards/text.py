@@ -1,7 +1,7 @@
-"""Show a verdict as plain text: in terminals, in logs and for screen readers.
+"""Shows a verdict as plain text: in terminals, in logs and for screen readers.
 
-The text says what the HTML card says, in the same words and order. Its marks are ASCII only, so that any
-terminal can show it. It has no columns, which a screen reader would read in the wrong order.
+The text has the same words as the HTML card, in the same order. Its marks are ASCII only, so that any terminal can
+show them. It has no columns, because a screen reader would read them in the wrong order.
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ def card_text(
 
     Args:
         verdict: The verdict.
-        width: Length of a line in columns, at least 40. Lines of a traceback may be longer.
-        color: True to add ANSI codes (bold, and a color for the state); the text says the same without them.
-        choices: Further options.
+        width: The maximum length of a line in columns, at least 40. Lines of a traceback may be longer.
+        color: True to add ANSI codes (bold, and a color for the state). The text says the same without them.
+        choices: Further options for the card.
 
     Returns:
-        The lines, without a newline at the end.
+        The lines as one text, without a newline at the end.
     """
     card = Card.of(verdict, IN_A_TERMINAL, **choices)
     return "\n".join(_Writer(max(width, _NARROWEST), color).card(card))
@@ -166,5 +166,5 @@ class _Writer:
 
 
 def _listing(lines: Iterable[str]) -> Iterator[str]:
-    """Return lines of code or output, unchanged."""
+    """Yield lines of code or output, indented but otherwise unchanged."""
     return (f"  | {line}".rstrip() for line in lines)

@@ -1,9 +1,9 @@
-"""Compute the layout of the traffic picture, which ``traffic.html.j2`` draws.
+"""Computes the layout of the traffic picture, which ``traffic.html.j2`` draws.
 
-One picture is one part of the check: a row (lane) for each name on the graph, time from left to right. Marks
-that would cover each other are drawn one below the other.
-Lengths along the time axis are computed for the narrowest picture and stored as percentages, so that a
-wider card only gets more space; heights are pixels. No label covers another label or a leader line.
+A picture shows one part of the check: a row (lane) for each name on the graph, and time from left to right. Marks
+that would cover each other are drawn one below the other. Lengths along the time axis are computed for the narrowest
+picture and stored as percentages, so that a wider card only gets more space. Heights are in pixels. No label covers
+another label or a leader line.
 """
 
 from __future__ import annotations
@@ -21,40 +21,40 @@ if TYPE_CHECKING:
     from autograder.cards.traffic import TrafficPart
 
 WIDTH = 600
-"""Pixels of the narrowest picture in which nothing overlaps; narrower windows scroll."""
+"""The width in pixels of the narrowest picture in which nothing overlaps. Narrower windows scroll."""
 HALF_WIDTH = 430
-"""Like WIDTH, for a check with many parts, so that a wide card shows two pictures side by side."""
+"""Like WIDTH, but for a check with many parts, so that a wide card can show two pictures side by side."""
 
 _MANY = 8
-"""Number of moments in a lane from which optional labels stay on one level, to keep the lane readable."""
+"""From this number of moments in a lane, optional labels stay on one level, so that the lane stays readable."""
 _LEVELS = 4
 
 _FEW = 5
-"""Number of moments in a lane up to which labels are long."""
+"""Up to this number of moments in a lane, labels may be long."""
 _MARK = 11.0
-"""Width of a mark in pixels: nearer marks are drawn one below the other."""
+"""The width of a mark in pixels. Marks that are nearer than this are drawn one below the other."""
 _ROWS = 3
-"""Limit of the rows of marks in a lane; further marks cover each other."""
+"""The maximum number of rows of marks in a lane. Further marks cover each other."""
 _LEVEL_HEIGHT = 14
 _LANE_HEAD = 8
 _LANE_FOOT = 10
 _AXIS_HEIGHT = 18
 _READING_HEIGHT = 16
-"""Height below the axis, in pixels, for the text of the mark that the pointer is on."""
+"""The height below the axis, in pixels, for the text of the mark under the pointer."""
 
 
 @dataclass(frozen=True)
 class Mark:
-    """One moment in the picture.
+    """A mark in the picture, which stands for one moment.
 
     Attributes:
-        x: Percent of the picture's width.
-        y: Pixels from the top.
-        direction: As in ``Moment``.
-        stray: As in ``Moment``.
+        x: The distance from the left, in percent of the picture's width.
+        y: The distance from the top, in pixels.
+        direction: The direction of the moment, as in ``Moment``.
+        stray: True if the moment is irrelevant for the task, as in ``Moment``.
         label: The text next to the mark; empty if there was no space.
-        label_y: The label's base line, pixels from the top.
-        to_the_left: True if the label is left of the mark.
+        label_y: The distance of the label's base line from the top, in pixels.
+        to_the_left: True if the label is to the left of the mark.
         tooltip: The moment in one sentence.
     """
 
@@ -70,9 +70,9 @@ class Mark:
 
 @dataclass(frozen=True)
 class Lane:
-    """One row: its name, the base lines of the name and of the row (pixels), and its marks.
+    """A lane of the picture: its name, the base lines of the name and of the row (in pixels), and its marks.
 
-    ``stray`` is True if the task asks for none of it, such as a wrong topic.
+    ``stray`` is True if the task asks for nothing in this lane, for example on a wrong topic.
     """
 
     name: str
@@ -87,14 +87,14 @@ class Picture:
     """A whole picture.
 
     Attributes:
-        lanes: Its rows, from the top.
-        ticks: The ticks of its axis, with x in percent of the width.
-        axis_y: Pixels from the top to the axis.
-        width: Least width in pixels.
-        height: Height in pixels.
-        summary: The picture in words.
-        breaks: The positions of left-out moments, in percent.
-        reading_y: The base line of the text of the mark that the pointer is on.
+        lanes: The lanes, from top to bottom.
+        ticks: The ticks of the axis, with x in percent of the width.
+        axis_y: The distance of the axis from the top, in pixels.
+        width: The minimum width in pixels.
+        height: The height in pixels.
+        summary: The content of the picture, in words.
+        breaks: The positions at which moments were left out, in percent of the width.
+        reading_y: The base line of the text of the mark under the pointer, in pixels from the top.
     """
 
     lanes: tuple[Lane, ...]
@@ -111,8 +111,8 @@ def picture(part: TrafficPart, width: int = WIDTH) -> Picture:
     """Lay out one part of the traffic.
 
     Args:
-        part: The part to draw; it must have moments.
-        width: Width of the narrowest picture, in pixels.
+        part: The part to draw. It must have moments.
+        width: The width of the narrowest picture, in pixels.
     """
     moments = part.moments
     labels = _labels(part)
@@ -145,7 +145,7 @@ def _lane(
     labels: Sequence[str],
     xs: Sequence[float],
 ) -> tuple[Lane, float]:
-    """Return one lane, and the pixel at which it ends."""
+    """Return one lane, and the vertical position in pixels at which it ends."""
     moments = part.moments
     placed = _flags([_Wish(labels[i], xs[i], needed=moments[i].key) for i in members])
     text = one_line(name, 60)
@@ -174,7 +174,7 @@ def _lane(
 
 
 def _rows(xs: Sequence[float]) -> list[int]:
-    """Return for each mark of a lane a row in which it covers no other mark, or else the last row."""
+    """Return, for each mark of a lane, a row in which it covers no other mark; if there is none, the last row."""
     taken = [-1000.0] * _ROWS
     rows = []
     for x in xs:
@@ -185,7 +185,7 @@ def _rows(xs: Sequence[float]) -> list[int]:
 
 
 def _labels(part: TrafficPart) -> list[str]:
-    """Return the labels to draw, shortened; in a full lane, words that repeat the previous label are left out."""
+    """Return the labels to draw, shortened. In a full lane, words that repeat the previous label are left out."""
     counts = {lane: sum(moment.lane == lane for moment in part.moments) for lane in part.lanes}
     before: dict[tuple[str, str], str] = {}
     labels = []
@@ -199,7 +199,7 @@ def _labels(part: TrafficPart) -> list[str]:
 
 
 def _continued(previous: str, label: str) -> str:
-    """Return ``label`` without the words it shares with ``previous``; empty if both are equal."""
+    """Return ``label`` without the words that it shares with ``previous``; empty if the two are equal."""
     if label == previous:
         return ""
     shared = next((i for i, (a, b) in enumerate(zip(previous, label, strict=False)) if a != b), len(previous))
@@ -213,7 +213,7 @@ def _percent(x: float, width: int) -> float:
 
 @dataclass(frozen=True)
 class _Wish:
-    """A label to place: its text, the mark's x in pixels, and whether it must be shown."""
+    """A label that needs a position: its text, the x of its mark in pixels, and whether it must be shown."""
 
     label: str
     x: float
@@ -222,7 +222,7 @@ class _Wish:
 
 @dataclass(frozen=True)
 class _Flag:
-    """A placed label: a leader line ``level`` rows high at ``pole``, text from ``left`` to ``right``."""
+    """A label with a position: a leader line ``level`` rows high at ``pole``, and text from ``left`` to ``right``."""
 
     level: int
     pole: float
@@ -230,7 +230,7 @@ class _Flag:
     right: float
 
     def clear_of(self, other: _Flag) -> bool:
-        """Return True if the two texts do not touch and neither leader line crosses the other's text."""
+        """Return True if the two texts do not touch, and neither leader line crosses the other's text."""
         if self.level == other.level:
             return self.right + 4 <= other.left or other.right + 4 <= self.left
         upper, lower = (self, other) if self.level > other.level else (other, self)
@@ -238,15 +238,15 @@ class _Flag:
 
 
 def _length(label: str) -> float:
-    """Return the pixels from a mark to the end of its label."""
+    """Return the distance in pixels from a mark to the end of its label."""
     return 5 + readable.width(label) * CHARACTER
 
 
 def _flags(wishes: Sequence[_Wish]) -> list[_Flag | None]:
-    """Return a position for each label of a lane, in order of x, or None if there is no space.
+    """Return a position for each label of a lane, in order of x; None for a label for which there is no space.
 
-    Labels are placed from right to left: an earlier label is then above the later ones and its leader crosses none.
-    So labels that must be shown, which are placed first, always find a position.
+    Labels are placed from right to left, so that an earlier label is above the later ones and its leader line crosses
+    none. Labels that must be shown are placed first, and so always find a position.
     """
     many = len(wishes) > _MANY
     found: list[_Flag | None] = [None] * len(wishes)
@@ -256,7 +256,7 @@ def _flags(wishes: Sequence[_Wish]) -> list[_Flag | None]:
             wish = wishes[index]
             if not wish.label or wish.needed is not needed:
                 continue
-            # The first label may get a row of its own, because the others continue its words.
+            # The first label may get a row of its own, because the other labels continue its words.
             levels = len(wishes) + 1 if needed else (1 if many else _LEVELS) + (index == 0)
             before = wishes[index - 1].x if index else 0.0
             flag = _place(wish, levels, placed, free_left=0.0 if many else wish.x - before)
@@ -267,7 +267,7 @@ def _flags(wishes: Sequence[_Wish]) -> list[_Flag | None]:
 
 
 def _place(wish: _Wish, levels: int, placed: Sequence[_Flag], *, free_left: float) -> _Flag | None:
-    """Return the lowest free position right of the mark, or else within ``free_left`` pixels left of it."""
+    """Return the lowest free position to the right of the mark, or else within ``free_left`` pixels to its left."""
     x, long = wish.x, _length(wish.label)
     for left in (x, x - long) if long < free_left and not wish.needed else (x,):
         for level in range(levels):

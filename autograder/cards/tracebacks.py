@@ -1,4 +1,4 @@
-"""Find the student's line in which a traceback ends."""
+"""Finds the student's line in which a traceback ends."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ TRACEBACK = "Traceback (most recent call last)"
 _FRAME = re2.compile(r'^ +File "(?P<file>[^"]*)", line (?P<line>\d+)')
 _LIBRARIES = ("/site-packages/", "/lib/python3", "/opt/ros/", "<frozen")
 _BUILT = re2.compile(r"/install/(?:[^/.]+/)?lib/python3[^/]*/site-packages/")
-"""The folder into which a build installs a workspace's modules, which the student wrote."""
+"""Matches the folder into which a build installs a workspace's modules, which the student wrote."""
 _CALLED_BY_ROS = "/rclpy/task.py"
-"""The rclpy file that follows a line that spins in a traceback, if a callback failed and not that line."""
+"""The rclpy file that follows, in a traceback, the line that spins, if a callback failed and not that line."""
 _CANNOT_BE_READ = ("SyntaxError", "IndentationError", "TabError")
-"""Errors without a traceback, because Python cannot start the program."""
+"""Errors that have no traceback, because Python cannot start the program."""
 _SCRIPT = re2.compile(r"/lib/[^/]+/[^/.]+$")
-"""The generated file of an entry point, which ``ros2 run`` starts: the student did not write it."""
+"""Matches the generated file of an entry point, which ``ros2 run`` starts and the student did not write."""
 _CALLED_WITH = "Invoked with: "
 _FORM_OF_CALL = re2.compile(r"\d+\. \(")
-"""One of the possible signatures that an error of pybind11 lists."""
+"""Matches a line with one of the signatures that an error of pybind11 lists."""
 _CELLS = ("/ipykernel_", "<ipython-input")
 
 
 @dataclass(frozen=True)
 class TracebackPlace:
-    """The line in which a program failed.
+    """The student's line in which a program failed.
 
     Attributes:
-        where: ``"Line 11 of your cell"``, or the line of a file.
-        quote: The text of the line without its indentation; empty if it is not known.
+        where: The position, such as ``"Line 11 of your cell"``, or the line of a file.
+        quote: The text of the line without indentation; empty if unknown.
         error: The exception, such as ``"AttributeError: 'Talker' object has no attribute 'nmae'"``.
     """
 
@@ -39,7 +39,7 @@ class TracebackPlace:
 
 
 def last_error(detail: str) -> str:
-    """Return the last line that is not empty: the exception, if the text is a traceback."""
+    """Return the last line that is not empty. If the text is a traceback, this is the exception."""
     told = (line.strip() for line in reversed(detail.splitlines()) if not line.startswith(_CALLED_WITH))
     return next((line for line in told if line and not _FORM_OF_CALL.match(line)), "")
 
@@ -47,7 +47,7 @@ def last_error(detail: str) -> str:
 def place(detail: str) -> TracebackPlace | None:
     """Return the student's last line in the last traceback of a text.
 
-    None if there is none, or if that line only spins: the mistake is in a callback then.
+    It returns None if there is no such line, or if the line only spins, because the mistake is then in a callback.
     """
     lines = detail.splitlines()
     error = last_error(detail)

@@ -1,6 +1,6 @@
-"""Choose the moments of a check that a card shows, and group them by part.
+"""Chooses the moments of a check that a card shows, and groups them by part.
 
-A judge may have seen hundreds of messages; a card shows a few dozen. Every part of the check gets an equal
+A judge may have seen hundreds of messages, but a card shows only a few dozen. Every part of the check gets an equal
 share, and the card says how many moments are left out.
 """
 
@@ -18,27 +18,27 @@ if TYPE_CHECKING:
     from autograder.verdict import Moment
 
 OTHER_LANES = "other names"
-"""The lane for the moments of the emptiest lanes, in a part with more than `MAX_LANES` lanes."""
+"""In a part with more than `MAX_LANES` lanes, the lane that takes the moments of the emptiest ones."""
 
 OWN_LANE = "your code"
-"""The lane of the program's own events, such as its end."""
+"""The lane for events of the program itself, such as its end."""
 
 MAX_LANES = 8
 _MAX_PARTS = 12
 _LAST = {OTHER_LANES: 1, "log": 2, "printed": 3, OWN_LANE: 4}
 _TOGETHER = 3
-"""Limit of moments of a lane at one simulated time; if there are more, the clock did not cause them."""
+"""The maximum number of moments in a lane at one simulated time. If there are more, the clock did not cause them."""
 
 
 @dataclass(frozen=True)
 class TrafficPart:
-    """One part of the check on one axis.
+    """One part of the check, shown on one time axis.
 
     Attributes:
-        title: The part's name; empty if the check has only one part.
-        simulated: True if the times are simulated seconds.
-        moments: The moments in order of time.
-        gaps: The number of moments left out after a moment, by its index.
+        title: The name of the part; empty if the check has only one part.
+        simulated: True if the times are in simulated seconds.
+        moments: The moments, sorted by time.
+        gaps: The number of moments that were left out after a moment, by that moment's index.
     """
 
     title: str
@@ -48,18 +48,18 @@ class TrafficPart:
 
     @property
     def left_out(self) -> int:
-        """The number of moments left out."""
+        """The number of moments that were left out."""
         return sum(self.gaps.values())
 
     @property
     def lanes(self) -> tuple[str, ...]:
-        """The lanes: names on the graph in order of their first moment, then logged and printed lines."""
+        """The lanes: first names on the graph, by their first moment; then logged and printed lines."""
         found = dict.fromkeys(moment.lane for moment in self.moments)
         return tuple(sorted(found, key=lambda lane: _LAST.get(lane, 0)))
 
     @property
     def kind_of_time(self) -> str:
-        """The quantity on the axis, in words."""
+        """The kind of time on the axis, in words."""
         return "simulated time" if self.simulated else "time"
 
     @functools.cached_property
@@ -71,14 +71,14 @@ class TrafficPart:
         return self.simulated and max(together.values(), default=0) > _TOGETHER
 
     def when(self, index: int) -> str:
-        """Return the time of a moment, ``"0.500 s"``, or its number, ``"no. 3"``, if time stood still."""
+        """Return the time of a moment, ``"0.500 s"``; if all times are the same, its number, ``"no. 3"``."""
         if self.stands_still and len(self.moments) > 1:
             return f"no. {index + 1}"
         return f"{self.moments[index].t:.3f} s"
 
     @property
     def is_worth_a_picture(self) -> bool:
-        """True if anything was on the graph or in the log. The card tells the end of a program elsewhere."""
+        """True if there was any traffic on the graph or in the log. The card shows the end of a program elsewhere."""
         return any(moment.lane != OWN_LANE for moment in self.moments)
 
 
@@ -87,7 +87,7 @@ class Traffic:
     """The traffic that a card shows.
 
     Attributes:
-        parts: The parts, in order.
+        parts: The parts that are shown, in order.
         parts_left_out: The number of parts that are not shown.
     """
 
@@ -96,7 +96,7 @@ class Traffic:
 
     @property
     def left_out(self) -> int:
-        """The number of moments left out of the shown parts."""
+        """The number of moments that are left out of the shown parts."""
         return sum(part.left_out for part in self.parts)
 
     @property
@@ -106,10 +106,10 @@ class Traffic:
 
 
 def traffic(timeline: Sequence[Moment], *, at_most: int) -> Traffic:
-    """Group a timeline by part and keep about ``at_most`` of its moments."""
+    """Group a timeline by part, and keep about ``at_most`` of its moments."""
     groups: dict[tuple[str, bool], list[Moment]] = {}
     for moment in timeline:
-        # One axis shows one kind of time, so a part with both kinds is split.
+        # One axis shows one kind of time, so a part that has both kinds is split.
         groups.setdefault((moment.part, moment.simulated), []).append(_with_finite_time(moment))
     shown = list(groups.items())[:_MAX_PARTS]
     total = sum(len(moments) for _, moments in shown)
@@ -122,9 +122,10 @@ def traffic(timeline: Sequence[Moment], *, at_most: int) -> Traffic:
 
 def _part(title: str, simulated: bool, moments: list[Moment], share: int) -> TrafficPart:
     ordered = _few_lanes(sorted(moments, key=lambda moment: moment.t))
-    if len(ordered) <= share + 2:  # leaving out one or two is not worth it
+    if len(ordered) <= share + 2:  # leaving out only one or two would not be worth it
         return TrafficPart(title, simulated, tuple(ordered))
-    # The beginning shows the pattern and the end shows the outcome. The middle repeats, except for important moments.
+    # Keep both ends: the beginning shows the pattern and the end shows the outcome. The middle repeats, except for
+    # important moments.
     tail = share // 3
     head = share - tail
     kept: list[Moment] = []

@@ -1,4 +1,4 @@
-"""The words of both kinds of card, so that HTML and text never say different things."""
+"""The words that both kinds of card use, so that HTML and text never say different things."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ _TRY_AGAIN = "Run the check again. If this card comes back, show it to your inst
 
 @dataclass(frozen=True)
 class AdviceBlock:
-    """The prominent block of a card: what happened, and what to do now.
+    """The prominent block of a card, which says what happened and what to do now.
 
     Attributes:
-        heading: Such as ``"What happened"``; empty if the text needs none.
+        heading: The heading, such as ``"What happened"``; empty if the text needs none.
         text: One to three sentences.
-        next_step: What to do now, as a command; empty if there is nothing left to do.
+        next_step: What to do now, in the imperative; empty if there is nothing left to do.
     """
 
     heading: str
@@ -58,7 +58,7 @@ class AdviceBlock:
 
 
 def advice(verdict: Verdict) -> AdviceBlock:
-    """Return the advice that a student should read first, even if the judge knows no name for the mistake."""
+    """Return the advice that a student should read first. There is always some, even if the mistake is unknown."""
     if verdict.state is State.PASSED:
         return AdviceBlock("", "Well done: your code did everything that was asked for.")
     diagnosis = verdict.diagnosis
@@ -85,7 +85,7 @@ def points(value: float) -> str:
 
 
 def unit(value: float) -> str:
-    """Return the word after a number of points: point or points."""
+    """Return the word after a number of points: "point" or "points"."""
     return "point" if value == 1 else "points"
 
 
@@ -95,11 +95,11 @@ def points_of(earned: float, possible: float) -> str:
 
 
 def score_line(verdict: Verdict, before: float | None = None) -> str:
-    """Return the points in words. A check that could not be made has no points, which is not zero.
+    """Return the points in words. A check that could not be made has no points, which differs from zero.
 
     Args:
         verdict: The verdict.
-        before: The points of the check before this one, if there was one.
+        before: The points of the previous check; None if there was none.
     """
     if verdict.state is State.NOT_CHECKED:
         return f"no points counted (of {points(verdict.max_score)})"
@@ -108,14 +108,14 @@ def score_line(verdict: Verdict, before: float | None = None) -> str:
 
 
 def points_before(verdict: Verdict, before: float | None) -> str:
-    """Return the points of the check before, if they were different; otherwise empty."""
+    """Return the points of the previous check in words if they were different; otherwise an empty text."""
     if before is None or verdict.state is State.NOT_CHECKED or before == verdict.score:
         return ""
     return points(before)
 
 
 def tally(verdict: Verdict) -> str:
-    """Return the number of criteria that hold, such as ``"3 of 4 criteria hold"``; empty if there are none."""
+    """Return how many criteria are met, such as ``"3 of 4 criteria hold"``; empty if there are no criteria."""
     if not verdict.criteria:
         return ""
     held = sum(criterion.passed for criterion in verdict.criteria)
@@ -128,10 +128,10 @@ def tally(verdict: Verdict) -> str:
 
 
 def fine_print(verdict: Verdict) -> list[str]:
-    """Return the facts to quote in a question or an appeal: exercise id, diagnosis, seed and time of the check."""
+    """Return the facts to quote in a question or an appeal: exercise id, diagnosis, seed and duration of the check."""
     parts = [verdict.exercise]
     if verdict.diagnosis:
-        parts.append(verdict.diagnosis.key)  # docs/mistakes.md explains each
+        parts.append(verdict.diagnosis.key)  # docs/mistakes.md explains each diagnosis under its key
     if verdict.seed:
         parts.append(f"seed {verdict.seed}")
     if verdict.seconds > 0:
@@ -140,19 +140,19 @@ def fine_print(verdict: Verdict) -> list[str]:
 
 
 def duration(seconds: float) -> str:
-    """Return a time such as ``"0.84 s"`` or ``"12.3 s"``."""
+    """Return a duration such as ``"0.84 s"`` or ``"12.3 s"``."""
     return f"{seconds:.2f} s" if seconds < 10 else f"{seconds:.1f} s"
 
 
 def detail_heading(detail: str) -> str:
-    """Return the heading of the detail, with its most important line: the exception of a traceback."""
+    """Return the heading of the detail, with the most important line: for a traceback, its exception."""
     if TRACEBACK in detail:
         return f"The traceback, ending in: {last_error(detail)}"
     return "The last lines of output"
 
 
 def traffic_notes(shown: Traffic) -> str:
-    """Return notes on the shown traffic: its kind of time, and what is left out."""
+    """Return notes on the traffic that is shown: its kind of time, and what is left out."""
     notes = []
     if shown.simulated:
         notes.append("Simulated time: the judge moved your node's clock, so these seconds pass faster.")
@@ -171,11 +171,11 @@ def direction(key: str) -> str:
 
 
 def moment_in_words(moment: Moment, when: str) -> str:
-    """Return a moment as ``"at 0.500 s on chatter, from your code: Hello, world! 0"``.
+    """Return a moment in words, such as ``"at 0.500 s on chatter, from your code: Hello, world! 0"``.
 
     Args:
         moment: The moment.
-        when: The time of the moment, or its number if time stood still.
+        when: The time of the moment; if all times are the same, its number.
     """
     where = one_line(moment.lane, 60)
     at = when if when.startswith("no.") else f"at {when}"
@@ -183,7 +183,7 @@ def moment_in_words(moment: Moment, when: str) -> str:
 
 
 def part_in_words(part: TrafficPart) -> str:
-    """Return a picture of the traffic in words, one sentence for each lane."""
+    """Return the content of a picture in words, one sentence for each lane."""
     return " ".join(_lane_in_words(part, lane) for lane in part.lanes)
 
 

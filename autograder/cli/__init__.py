@@ -1,7 +1,7 @@
-"""Define the ``autograder`` command. Each command calls the part that does the work.
+"""The ``autograder`` command. Each of its commands calls the part of the package that does the work.
 
-Exit codes: 0 success, 1 the answer is no (a failed check, notebooks out of date), 2 it could not be done (bad
-input, or an error of the grader). Imports are inside the commands, so that ``check`` starts fast.
+Exit codes: 0 for success; 1 if the answer is no (a failed check, notebooks out of date); 2 if the command could not
+be done (bad input, or an error of the grader). Imports are inside the commands, so that ``check`` starts fast.
 """
 
 from __future__ import annotations
@@ -19,15 +19,17 @@ GROUPS = {
     "Instructors, its results": (*reports.COMMANDS, *appeals.COMMANDS),
     "Authors": authors.COMMANDS,
 }
-"""The commands by the people who type them, in the order of the help."""
+"""The commands grouped by the people who type them, in the order in which the help lists them."""
 _HERE = (instructors.new_class, instructors.hand_out, students.lab, students.progress, students.reset)
 IN_A_COURSE = {str(command.name) for command in (*_HERE, *authors.COMMANDS)}
-"""The commands that work on the course around the current folder, besides `check` of one's own program. Every other
-command for a class uses the course that `new-class` recorded: students' work could hold a course of their own."""
+"""The commands that work on the course around the current folder, in addition to `check` for one's own program. Every
+other command is for a class and uses the course that `new-class` recorded, because students' work could contain a
+course of their own.
+"""
 
 
 class _Groups(click.Group):
-    """A command whose help lists its subcommands by the people who type them."""
+    """A command whose help lists its subcommands grouped by the people who type them."""
 
     def format_commands(self, _ctx: click.Context, formatter: click.HelpFormatter) -> None:
         for title, commands in GROUPS.items():

@@ -23,13 +23,15 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 _MAX_COLUMNS = 4_000
-"""Limit of a printed line, in characters; a line with an expected and a seen text in full has half of that."""
+"""The maximum length of a printed line, in characters. The longest usual line, with an expected and a seen text in
+full, has half of that.
+"""
 _MAX_LINES = 100
-"""Limit of the printed differences, and of the notes; no exercise has a third as many criteria."""
+"""The maximum number of printed differences, and of printed notes. No exercise has a third as many criteria."""
 
 
 def _fail(message: str) -> NoReturn:
-    """End with a message that may contain text of another person."""
+    """End the command with a message that may contain text written by another person."""
     fail(_shown(message))
 
 
@@ -76,7 +78,7 @@ def appeal(folder: Path, student: str, exercise: str, output: Path | None) -> No
 
 
 def _shown(line: str) -> str:
-    """Return a line that is safe to print: the file may contain any text of any length."""
+    """Return a line in a form that is safe to print, because the file may contain any text of any length."""
     return printable(line if len(line) <= _MAX_COLUMNS else f"{line[:_MAX_COLUMNS]}…")
 
 
@@ -115,7 +117,7 @@ def replay(file: Path, mcap: Path | None, bag: Path | None, as_json: bool) -> No
         lines = list(_lines(appeal, again))
     except (appeal_file.BadAppeal, replaying.CannotReplay) as error:
         _fail(str(error))
-    except Exception as error:  # the file may contain anything
+    except Exception as error:  # the file may contain anything, so anything may be raised
         _fail(
             f"{file} is not a valid appeal file ({type(error).__name__}: {error}). It was edited, or comes from "
             "a different version of the course: use that version."
@@ -129,13 +131,13 @@ def replay(file: Path, mcap: Path | None, bag: Path | None, as_json: bool) -> No
 
 
 def check_name(path: Path) -> None:
-    """End with exit code 2 if the name of a file of messages does not end in .mcap."""
+    """End with exit code 2 if the name of a file for messages does not end in .mcap."""
     if path.suffix != ".mcap":
         _fail(f"the name of a file of messages ends in .mcap, such as check.mcap; {path.name} does not")
 
 
 def save_messages(seen: Kept, path: Path) -> str:
-    """Write the messages of a check as MCAP, and return a line about it. End with exit code 2 if that fails."""
+    """Write the messages of a check as MCAP, and return a line about the file. If that fails, end with exit code 2."""
     from autograder.appeals.messages_seen import write_messages
 
     try:
@@ -147,7 +149,10 @@ def save_messages(seen: Kept, path: Path) -> str:
 
 
 def save_bag(seen: Kept, path: Path) -> str:
-    """Write the messages of topics for ``ros2 bag play``, and return a line about it. Exit code 2 if that fails."""
+    """Write the messages of topics for ``ros2 bag play``, and return a line about the file.
+
+    If that fails, end with exit code 2.
+    """
     from autograder.appeals.messages_seen import write_bag
 
     try:
@@ -160,7 +165,7 @@ def save_bag(seen: Kept, path: Path) -> str:
 
 
 def _lines(appeal: Appeal, again: Replay) -> Iterator[str]:
-    """Yield the result of a replay in lines, the answer first."""
+    """Yield the result of a replay as lines. The first is the answer."""
     then = again.then
     at = datetime.fromtimestamp(appeal.seen.at, tz=UTC)
     yield f"{then.exercise} by {appeal.student}, checked {at:%Y-%m-%d %H:%M:%S} UTC with course {appeal.course[:8]}"

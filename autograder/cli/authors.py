@@ -1,4 +1,4 @@
-"""The commands of authors: build, execute and record the course, and add an exercise."""
+"""The commands for authors: build, execute and record the course, and add an exercise."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The commands of instructors that make a class, collect submissions and grade them."""
+"""The commands with which instructors make a class, collect submissions and grade them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ only_sections = click.option(
 
 
 def _known_zone(_context: click.Context, _option: click.Parameter, name: str) -> ZoneInfo | None:
-    """Return the time zone of that name; None if the option was not given."""
+    """Return the time zone with this name; None if the option was not given."""
     try:
         return ZoneInfo(name) if name else None
     except (ValueError, OSError, LookupError):

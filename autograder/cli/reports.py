@@ -1,4 +1,4 @@
-"""The commands of instructors about graded work: one page, files for the LMS, similar answers, changed points."""
+"""The commands for instructors about graded work: one page, files for the LMS, similar answers, changed points."""
 
 from __future__ import annotations
 

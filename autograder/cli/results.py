@@ -1,4 +1,4 @@
-"""Print the result of a command as JSON, and end a command that cannot be done with a clear line."""
+"""Prints the result of a command as JSON, and ends a command that fails with a clear line."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 NO = 1
 CANNOT = 2
 INTERRUPTED = 130
-"""A shell's exit code for a program that Ctrl-C ended: 128 and the signal's number."""
+"""The exit code that a shell reports for a program that Ctrl-C ended: 128 plus the signal's number."""
 as_json_option = click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
 
 
 def print_json(value: Any) -> None:
-    """Print a value, or bytes of JSON, as one line of JSON without characters that change a terminal."""
+    """Print a value, or JSON in bytes, as one line of JSON without characters that affect a terminal."""
     import msgspec
 
     from autograder.cards.readable import printable_json
@@ -30,7 +30,7 @@ def print_json(value: Any) -> None:
 
 
 def fail(message: str) -> NoReturn:
-    """End with a clear error and exit code 2."""
+    """End the command with a clear error message and exit code 2."""
     click.echo(f"autograder: {message}", err=True)
     sys.exit(CANNOT)
 
@@ -47,7 +47,7 @@ def need_ros() -> None:
 
 @contextmanager
 def grading_errors() -> Iterator[None]:
-    """Turn the grader's own errors into a clear line and exit code 2."""
+    """Turn the grader's own errors in the block into a clear line and exit code 2."""
     from autograder.grading.errors import GradingError
 
     try:

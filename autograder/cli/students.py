@@ -1,4 +1,4 @@
-"""The commands of students: check a program, open the course, show progress and what is missing."""
+"""The commands for students: check a program, open the course, show progress and what is missing."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def check(
     """Run a command as the subject of an exercise and print the verdict."""
     from autograder import course, exercises
 
-    if not boxed:  # the folder of a program in a sandbox belongs to a student
+    if not boxed:  # in a sandbox, the program's folder belongs to a student, so it must not choose the course
         course.use_the_one_around(Path.cwd())
     if exercise is None:
         list_exercises()
@@ -87,7 +87,9 @@ def check(
             verdict, evidence = check_and_keep(exercise, command, seed=seed, box=box)
     except CommandNotFound as error:
         fail(str(error))
-    if not boxed:  # another person's program is not the user's progress
+    if (
+        not boxed
+    ):  # a check in a sandbox is of another person's program, so it does not count as the user's progress
         from autograder.student import journal
 
         journal.note_check(verdict)
@@ -198,7 +200,7 @@ def reset(notebook: str, folder: Path | None) -> None:
 
 
 def _notebooks_and_journal(root: Path, folder: Path | None) -> tuple[Path, Path | None]:
-    """Return the folder of the notebooks, and its journal."""
+    """Return the folder that contains the notebooks, and the path of its journal."""
     from autograder import course
     from autograder.student import journal
     from autograder.student.lab import NOTEBOOKS_VARIABLE

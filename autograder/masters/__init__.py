@@ -1,6 +1,6 @@
-"""Turn a MyST Markdown master into nbgrader's source notebook and into the chapter notebook for students.
+"""From a master in MyST Markdown to nbgrader's source notebook, and to the chapter notebook for students.
 
-``docs/writing-a-master.md`` is the author's guide to the format.
+``docs/writing-a-master.md`` explains the format to authors.
 
-This file imports nothing, so that importing one module does not import all of them, and nbgrader.
+This file imports nothing, so that importing one of the modules does not import all of them, and nbgrader.
 """

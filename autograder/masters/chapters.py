@@ -1,4 +1,4 @@
-"""Build chapter notebooks, solution files and the README's badges, or report which are out of date."""
+"""Builds chapter notebooks, solution files and the README's badges, or reports which of them are out of date."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ class BuildReport:
     """The result of a build, or of a check without writing: chapter notebooks, solution files, README.
 
     Attributes:
-        written: Files that were written.
-        unchanged: Files that were already up to date.
-        stale: In check mode, files that are missing or out of date.
-        edited: Files that were not overwritten because a person has changed them.
-        orphans: Files without a master or a reason. They are never deleted.
+        written: The files that were written.
+        unchanged: The files that were already up to date.
+        stale: In check mode, the files that are missing or out of date.
+        edited: The files that were not overwritten, because a person has changed them.
+        orphans: The files for which there is no master or no reason any more. They are never deleted.
     """
 
     written: tuple[Path, ...] = ()
@@ -47,18 +47,18 @@ class BuildReport:
 
     @property
     def in_step(self) -> bool:
-        """True if the chapters are now up to date."""
+        """True if everything is up to date now."""
         return not (self.stale or self.edited or self.orphans)
 
 
 def build(root: Path, *, check: bool = False, points: Points = exercise_points) -> BuildReport:
     """Build the chapters of the course in ``root`` from its masters.
 
-    All masters are read before the first notebook is written, so one bad master changes nothing.
+    All masters are read before the first notebook is written, so that a bad master changes nothing.
 
     Args:
-        root: The folder that holds ``solutions`` and ``chapters``.
-        check: True to write nothing and report what is out of date.
+        root: The top folder of the course, which contains ``solutions`` and ``chapters``.
+        check: True to write nothing, and report what is out of date.
         points: Returns the points of an exercise; by default from the exercise itself.
 
     Raises:
@@ -81,7 +81,7 @@ def build(root: Path, *, check: bool = False, points: Points = exercise_points) 
 
 
 def _settle(path: Path, text: str, *, check: bool) -> str:
-    """Bring one file up to date, and return in one word what was done."""
+    """Bring one file up to date. Return one word that says what was done."""
     if path.exists() and path.read_bytes() == text.encode():
         return "unchanged"
     if path.suffix == NOTEBOOK and holds_work(path):
@@ -95,7 +95,7 @@ def _settle(path: Path, text: str, *, check: bool) -> str:
 def build_command(
     root: Path, *, check: bool = False, console: Console | None = None, points: Points = exercise_points
 ) -> int:
-    """Build or check, print the result in a few lines, and return the exit code.
+    """Build or check, and print the result in a few lines. Return the exit code.
 
     Returns:
         0 if the chapters are up to date, 1 if they are not, 2 if a master cannot be used.
@@ -127,16 +127,16 @@ def _lines(report: BuildReport) -> list[tuple[str, tuple[Path, ...], str]]:
 def holds_work(path: Path) -> bool:
     """Return True if a person has changed the notebook since a build wrote it.
 
-    A release carries the checksum of each code cell, and of each question, in its metadata: a cell that no longer
-    matches was edited, code without one was added. The output of cells does not count. A file that is not a notebook
-    counts as changed: it is better to ask than to overwrite it.
+    The metadata of a release contains the checksum of each code cell and of each question. A cell that no longer
+    matches was edited, and code without a checksum was added. Outputs do not count. A file that is not a notebook
+    counts as changed, because asking is better than overwriting.
     """
     if not path.exists():
         return False
     try:
         notebook = nbformat.read(path, as_version=4)
     except Exception:
-        # nbformat raises whatever its JSON and schema libraries do.
+        # nbformat passes on all errors of its JSON and schema libraries.
         return True
     return any(
         _edited(cell) for cell in notebook.cells if cell.cell_type == "code" or "nbgrader" in cell.metadata

@@ -1,4 +1,4 @@
-"""Read a check cell: its exercise, from its one line of code, and the exercise's points."""
+"""Reads a check cell: its exercise, from its one line of code, and the points of the exercise."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ FORM = (
 
 @dataclass(frozen=True)
 class CheckCall:
-    """The call ``check("<exercise>", <subject>)`` in a master.
+    """The call ``check("<exercise>", <subject>)`` in a check cell of a master.
 
     Attributes:
         master: The file of the master.
         line: The line in that file, counted from 1.
         exercise: The exercise's id.
-        subject: The Python text of the subject: the name of a class or function, or a quoted string.
-        is_path: True if the subject is a string: the path of the student's files.
+        subject: The subject as Python text: the name of a class or function, or a quoted string.
+        is_path: True if the subject is a string, that is, the path of the student's files.
     """
 
     master: Path
@@ -45,7 +45,7 @@ def read_check(master: Path, cell: MasterCell) -> CheckCall:
     """Read a check cell.
 
     Raises:
-        MasterError: The cell has another form, names another notebook's exercise, or has a wrong grade_id.
+        MasterError: The cell has another form, its exercise belongs to another notebook, or its grade_id is wrong.
     """
     exercise, subject, is_path = _call(master, cell)
     if exercise.partition(".")[0] != lab_name(master):

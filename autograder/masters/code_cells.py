@@ -1,4 +1,4 @@
-"""Read a code cell: the region that the student writes, and magics that make it a file or a script.
+"""Reads a code cell: the region that the student writes, and magics that make the cell a file or a script.
 
 A solution cell of a master looks like this::
 
@@ -9,11 +9,11 @@ A solution cell of a master looks like this::
         return 2 * number
         ### END SOLUTION
 
-The comment that opens the region is the stub: the part that remains in the chapter notebook. The
-two markers are nbgrader's own, so that a stock nbgrader still finds and clears the region. In a file of XML each of the
+The comment at the top of the region is the stub: the part of the region that remains in the chapter notebook. The two
+markers are nbgrader's own, so that a stock nbgrader also finds and clears the region. In a file of XML, each of the
 three lines is a comment by itself: ``<!-- ### BEGIN SOLUTION -->``.
 
-A ROS workspace consists of files, so a student may write a file instead of a definition::
+A ROS workspace consists of files, so instead of a definition a student may write a file::
 
     %%writefile ros2_ws/src/my_robot_pkg/my_robot_pkg/simple_node.py
     import rclpy
@@ -33,14 +33,14 @@ BEGIN = "### BEGIN SOLUTION"
 END = "### END SOLUTION"
 TODO = "# TODO: "
 COPIED = "# copied from this notebook: "
-"""Begins the stub of a region that the cell itself fills (:mod:`autograder.notebook.cells.program_files`)."""
+"""The beginning of the stub in a region that the cell itself fills (:mod:`autograder.notebook.cells.program_files`)."""
 ONE_THING = "One cell asks for one thing: split it into two cells."
 MAGIC = re.compile(r"%%(?P<name>\w+)[ \t]*(?P<rest>.*)")
 
 
 @dataclass(frozen=True)
 class Region:
-    """A solution cell, split into parts; each part is a tuple of lines without the two markers."""
+    """A solution cell, divided into parts. Each part is a tuple of lines, without the two markers."""
 
     before: tuple[str, ...]
     stub: tuple[str, ...]
@@ -67,7 +67,7 @@ def find_region(source: str) -> Region:
     """Split a solution cell into its parts.
 
     Raises:
-        CellError: There is not exactly one well-formed region that opens with a TODO comment.
+        CellError: The cell does not have exactly one well-formed region that begins with a TODO comment.
     """
     lines = source.split("\n")
     begin, end = _markers(lines)
@@ -91,10 +91,10 @@ def find_region(source: str) -> Region:
 
 
 def find_model_answer(source: str) -> str:
-    """Return the region of a question that a person grades: the model answer and how to give points.
+    """Return the region of a question that a person grades: the model answer, and how to give points.
 
     Raises:
-        CellError: There is not exactly one well-formed region with something in it, and a question above it.
+        CellError: There is not exactly one well-formed, non-empty region, or there is no question above it.
     """
     lines = source.split("\n")
     begin, end = _markers(lines)
@@ -107,7 +107,7 @@ def find_model_answer(source: str) -> str:
 
 
 def _markers(lines: list[str]) -> tuple[int, int]:
-    """Return the lines on which the region begins and ends."""
+    """Return the indexes of the lines on which the region begins and ends."""
     begin, end = _marker(lines, BEGIN), _marker(lines, END)
     if end < begin:
         raise CellError(end, f"'{END}' stands before '{BEGIN}'.", "Put the two lines in order.")
@@ -115,7 +115,7 @@ def _markers(lines: list[str]) -> tuple[int, int]:
 
 
 def _marker(lines: list[str], marker: str) -> int:
-    """Return the line of ``marker``, which must exist exactly once, alone on its line, spelt exactly like this."""
+    """Return the index of the line ``marker``, which must occur exactly once, alone on its line and spelt correctly."""
     words = marker.removeprefix("### ")
     places = [offset for offset, line in enumerate(lines) if words in line]
     if not places:
@@ -136,7 +136,7 @@ def _marker(lines: list[str], marker: str) -> int:
 
 
 def _stub_length(inside: list[str]) -> int:
-    """Return the number of comment lines that open the region, 0 if the first is not a TODO or a copy."""
+    """Return the number of comment lines at the top of the region; 0 if the first is neither a TODO nor a copy."""
     if not inside or not _words(inside[0]).startswith((TODO, COPIED)):
         return 0
     for offset, line in enumerate(inside):
@@ -146,7 +146,7 @@ def _stub_length(inside: list[str]) -> int:
 
 
 def _words(line: str) -> str:
-    """Return a line without its indentation and without the ends of an XML comment around it."""
+    """Return a line without its indentation, and without the ends of an XML comment around it."""
     bare = line.strip()
     commented = bare.startswith("<!--") and bare.endswith("-->")
     return bare.removeprefix("<!--").removesuffix("-->").strip() if commented else bare
@@ -163,8 +163,8 @@ class WrittenFile:
     """The file that a ``%%writefile`` or ``%%program`` cell writes.
 
     Attributes:
-        path: The path relative to the notebook.
-        text: The file's text, without the line of the magic.
+        path: The path of the file, relative to the notebook.
+        text: The text of the file, without the line of the magic.
     """
 
     path: PurePosixPath
@@ -172,17 +172,17 @@ class WrittenFile:
 
     @property
     def is_python(self) -> bool:
-        """True if the text must be Python."""
+        """True if the text has to be valid Python."""
         return self.path.suffix == ".py"
 
 
 def has_magic(source: str) -> bool:
-    """Return True if a magic runs the cell instead of Python."""
+    """Return True if a cell magic, and not Python, executes the cell."""
     return MAGIC.match(source) is not None
 
 
 def written_file(source: str) -> WrittenFile | None:
-    """Return the file that a cell writes, or None for any other cell."""
+    """Return the file that a cell writes; None for any other cell."""
     magic = MAGIC.match(source)
     if magic is None or magic["name"] not in ("writefile", "program"):
         return None
@@ -193,7 +193,7 @@ def written_file(source: str) -> WrittenFile | None:
 
 
 def shell_script(source: str) -> str | None:
-    """Return the script of a ``%%bash`` cell, or None for any other cell."""
+    """Return the script of a ``%%bash`` cell; None for any other cell."""
     magic = MAGIC.match(source)
     if magic is None or magic["name"] != "bash":
         return None
@@ -201,7 +201,7 @@ def shell_script(source: str) -> str | None:
 
 
 def python_of(source: str) -> str:
-    """Return the part of a cell that must be Python, with the same number of lines; empty if no part must be."""
+    """Return the part of a cell that must be valid Python, with the same number of lines; empty if no part must be."""
     if not has_magic(source):
         return source
     file = written_file(source)

@@ -1,6 +1,6 @@
-"""Draw a PNG next to each SVG of the masters' figures: ``python -m autograder.masters.drawing``.
+"""Draws a PNG next to each SVG of the masters' figures: ``python -m autograder.masters.drawing``.
 
-For authors: a build only reads the PNGs, because they would come out differently with the fonts of another machine.
+This is for authors. A build only reads the PNGs, because with the fonts of another machine they would look different.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 SCALE = 1.5
-"""Pixels for each unit of a drawing: sharp on most screens, and no wider than a wide notebook."""
+"""The number of pixels per unit of a drawing: sharp on most screens, and no wider than a wide notebook."""
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
-"""The first bytes of a PNG."""
+"""The bytes with which a PNG file begins."""
 _HEADER_LENGTH = len(SIGNATURE) + 8 + 13 + 4
 COLOURS = 256
 _PIXELS = """async png => {
@@ -45,7 +45,7 @@ _PIXELS = """async png => {
 
 
 def stale_figures(root: Path) -> list[Path]:
-    """Return the figures of the course in ``root`` whose PNG is missing or out of date."""
+    """Return those figures of the course in ``root`` whose PNG is missing or out of date."""
     found = sorted((root / SOLUTIONS).rglob("figures/*.svg"))
     return [svg for svg in found if not _is_drawn(svg)]
 
@@ -54,8 +54,8 @@ def draw(figures: Sequence[Path], chromium: str) -> None:
     """Draw a PNG next to each SVG.
 
     Args:
-        figures: The SVGs.
-        chromium: The path of Chromium.
+        figures: The SVG files.
+        chromium: The path of the browser Chromium.
     """
     from playwright.sync_api import sync_playwright
 
@@ -78,8 +78,8 @@ def _with_few_colours(page: Page, png: bytes) -> bytes:
     """Return the picture as a PNG with a palette, a third as large, because every student's notebook contains it.
 
     Args:
-        page: A page of a browser, which decodes the picture.
-        png: The picture.
+        page: A browser page, which decodes the picture.
+        png: The picture as the browser drew it.
     """
     page.goto("about:blank")
     width, height, text = page.evaluate(_PIXELS, base64.b64encode(png).decode("ascii"))
@@ -92,7 +92,7 @@ def _with_few_colours(page: Page, png: bytes) -> bytes:
     palette = colours[kept].astype(numpy.uint8)
     lines = numpy.insert(
         rows, 0, 0, axis=1
-    ).tobytes()  # each line begins with the number of its filter: 0, none
+    ).tobytes()  # each line begins with the number of its filter; 0 means none
     header = width.to_bytes(4) + height.to_bytes(4) + bytes((8, 3, 0, 0, 0))
     return SIGNATURE + b"".join(
         (
@@ -106,7 +106,7 @@ def _with_few_colours(page: Page, png: bytes) -> bytes:
 
 
 def signed(png: bytes, svg: bytes) -> bytes:
-    """Return the PNG with a text chunk that has the digest of its SVG.
+    """Return the PNG with an added text chunk that contains the digest of its SVG.
 
     Args:
         png: The picture.
@@ -122,7 +122,7 @@ def chunk(kind: bytes, content: bytes) -> bytes:
 
 
 def main() -> int:
-    """Draw all figures that are out of date. Return the exit code, 2 if that fails."""
+    """Draw all figures that are out of date. Return the exit code, which is 2 if drawing fails."""
     try:
         figures = stale_figures(find_root(Path.cwd()))
     except MasterError as error:

@@ -1,7 +1,7 @@
-"""The cells with which a notebook can be opened elsewhere: links to the services, and the set-up.
+"""The first cells of a notebook, with which it can be opened elsewhere: links to services, and the set-up.
 
-Both are for a course that can be set up from its own folder, as this one. They come after the text that opens the
-notebook. In ``./course lab``, and while a class is graded, there is nothing for them to do.
+Both are for a course that can be set up from its own folder, as this one can. They come after the text at the top of
+the notebook. In ``./course lab``, and when a class is graded, these cells do nothing.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 NAME = "given-set-up"
-"""The grade_id of the cell that sets the course up."""
+"""The grade_id of the cell that sets up the course."""
 PART = "environment/plain_kernel.py"
-"""The file of the course by which the cell knows the course's folder."""
+"""A file of the course, by which the cell recognizes the course's folder."""
 SET_UP = """\
 # @title Set the course up, outside of `./course lab`
 # Run this cell first. In `./course lab` it does nothing. In another Jupyter, such as Colab, it takes a minute or two.
@@ -55,12 +55,12 @@ except ImportError:
 
 
 def links(address: str, notebook: str) -> dict[str, str]:
-    """Return the addresses that open a notebook of a repository, by the names of the services.
+    """Return the addresses that open a notebook of a repository in various services, by the name of the service.
 
-    README and the site make theirs of the same.
+    README and the site use the same addresses.
 
     Args:
-        address: The repository, as :func:`autograder.course.repository` returns it.
+        address: The address of the repository, as :func:`autograder.course.repository` returns it.
         notebook: The path of the notebook in the repository.
     """
     name = address.removeprefix(course.GITHUB)
@@ -73,7 +73,7 @@ def links(address: str, notebook: str) -> dict[str, str]:
 
 
 def with_first_cells(master: Path, cells: list[MasterCell]) -> list[MasterCell]:
-    """Return the cells of a master, with those of this module before the first that is not text."""
+    """Return the cells of a master, with the first cells added before the first cell that is not text."""
     root = master.parents[3]
     first = next((place for place, cell in enumerate(cells) if cell.kind is not CellRole.TEXT), None)
     if first is None or not (root / PART).is_file():

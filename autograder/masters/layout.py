@@ -1,4 +1,4 @@
-"""Find masters and the notebooks that are built from them."""
+"""Finds masters, and the notebooks that are built from them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ def masters(root: Path) -> list[Path]:
     """Return the masters of the course in ``root``, in reading order: ``solutions/<chapter>/<lab>/lab.md``.
 
     Raises:
-        MasterError: ``root`` has no folder ``solutions``, a chapter's description cannot be used, or no master exists.
+        MasterError: ``root`` has no folder ``solutions``, a chapter's description cannot be used, or there is no
+            master.
     """
     folder = root / SOLUTIONS
     if not folder.is_dir():
@@ -48,12 +49,12 @@ def masters(root: Path) -> list[Path]:
 
 
 def lab_name(master: Path) -> str:
-    """Return the name of a master's lab, its notebook and its folder, such as ``"lab_1_2"``."""
+    """Return the name of a master's lab, which is also that of its notebook and folder, such as ``"lab_1_2"``."""
     return master.parent.name
 
 
 def before_and_after(master: Path) -> tuple[Path | None, Path | None]:
-    """Return the masters before and after ``master`` in its chapter; None at the chapter's ends."""
+    """Return the masters before and after ``master`` in its chapter; None at an end of the chapter."""
     chapters = [one for one in course.chapters(master.parents[3]) if one.folder == master.parents[1]]
     found = [lab / LAB for chapter in chapters for lab in chapter.labs if (lab / LAB).is_file()]
     if master not in found:
@@ -64,21 +65,21 @@ def before_and_after(master: Path) -> tuple[Path | None, Path | None]:
 
 
 def chapter_path(root: Path, master: Path) -> Path:
-    """Return the path of the chapter notebook of ``master``."""
+    """Return the path of the chapter notebook that is built from ``master``."""
     return root / CHAPTERS / master.parents[1].name / f"{lab_name(master)}.ipynb"
 
 
 def chapter_notebooks(root: Path) -> list[Path]:
-    """Return the existing chapter notebooks in order, without JupyterLab's checkpoints and copies of a reset."""
+    """Return the existing chapter notebooks in order, without JupyterLab's checkpoints and the copies of a reset."""
     found = sorted((root / CHAPTERS).rglob("*.ipynb"))
     return [path for path in found if ".ipynb_checkpoints" not in path.parts and COPY not in path.name]
 
 
 def find_root(start: Path) -> Path:
-    """Return the course that contains ``start``: the nearest folder at or above it with a ``solutions`` folder.
+    """Return the course that contains ``start``: the nearest folder, at or above it, with a folder ``solutions``.
 
     Raises:
-        MasterError: No folder at or above ``start`` has one.
+        MasterError: No folder at or above ``start`` has such a folder.
     """
     for folder in (start, *start.parents):
         if (folder / SOLUTIONS).is_dir():
@@ -92,12 +93,12 @@ def find_root(start: Path) -> Path:
 
 
 def relinked(text: str, place: Callable[[str], str]) -> str:
-    """Return a text with its links to other notebooks adapted to its new place.
+    """Return a text with its links to other notebooks adapted to a new place.
 
     Args:
-        text: Markdown, or a notebook's file with Markdown in it.
-        place: Returns the path of a lab's notebook there, by the lab's name; empty if there is none: only the text of
-            the link stay.
+        text: Markdown, or the content of a notebook file that contains Markdown.
+        place: Returns the path of a lab's notebook at the new place, by the lab's name; empty if it is not there.
+            Then only the text of the link stays.
     """
 
     def there(link: Any) -> str:

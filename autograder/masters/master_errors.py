@@ -1,4 +1,4 @@
-"""Errors for an author whose master cannot be used."""
+"""Errors for authors whose master cannot be used."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ class MasterError(Exception):
     """A master, or the folder of masters, cannot be used.
 
     Attributes:
-        path: The file or folder.
-        line: The line, counted from 1, or None for the whole file.
+        path: The path of the file or folder.
+        line: The line, counted from 1; None for the whole file.
         problem: What is wrong, as a sentence.
         remedy: What to do about it, as a sentence.
     """
@@ -28,7 +28,7 @@ class MasterError(Exception):
 
 
 class CellError(ValueError):
-    """A cell cannot be read; code that knows the master's name turns this into a :class:`MasterError`.
+    """A cell cannot be read. Code that knows the master turns this into a :class:`MasterError`.
 
     Attributes:
         offset: The line within the cell, counted from 0.
@@ -43,5 +43,5 @@ class CellError(ValueError):
         self.remedy = remedy
 
     def at(self, path: Path, body_line: int) -> MasterError:
-        """Return the error for the master ``path``, in which the cell's text begins on ``body_line``."""
+        """Return the error for the master ``path``, given the line on which the text of the cell begins."""
         return MasterError(path, body_line + self.offset, self.problem, self.remedy)

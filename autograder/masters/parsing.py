@@ -1,7 +1,7 @@
-"""Parse a master's text into a list of cells with their kinds and line numbers.
+"""Parses the text of a master into a list of cells, with their kinds and line numbers.
 
-A program of a package repeats what the student wrote in the cells above. A master says so instead of repeating it, so
-that the two cannot differ::
+A program of a package repeats what the student wrote in the cells above. Instead of repeating it, the master says
+what to copy, so that the two cannot differ::
 
     ### BEGIN SOLUTION
     # TODO: copy your class TalkerNode here.
@@ -40,27 +40,27 @@ kernelspec:
 
 
 class CellRole(StrEnum):
-    """The role of a cell. All values except the first are tags; an author types three of them for code."""
+    """The role of a cell. All values except the first are tags, of which authors type three for code cells."""
 
     TEXT = "text"
-    """Markdown; students may write into it."""
+    """Markdown. Students may change it."""
     GIVEN = "given"
-    """Code that is part of the explanation: locked and tracked. This is the role of code without a tag."""
+    """Code that is part of the explanation: locked and tracked. Code without a tag has this role."""
     DEMONSTRATION = "demonstration"
-    """Given code that only shows something: left out while a class is graded."""
+    """Given code that only shows something. It is skipped when a class is graded."""
     SOLUTION = "solution"
     """Code with a region that the student writes."""
     MANUAL = "manual"
-    """A question in text that a person grades."""
+    """A question, in text, that a person grades."""
     CHECK = "check"
-    """The one line that asks for a verdict: locked, graded, carries the exercise's points."""
+    """The line of code that requests a verdict. It is locked and graded, and carries the exercise's points."""
 
 
 TAGS = {kind.value: kind for kind in CellRole if kind not in (CellRole.TEXT, CellRole.MANUAL)}
 COPY = re.compile(r"^### COPY (?P<names>\w+(?: \w+)*)$", re.MULTILINE)
 OPTIONS = {"tags", "grade_id"}
 MANUAL_FORM = '+++ {"tags": ["manual"], "points": 5, "grade_id": "some_name"}'
-"""The line above a question that a person grades."""
+"""The form of the line above a question that a person grades."""
 
 
 @dataclass(frozen=True)
@@ -72,10 +72,10 @@ class MasterCell:
         source: The text of the cell, without the options at its top.
         line: The line of the master on which it begins, counted from 1.
         body_line: The line of the master on which ``source`` begins, counted from 1.
-        grade_id: The name from the author, or None.
+        grade_id: The name that the author gave; None if there is none.
         attachments: The figures of a text cell by name, in nbformat's form.
         points: The points of a question that a person grades; None for any other cell.
-        folded: True if the notebook shows the cell closed.
+        folded: True if the notebook shows the cell folded.
     """
 
     kind: CellRole
@@ -92,7 +92,7 @@ def parse_master(path: Path) -> list[MasterCell]:
     """Read the cells of a master.
 
     Raises:
-        MasterError: The file is missing or not UTF-8 text, its options are not YAML, or one of them is unknown.
+        MasterError: The file is missing or not UTF-8 text, its options are not YAML, or an option is unknown.
     """
     text = _read(path)
     try:
@@ -138,7 +138,7 @@ def _cell(path: Path, node: Any, place: int, lines: list[str]) -> MasterCell:
 def _question(
     path: Path, metadata: Any, text: str, line: int, figures: dict[str, dict[str, str]]
 ) -> MasterCell:
-    """Read a text cell with options: only a question that a person grades has options."""
+    """Read a text cell that has options. Only a question that a person grades may have options."""
     points, name = metadata.get("points"), metadata.get("grade_id")
     is_worth = isinstance(points, int | float) and not isinstance(points, bool) and points > 0
     if (
@@ -175,7 +175,7 @@ def _options(path: Path, metadata: Any, line: int) -> tuple[CellRole, str | None
 
 
 def _body_line(source: str, place: int, lines: list[str]) -> int:
-    """Return the line on which a code cell's text begins, below its fence and options."""
+    """Return the line on which the text of a code cell begins, below its fence and options."""
     first = source.split("\n", 1)[0]
     for number in range(place, len(lines)):
         if lines[number].strip() == first.strip():
@@ -184,14 +184,14 @@ def _body_line(source: str, place: int, lines: list[str]) -> int:
 
 
 def with_copies(master: Path, cells: list[MasterCell]) -> list[MasterCell]:
-    """Return the cells, with copied text in the place of the lines that ask for it.
+    """Return the cells, with the lines that ask for a copy replaced by the copied text.
 
     Args:
         master: The master of the cells.
         cells: The cells as they were parsed.
 
     Raises:
-        MasterError: What is to be copied is not defined above.
+        MasterError: The name to copy is not defined above.
     """
     defined: dict[str, str] = {}
     result = []
@@ -220,14 +220,14 @@ def _copied(master: Path, cell: MasterCell, defined: dict[str, str]) -> MasterCe
 
 
 def _definitions(cell: MasterCell) -> dict[str, str]:
-    """Return the functions, classes and constants of a cell, with their solutions, by name."""
+    """Return the functions, classes and constants that a cell defines, with their solutions, by name."""
     source = cell.source
     try:
         if cell.kind is CellRole.SOLUTION:
             source = find_region(source).solved
         body = ast.parse(source).body
     except (CellError, SyntaxError):
-        return {}  # another check reports the error, with its line
+        return {}  # a later step reports the error, with its line
     lines = source.split("\n")
     found = {}
     for node in body:

@@ -1,6 +1,6 @@
-"""What a course's README says of its public repository: badges, and the address to clone.
+"""The parts of a course's README about its public repository: badges, and the address to clone.
 
-With no address known, a sentence takes the place of the badges, and the line to clone has a word to fill in.
+If the course has no address, a sentence replaces the badges, and the line to clone contains a word to fill in.
 """
 
 from __future__ import annotations
@@ -17,28 +17,28 @@ if TYPE_CHECKING:
 
 NAME = "README.md"
 TO_FILL_IN = "ADDRESS_OF_THIS_REPOSITORY"
-"""The word in a README for the address of a repository that is not public yet."""
+"""The word in README that stands for the address of a repository that is not public yet."""
 WITHOUT_ADDRESS = (
     "This course has no public address yet. If you have its folder, leave the line with `git clone` out, and type the "
     "others in that folder.\n"
 )
-"""What a README says before the line to clone as long as there is nothing to clone."""
+"""The sentence in README before the line to clone, as long as there is nothing to clone."""
 TESTS = ".github/workflows/ci.yml"
 PICTURES = {
     "Colab": "https://colab.research.google.com/assets/colab-badge.svg",
     "Codespaces": "https://github.com/codespaces/badge.svg",
     "Binder": "https://mybinder.org/badge_logo.svg",
 }
-"""The badge that each service draws itself."""
+"""For each service, the address of the picture on its badge."""
 _BLOCK = re2.compile(r"(?s)(<!-- badges -->\n).*?(<!-- end of badges -->)")
 _CLONE = re2.compile(r"(git clone )\S+( )")
 
 
 def badges(address: str, notebook: str) -> str:
-    """Return the Markdown of a repository's badges, for its tests and for the services that open a notebook.
+    """Return the Markdown of a repository's badges: for its tests, and for services that open a notebook.
 
     Args:
-        address: The repository, as :func:`autograder.course.repository` returns it.
+        address: The address of the repository, as :func:`autograder.course.repository` returns it.
         notebook: The path of the notebook in the repository.
     """
     tests = f"{address}/actions/workflows/{TESTS.rpartition('/')[2]}"
@@ -49,7 +49,7 @@ def badges(address: str, notebook: str) -> str:
 
 
 def readme(root: Path, notebook: Path) -> str | None:
-    """Return the README of a course as it has to be; None if it has no place for badges.
+    """Return the right text of a course's README; None if the README has no place for badges.
 
     Args:
         root: The folder of the course.

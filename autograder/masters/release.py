@@ -1,7 +1,7 @@
-"""Turn a source notebook into the chapter notebook, by the steps of ``nbgrader generate_assignment``.
+"""Turns a source notebook into the chapter notebook, with the steps of ``nbgrader generate_assignment``.
 
-The steps run in this process and without a gradebook, which takes milliseconds a notebook instead of seconds.
-A test proves that nbgrader's own command gives the same bytes.
+The steps run in this process and without a gradebook, which takes milliseconds per notebook and not seconds. A test
+proves that nbgrader's own command gives the same bytes.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from autograder.masters.master_errors import CellError
 
 
 class LeaveStubs(ClearSolutions):
-    """nbgrader's ClearSolutions, changed so that each solution leaves its own stub.
+    """nbgrader's ClearSolutions, changed so that each removed solution leaves its own stub.
 
-    Stock nbgrader puts the same text into every cleared region. Here each region opens with the comment that students
-    get in its place (``code_cells.py``), so the cell can run and says what to do. Any other solution is
+    Stock nbgrader puts the same text in place of every solution. Here each region begins with the comment that
+    students get instead (``code_cells.py``), so the cell can run and says what to do. A solution of any other form is
     cleared as nbgrader does it.
     """
 
@@ -36,7 +36,7 @@ class LeaveStubs(ClearSolutions):
             try:
                 cell.source = find_region(cell.source).unsolved
             except CellError:
-                # An instructor's own notebook, written for stock nbgrader.
+                # This is an instructor's own notebook, written for stock nbgrader.
                 pass
             else:
                 return cell, resources
@@ -61,7 +61,7 @@ class KeepShownPictures(NbGraderPreprocessor):
 
 
 def shown_attachments(source: str, attachments: NotebookNode) -> NotebookNode:
-    """Return the attachments that a text shows."""
+    """Return those attachments that a text shows."""
     return NotebookNode(
         {
             name: picture
@@ -72,19 +72,20 @@ def shown_attachments(source: str, attachments: NotebookNode) -> NotebookNode:
 
 
 def release_preprocessors() -> list[type[NbGraderPreprocessor]]:
-    """Return nbgrader's steps, with :class:`LeaveStubs` for ClearSolutions, and :class:`KeepShownPictures`.
+    """Return nbgrader's steps, with :class:`LeaveStubs` for ClearSolutions, and :class:`KeepShownPictures` added.
 
-    A class's ``nbgrader_config.py`` names them through :class:`autograder.masters.release_steps.ReleaseSteps`.
+    A class's ``nbgrader_config.py`` names them indirectly, through
+    :class:`autograder.masters.release_steps.ReleaseSteps`.
     """
     steps = [LeaveStubs if step is ClearSolutions else step for step in GenerateAssignment().preprocessors]
     return [*steps, KeepShownPictures]
 
 
 def release_text(source: NotebookNode) -> str:
-    """Return the chapter notebook of ``source`` as the text of its file."""
+    """Return the text of the chapter notebook's file, made from ``source``."""
     config = Config()
     config.Exporter.default_preprocessors = []
-    # Left out, as with `nbgrader generate_assignment --no-db`, because this step only writes to the gradebook.
+    # This step is left out, as in `nbgrader generate_assignment --no-db`, because it only writes to the gradebook.
     config.SaveCells.enabled = False
     exporter = NotebookExporter(config=config)
     for step in release_preprocessors():

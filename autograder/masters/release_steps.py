@@ -1,4 +1,4 @@
-"""Provide the steps of a release to a class's configuration, loaded only when nbgrader makes a release."""
+"""Gives a class's configuration the steps of a release, and loads them only when nbgrader makes a release."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ class ReleaseSteps(DeferredConfig):
     """The value of ``c.GenerateAssignment.preprocessors`` in the configuration of a class.
 
     The steps are imported (:func:`autograder.masters.release.release_preprocessors`) only when nbgrader makes a
-    release, because that takes a second, and other commands, such as ``grade``, read the configuration, too.
+    release, because importing takes a second, and other commands, such as ``grade``, also read the configuration.
     """
 
     def get_value(self, trait: Any) -> list[type[NbGraderPreprocessor]]:  # noqa: ARG002  (traitlets' signature)
-        """Return the steps; ``traitlets`` calls this (``traitlets/config/configurable.py``: ``_load_config``)."""
+        """Return the steps. ``traitlets`` calls this (``traitlets/config/configurable.py``: ``_load_config``)."""
         from autograder.masters.release import release_preprocessors
 
         return release_preprocessors()

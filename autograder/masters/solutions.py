@@ -1,8 +1,8 @@
-"""Extract the reference solution of each exercise from its master: as a program, and for students to read.
+"""Extracts the reference solution of each exercise from its master: as a program, and for students to read.
 
-Students may read it after full marks: the code and its reasons. The reasons are next to the exercise, in a file such as
-``talker.why.md``: one paragraph and, if another way is worth showing, the heading ``## Another way``, a paragraph and
-a block of code.
+Students may read it after full marks: the code, and the reasons for it. The reasons are in a file next to the
+exercise, such as ``talker.why.md``: one paragraph and, if another way is worth showing, the heading ``## Another
+way``, a paragraph and a block of code.
 """
 
 from __future__ import annotations
@@ -26,23 +26,23 @@ if TYPE_CHECKING:
     from autograder.masters.source import NamedCell
 
 _KEPT = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
-"""The statements of a given cell that a program keeps, besides constants."""
+"""The kinds of statements of a given cell that a program keeps, in addition to constants."""
 OTHER_WAY = "## Another way"
 LINES = 2
-"""Limit of a reason, in lines: a student who has solved a task wants to go on."""
+"""The maximum number of lines of a reason, because a student who has solved a task wants to go on."""
 WIDTH = 140
-"""Limit of a line, in characters."""
+"""The maximum length of a line, in characters."""
 
 
 @dataclass(frozen=True)
 class ReferenceSolution:
-    """A reference solution.
+    """The reference solution of an exercise.
 
     Attributes:
-        source: Python code that makes ``subject``: it defines it, or writes its files into the
+        source: Python code that makes ``subject``: it defines the class or function, or writes the files into the
             current folder.
-        subject: Its Python text: the name of the class or function that the check cell judges, or the
-            path of the files.
+        subject: The subject as Python text: the name of the class or function that the check cell judges, or the path
+            of the files.
     """
 
     source: str
@@ -54,14 +54,14 @@ def reference_source(
 ) -> ReferenceSolution:
     """Return the source of everything that a notebook defines before the check of ``exercise``.
 
-    If ``solved`` is false, solution cells are as students get them.
+    If ``solved`` is false, the solution cells are as students get them.
 
-    Solution cells are kept whole. Of given cells, only imports, functions, classes and constants are kept; the
-    rest only demonstrates. Files are written and, if the subject is a path, shell cells are run,
-    because commands such as ``ros2 pkg create`` make the files that are judged.
+    Solution cells are kept whole. Of given cells, only imports, functions, classes and constants are kept, because
+    the rest only demonstrates. Files are written. If the subject is a path, shell cells are run as well, because
+    commands such as ``ros2 pkg create`` make the files that are judged.
 
     Raises:
-        MasterError: The master cannot be used, or has no check of ``exercise``.
+        MasterError: The master cannot be used, or does not check ``exercise``.
     """
     cells: list[MasterCell] = []
     for named in named_cells(master, points=points):
@@ -79,7 +79,7 @@ def _kept(cell: MasterCell, *, shell: bool, solved: bool) -> Iterator[str]:
     Args:
         cell: Any cell above the check.
         shell: True to run shell cells.
-        solved: False to leave the solution out.
+        solved: False to leave out the solution.
     """
     if cell.kind not in (CellRole.SOLUTION, CellRole.GIVEN):
         return
@@ -114,7 +114,7 @@ def _definitions(cell: MasterCell) -> Iterator[str]:
 
 
 def _is_constant(node: ast.stmt) -> bool:
-    """Return True if the statement names a value and calls nothing: a later definition may need it."""
+    """Return True if a statement assigns a value and calls nothing. A later definition may need such a constant."""
     if not isinstance(node, (ast.Assign, ast.AnnAssign)):
         return False
     targets = node.targets if isinstance(node, ast.Assign) else [node.target]
@@ -124,14 +124,14 @@ def _is_constant(node: ast.stmt) -> bool:
 
 
 def solution_files(master: Path, cells: Sequence[NamedCell]) -> dict[Path, str]:
-    """Return the solution files of a master: for each exercise with a reason, the file and its text.
+    """Return the solution files of a master, that is, for each exercise that has a reason, the file and its text.
 
     Args:
         master: The master.
-        cells: Its cells.
+        cells: The cells of the master.
 
     Raises:
-        MasterError: A reason has another form.
+        MasterError: The file with a reason does not have the right form.
     """
     return dict(_solution_files(master, cells))
 

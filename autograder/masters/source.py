@@ -1,10 +1,10 @@
-"""Turn a master into nbgrader's source notebook: check its cells, name them and add metadata.
+"""Turns a master into nbgrader's source notebook: checks its cells, names them, and adds metadata.
 
-An author types a tag; nbgrader needs eight lines of metadata for each cell. This module adds them.
+An author types a tag, but nbgrader needs eight lines of metadata for each cell. This module adds them.
 
-The name of a cell is stable, readable, and never random. It must not change when a typo is corrected, because nbgrader
-matches a submission's cells by name and refuses to change the names of an assignment that has submissions. So it comes
-from what the cell defines or checks, not from its text.
+The name of a cell is stable and readable, and never random. It must not change when a typo is corrected, because
+nbgrader matches a submission's cells by name, and refuses to change the names of an assignment that has submissions.
+So the name comes from what the cell defines or checks, and not from its text.
 """
 
 from __future__ import annotations
@@ -40,12 +40,12 @@ if TYPE_CHECKING:
 _HEADING = re.compile(r"^#{1,6}\s+(.*?)\s*$", re.MULTILINE)
 _FENCED = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
 _LONGEST = 48
-"""Limit of a heading in a name, in characters; nbformat allows 64 in an id."""
+"""The maximum length of a heading within a cell's name, in characters; nbformat allows 64 in an id."""
 GRADE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
 SCHEMA_VERSION = 3
 """The version of nbgrader's cell metadata."""
 
-# Without versions of Python or packages, so that the chapters are the same on every machine.
+# No versions of Python or packages, so that the chapters are the same on every machine.
 NOTEBOOK_METADATA: dict[str, Any] = {
     "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
     "language_info": {
@@ -63,11 +63,11 @@ Points = Callable[[CheckCall], float]
 
 @dataclass(frozen=True)
 class NamedCell:
-    """A cell of a master with everything that nbgrader must know about it.
+    """A cell of a master, with everything that nbgrader has to know about it.
 
     Attributes:
         cell: The cell in the master.
-        name: The grade_id of a tracked cell; the cell's id in any case.
+        name: The grade_id of a tracked cell. For any cell, also its id.
         check: The call in a check cell; None for any other cell.
         points: The points of a check cell or of a question that a person grades; None for any other cell.
     """
@@ -83,10 +83,10 @@ def source_notebook(master: Path, *, points: Points = exercise_points) -> Notebo
 
     Args:
         master: A MyST Markdown file.
-        points: Gives the points of an exercise; the exercises themselves by default.
+        points: Returns the points of an exercise; by default from the exercise itself.
 
     Raises:
-        MasterError: The master cannot be used; the message says where, why and what to do.
+        MasterError: The master cannot be used. The message says where, why, and what to do.
     """
     return notebook_of(named_cells(master, points=points))
 
@@ -103,7 +103,7 @@ def named_cells(master: Path, *, points: Points = exercise_points) -> list[Named
     """Return the cells of ``master``, checked and named.
 
     Raises:
-        MasterError: As for :func:`source_notebook`.
+        MasterError: The master cannot be used; see :func:`source_notebook`.
     """
     try:
         cells = with_first_cells(master, with_copies(master, parse_master(master)))
@@ -117,7 +117,7 @@ def named_cells(master: Path, *, points: Points = exercise_points) -> list[Named
 
 
 def _links(master: Path) -> Iterator[MasterCell]:
-    """Yield the last cell of a notebook: links to the notebooks before and after it in the chapter, if any."""
+    """Yield the last cell of a notebook, which links to its neighbors in the chapter; nothing if it has none."""
     ways = zip(("← Previous: {}", "Next: {} →"), before_and_after(master), strict=True)
     links = [way.format(_link(other)) for way, other in ways if other is not None]
     if links:
@@ -134,14 +134,14 @@ def _name_all(master: Path, cells: list[MasterCell], points: Points) -> Iterator
     section = "start"
 
     def numbered(wanted: str) -> str:
-        """Return the name, with a number from the second time on: ``given-talker-2``."""
+        """Return the name, with a number added from the second time on: ``given-talker-2``."""
         taken[wanted] += 1
         return wanted if taken[wanted] == 1 else f"{wanted}-{taken[wanted]}"
 
     for cell in cells:
         if cell.kind is CellRole.TEXT:
             section = _last_heading(cell.source) or section
-            # Nothing but its text can name it.
+            # Such a cell can only be named by its text.
             yield NamedCell(cell, numbered("text-" + hashlib.sha256(cell.source.encode()).hexdigest()[:10]))
             continue
         _region_where_it_belongs(master, cell)
@@ -170,7 +170,7 @@ def _defined_names(source: str) -> list[str]:
     """Return the functions and classes that a code cell defines at its top level, or the Python file that it writes.
 
     Raises:
-        SyntaxError: The cell must be Python and is not.
+        SyntaxError: The cell has to be valid Python and is not.
     """
     definitions = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
     return [node.name for node in ast.parse(python_of(source)).body if isinstance(node, definitions)]
@@ -194,7 +194,7 @@ def _region_where_it_belongs(master: Path, cell: MasterCell) -> None:
 
 
 def _is_python(master: Path, cell: MasterCell, unsolved: str) -> None:
-    """Check that a solution cell is valid Python with its solution and without."""
+    """Check that a solution cell is valid Python, both with and without its solution."""
     try:
         _defined_names(cell.source)
     except SyntaxError as error:
@@ -245,7 +245,7 @@ def _unique(master: Path, named: list[NamedCell]) -> None:
 
 
 def _subjects_are_solutions(master: Path, named: list[NamedCell]) -> None:
-    """Check that the subject of each check comes from a solution cell above it: the student must write it."""
+    """Check that a solution cell above each check defines its subject, because the student has to write it."""
     written: set[str] = set()
     on_disk = False
     for item in named:
@@ -277,7 +277,8 @@ def _node(named: NamedCell) -> NotebookNode:
     if cell.kind is CellRole.DEMONSTRATION:
         metadata["tags"] = [CellRole.DEMONSTRATION.value]
     if cell.folded:
-        metadata |= {"cellView": "form", "jupyter": {"source_hidden": True}}  # Colab's word, and JupyterLab's
+        # The first is for Colab, the second for JupyterLab.
+        metadata |= {"cellView": "form", "jupyter": {"source_hidden": True}}
     if cell.kind in (CellRole.TEXT, CellRole.MANUAL):
         figures = {"attachments": from_dict(cell.attachments)} if cell.attachments else {}
         return new_markdown_cell(cell.source, id=named.name, metadata=from_dict(metadata), **figures)

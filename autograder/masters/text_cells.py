@@ -1,4 +1,4 @@
-"""Add two things to text cells that Markdown does not have: hints that open one at a time, and figures.
+"""Adds two things to text cells that Markdown does not have: hints that open one at a time, and figures.
 
 An author writes one block after the other::
 
@@ -10,13 +10,12 @@ An author writes one block after the other::
     With the timer.
     :::
 
-JupyterLab does not have such blocks, but it shows ``<details>``. Each hint is put inside the one before it, so
+JupyterLab does not have such blocks, but it supports ``<details>``. Each hint is put inside the one before it, so
 that a student cannot see the second before opening the first.
 
-A notebook must show its figures in any folder, so it contains them, as PNGs, because JupyterLab does not show an
-attached SVG. The PNG is drawn from
-the SVG by :mod:`autograder.masters.drawing` and committed next to it; it contains a digest of the SVG, so that a figure
-that was changed and not drawn again is noticed.
+A notebook must show its figures in any folder, so they are embedded in it, as PNGs, because JupyterLab does not show
+an attached SVG. Each PNG is drawn from its SVG by :mod:`autograder.masters.drawing` and committed next to it. It
+contains a digest of the SVG, so that an SVG that was changed and not drawn again is noticed.
 """
 
 from __future__ import annotations
@@ -36,24 +35,24 @@ if TYPE_CHECKING:
 OPENING = re.compile(r":::\{hint\}\s*(?P<question>.*?)\s*")
 CLOSING = ":::"
 REFERENCE = re.compile(r"!\[\]\((?P<path>[^)\s]+\.svg)\)")
-"""Matches a master's line that shows a figure. It has no alternative text: that is in the SVG."""
+"""Matches a line of a master that shows a figure. It has no alternative text, because the SVG contains that."""
 KEYWORD = b"Drawn from SVG"
 _SVG = "{http://www.w3.org/2000/svg}"
 
 
 @dataclass(frozen=True)
 class Hint:
-    """One hint: the question it answers, and the Markdown that answers it."""
+    """A hint: the question that it answers, and the answer in Markdown."""
 
     question: str
     answer: str
 
 
 def nest_hints(markdown: str) -> str:
-    """Return ``markdown`` with every run of hint blocks as nested ``<details>``.
+    """Return ``markdown`` with every run of hint blocks replaced by nested ``<details>``.
 
     Raises:
-        CellError: A hint has no question, holds another hint, or is never closed.
+        CellError: A hint has no question or no answer, contains another hint, or is never closed.
     """
     lines = markdown.split("\n")
     result: list[str] = []
@@ -66,7 +65,7 @@ def nest_hints(markdown: str) -> str:
             run.append(_hint(opening["question"], lines[offset + 1 : end], offset))
             offset = end + 1
             continue
-        # Blank lines between two hints do not end their run.
+        # Blank lines between two hints do not end the run.
         if run and lines[offset].strip():
             result.extend([_nested(run), ""])
             run = []
@@ -111,10 +110,10 @@ def _nested(hints: list[Hint]) -> str:
 
 
 def attach_figures(folder: Path, markdown: str) -> tuple[str, dict[str, dict[str, str]]]:
-    """Return a text cell's text with its figures as attachments.
+    """Return the text of a text cell with its figures as attachments.
 
     Args:
-        folder: The folder of the master, to which its references are relative.
+        folder: The folder of the master. References to figures are relative to it.
         markdown: The text of the cell.
 
     Returns:
@@ -135,12 +134,12 @@ def attach_figures(folder: Path, markdown: str) -> tuple[str, dict[str, dict[str
 
 
 def digest(svg: bytes) -> bytes:
-    """Return the digest of an SVG that its PNG contains."""
+    """Return the digest of an SVG, which its PNG has to contain."""
     return hashlib.sha256(svg).hexdigest().encode("ascii")
 
 
 def _read(svg: Path, named: str, line: int) -> tuple[str, str, bytes]:
-    """Return the name of a figure's PNG, the figure's description, and the picture."""
+    """Return the name of a figure's PNG, the figure's description, and the PNG itself."""
     png = svg.with_suffix(".png")
     try:
         drawing, picture = svg.read_bytes(), png.read_bytes()

@@ -1,1 +1,1 @@
-"""Define the messages between the autograder's processes: lines of JSON, each of a type defined here."""
+"""The messages between the autograder's processes: lines of JSON, each of a type that is defined here."""

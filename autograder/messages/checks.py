@@ -1,7 +1,7 @@
-"""Messages between a notebook and the judge, over the judge's Unix socket: one connection is one check.
+"""The messages between a notebook and the judge, over the judge's Unix socket. One connection is one check.
 
-The notebook is untrusted. Its messages affect only what the subject counts as having said or done; the judge observes
-the traffic on the wire by itself.
+The notebook is not trusted. Its messages affect only what the subject is recorded as having said or done. The judge
+itself watches the traffic on the wire.
 """
 
 from __future__ import annotations
@@ -13,16 +13,17 @@ from autograder.messages.workspaces import Source
 from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annotations)
 
 SOCKET_VARIABLE = "AUTOGRADER_JUDGE_SOCKET"
-"""Environment variable with the path of the judge's socket; a kernel without it starts its own judge."""
+"""The environment variable for the path of the judge's socket. A kernel without it starts its own judge."""
 
 # --- From the notebook: about its check
 
 
 class Check(Message, frozen=True):
-    """The first message: asks for a check.
+    """The first message: request a check.
 
     Attributes:
-        exercise: The exercise's id.
+        kind: ``"class"`` for a Node class, ``"path"`` for a workspace or a launch file, ``"function"`` for everything
+            else.
         kind: ``"class"`` for a Node class, ``"path"`` for a workspace or a launch file,
             ``"function"`` for everything else.
     """
@@ -36,17 +37,17 @@ class Ready(Message, frozen=True):
 
 
 class Met(Message, frozen=True):
-    """The answer to :class:`Meet`: true if the notebook's participant has discovered what that asks for."""
+    """The answer to :class:`Meet`: True if the notebook's participant has noticed the new and the removed endpoints."""
 
     seen: bool
 
 
 class Sources(Message, frozen=True):
-    """The end of the sources that :class:`Collect` asks for; a :class:`Source` for each of them comes before.
+    """The end of the sources that :class:`Collect` requests. A :class:`Source` for each of them came before.
 
     Attributes:
-        path: The workspace or launch file among them.
-        trouble: Why there are no sources, for the student; otherwise empty.
+        path: The path of the workspace or launch file among them.
+        trouble: Why there are no sources, in words for the student; empty if there are.
     """
 
     path: str
@@ -57,26 +58,26 @@ class Sources(Message, frozen=True):
 
 
 class _RunMessage(Message, frozen=True):
-    """Something that happened in a run.
+    """The common part of messages about something that happened in a run.
 
     Attributes:
-        run: The number of the run, from :class:`Start`.
+        run: The number of the run, as in :class:`Start`.
     """
 
     run: int
 
 
 class Started(_RunMessage, frozen=True):
-    """The function is called; ``accepted`` are the options for which it has parameters."""
+    """The function was called; ``accepted`` are those options for which it has parameters."""
 
     accepted: list[str]
 
 
 class Constructed(_RunMessage, frozen=True):
-    """The node is made; ``marker`` is a topic created after everything that the constructor creates.
+    """The node is made; ``marker`` is a topic created after everything that the constructor makes.
 
-    ``goes_on`` is true if the node has a timer or a thread, which may create more endpoints once the node spins.
-    ``twin`` is the node's name if the constructor has made a second node of this name.
+    ``goes_on`` is true if the node has a timer or a thread, which may make more endpoints once the node spins.
+    ``twin`` is the node's name if the constructor has made a second node with this name.
     """
 
     marker: str
@@ -138,11 +139,11 @@ FromNotebook = Check | Ready | Met | Source | Sources | RunMessage
 
 
 class Begin(Message, frozen=True):
-    """Use this ROS domain.
+    """A request to use this ROS domain.
 
     Attributes:
         domain: The ROS domain of this check.
-        keeper: The name of the node that stays in the context of a class or function between runs.
+        keeper: The name of the node that stays in the context between the runs of a class or function.
     """
 
     domain: int
@@ -150,17 +151,17 @@ class Begin(Message, frozen=True):
 
 
 class Collect(Message, frozen=True):
-    """Send the sources of the check cell's path; the grader builds and runs them by itself."""
+    """A request to send the sources of the check cell's path, because the grader builds and runs them itself."""
 
 
 class Meet(Message, frozen=True):
-    """Wait until the participant sees certain endpoints of the judge, and no longer sees others.
+    """A request to wait until the participant sees certain endpoints of the judge, and no longer sees others.
 
     Attributes:
         fresh: True to make a new context first.
-        there: Endpoints that it must see.
-        gone: Endpoints of earlier runs that it must no longer see.
-        within: Limit in seconds.
+        there: The endpoints that it must see.
+        gone: The endpoints of earlier runs that it must no longer see.
+        within: The limit in seconds.
     """
 
     fresh: bool
@@ -170,13 +171,13 @@ class Meet(Message, frozen=True):
 
 
 class Start(Message, frozen=True):
-    """Make the node, call the function, or start the process.
+    """A request to make the node, call the function, or start the process.
 
     Attributes:
         run: The number of this run.
         fresh: True to make a new context first.
         arguments: The arguments of the class or function.
-        options: Further arguments, passed if it has parameters of these names.
+        options: Keyword arguments, which are passed if the subject has parameters with these names.
     """
 
     run: int
@@ -186,31 +187,31 @@ class Start(Message, frozen=True):
 
 
 class Release(Message, frozen=True):
-    """Spin the node."""
+    """A request to spin the node."""
 
     run: int
 
 
 class Interrupt(Message, frozen=True):
-    """Send Ctrl-C to the process of a path."""
+    """A request to send Ctrl-C to the process that runs a path."""
 
     run: int
 
 
 class Stack(Message, frozen=True):
-    """Send the stacks of the subject's threads."""
+    """A request for the stacks of the subject's threads."""
 
     run: int
 
 
 class Stop(Message, frozen=True):
-    """End the run."""
+    """A request to end the run."""
 
     run: int
 
 
 class SoFar(Message, frozen=True, tag="so_far"):
-    """The check goes on, and this is known so far; a later look may show that it is wrong.
+    """A message that the check goes on, with what is known so far. A later look may show that this is wrong.
 
     Attributes:
         words: A sentence for the student; empty if nothing is known.
@@ -223,8 +224,8 @@ class Judged(Message, frozen=True, tag="verdict"):
     """The last message: the check is over.
 
     Attributes:
-        verdict: The verdict. None for a submission in its sandbox: otherwise it could choose which
-            of two runs of its notebook counts, by spoiling the first one.
+        verdict: The verdict. None for a submission in its sandbox, which could otherwise choose which of two runs of
+            its notebook counts, by spoiling the first one.
     """
 
     verdict: Verdict | None

@@ -1,4 +1,4 @@
-"""Exchange messages as JSON lines over a Unix socket, between processes that need not trust each other."""
+"""Exchanges messages as JSON lines over a Unix socket, between processes that need not trust each other."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from types import UnionType
 
 MAX_LINE = 1_000_000
-"""Limit of one message in bytes; a longer one ends the connection."""
+"""The maximum size of a message in bytes. A longer one ends the connection."""
 
 
 class Hangup(ConnectionError):
@@ -39,23 +39,23 @@ class NotUnderstood(ValueError):
 
 
 def _tag(name: str) -> str:
-    """Return the word for a type of message: ``callback_raised`` for ``CallbackRaised``."""
+    """Return the word for a type of message, such as ``callback_raised`` for ``CallbackRaised``."""
     return "".join(f"_{c.lower()}" if c.isupper() and i else c.lower() for i, c in enumerate(name))
 
 
 class Message(msgspec.Struct, frozen=True, tag_field="say", tag=_tag):
-    """One message; its field ``say`` contains the word for its type."""
+    """A message. Its field ``say`` contains the word for its type."""
 
 
 MessageT = TypeVar("MessageT", bound=Message)
 
 
 class Lines:
-    """One connection. Any thread may send; only one may receive.
+    """One connection. Any thread may send, but only one may receive.
 
     Args:
         connection: A connected Unix socket, which this object owns from now on.
-        largest: Limit of a received message, in bytes.
+        largest: The maximum size of a received message, in bytes.
     """
 
     def __init__(self, connection: socket.socket, largest: int = MAX_LINE) -> None:
@@ -69,7 +69,7 @@ class Lines:
 
         Args:
             path: The path of the socket.
-            limit: Limit of each wait in seconds of wall time; None for no limit.
+            limit: The limit of each wait, in seconds of wall time; None for no limit.
 
         Raises:
             Hangup: No process accepts the connection.
@@ -85,7 +85,7 @@ class Lines:
 
     @classmethod
     def with_parent(cls, largest: int = sys.maxsize) -> Self:
-        """Connect to the parent process, which has started this one with a socket as its standard input.
+        """Connect to the parent process, which started this one with a socket as its standard input.
 
         No child of this process inherits that socket, so the connection ends when this process ends.
         """
@@ -99,7 +99,7 @@ class Lines:
         """Send one message.
 
         Raises:
-            Hangup: Nobody listens any more.
+            Hangup: The other side has disconnected.
         """
         self._send(encode(message))
 
@@ -107,7 +107,7 @@ class Lines:
         """Send one message that is already a line of JSON.
 
         Raises:
-            Hangup: Nobody listens any more.
+            Hangup: The other side has disconnected.
         """
         self._send(line + b"\n")
 
@@ -128,11 +128,11 @@ class Lines:
         """Wait for the next message.
 
         Args:
-            kind: The expected type of message, or a union of types.
+            kind: The expected type of the message, or a union of types.
 
         Raises:
             Hangup: The other side has disconnected, or sent something that is too long or not a message.
-            NotUnderstood: The message has a type that is not expected.
+            NotUnderstood: The message has another type.
         """
         words = _words(self.hear_json())
         try:
@@ -144,7 +144,7 @@ class Lines:
         """Wait for the next message, and return it undecoded.
 
         Args:
-            within: Limit in seconds of wall time; None for no limit.
+            within: The limit in seconds of wall time; None for no limit.
 
         Raises:
             Silent: No message came in time.
@@ -176,22 +176,22 @@ class Lines:
         return bool(waiting.poll(max(0.0, deadline - time.monotonic()) * 1000))
 
     def finish(self) -> None:
-        """Stop sending, from any thread. Messages can still be received."""
+        """Stop sending. Any thread may call this. Messages can still be received."""
         with contextlib.suppress(OSError):
             self._socket.shutdown(socket.SHUT_WR)
 
     def close(self) -> None:
-        """Close the connection; a thread that waits in :meth:`hear` gets a Hangup."""
+        """Close the connection. A thread that waits in :meth:`hear` gets a Hangup."""
         with contextlib.suppress(OSError):
             self._socket.shutdown(socket.SHUT_RDWR)
         self._socket.close()
 
 
 def listen(path: Path) -> socket.socket:
-    """Return a listening Unix socket for this user only. It replaces one that an ended process has left.
+    """Return a listening Unix socket that only this user can reach. It replaces a socket left by a process that ended.
 
     Args:
-        path: At most 107 bytes long (unix(7)).
+        path: The path of the socket, at most 107 bytes long (unix(7)).
     """
     listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     path.unlink(missing_ok=True)
@@ -204,8 +204,8 @@ def listen(path: Path) -> socket.socket:
 def encode(message: Message) -> bytes:
     """Return a message as bytes, with a newline at the end.
 
-    Lone surrogates, which Python uses in file names that are not UTF-8, are sent as JSON escapes. msgspec alone
-    would refuse them, and a student's output must not end a check.
+    Lone surrogates, which Python uses in file names that are not UTF-8, are sent as JSON escapes. msgspec alone would
+    reject them, but no output of a student may end a check.
     """
     return json.dumps(msgspec.to_builtins(message, enc_hook=_plain)).encode() + b"\n"
 
@@ -221,5 +221,5 @@ def _words(line: bytes) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> str:
-    """Return a string for a value of a student's own class derived from ``str``."""
+    """Return a plain string for a value whose class the student derived from ``str``."""
     return str.__str__(value) if isinstance(value, str) else str(value)

@@ -1,4 +1,4 @@
-"""Messages between the grader and its judge process: one JSON line each way, on a socket that no notebook has."""
+"""The messages between the grader and its judge process: one JSON line each way, on a socket that no notebook has."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annota
 
 
 class Open(msgspec.Struct, tag="open", frozen=True):
-    """Allow one check of this exercise.
+    """An order to allow one check of this exercise.
 
     Attributes:
         exercise: The exercise's id.
-        seed: The seed of its random inputs.
+        seed: The seed of the random inputs.
         record: True to record a reference output instead of judging.
-        workspaces: Path at which the judge reaches the socket of the grader's workspace service; empty if
-            there is none.
-        evidence: True to add the evidence to the verdict.
-        boxed: True if judge and notebook are in sandboxes. No other program is on their network, so a domain whose
-            ports are in use is free all the same. The notebook is a submission, which gets no verdict.
+        workspaces: The path at which the judge reaches the socket of the grader's workspace service; empty if there
+            is none.
+        evidence: True to add the evidence to the report.
+        boxed: True if judge and notebook are in sandboxes. Then no other program is on their network, so a domain is
+            free even if its ports are in use. The notebook is then a submission, which gets no verdict.
     """
 
     exercise: str
@@ -30,18 +30,17 @@ class Open(msgspec.Struct, tag="open", frozen=True):
 
 
 class Close(msgspec.Struct, tag="close", frozen=True):
-    """Allow no further check, and report the result of the last one."""
+    """An order to allow no further check, and to report the result of the last one."""
 
 
 class Report(msgspec.Struct, frozen=True):
     """The result of a check.
 
     Attributes:
-        verdict: The judge's verdict; None if no check was asked for or the judge failed.
+        verdict: The judge's verdict; None if no check was requested or the judge failed.
         reference: The reference output as text, after a recording.
-        trouble: Why there is no verdict, in words; empty if no check was asked for.
-        evidence: The evidence, as :mod:`autograder.judge.verdicts.keeping` packs it; empty if it
-            was not asked for.
+        trouble: Why there is no verdict, in words; empty if no check was requested.
+        evidence: The evidence, as :mod:`autograder.judge.verdicts.keeping` packs it; empty if it was not requested.
         crowded: True if the subject did not pass, perhaps because the machine was overloaded.
         unfinished: True if there is no verdict because the judge's time was over.
     """

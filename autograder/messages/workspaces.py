@@ -1,6 +1,6 @@
-"""Messages of the grader's workspace service: to the judge for a check, to a notebook for a build.
+"""The messages of the grader's workspace service: with the judge for a check, with a notebook for a build.
 
-Reports of the service and output of programs are different messages, so that no program can fake a report.
+The service's reports and the programs' output are different messages, so that no program can fake a report.
 """
 
 from __future__ import annotations
@@ -9,10 +9,10 @@ from autograder.messages.lines import Message
 
 
 class Source(Message, frozen=True):
-    """One file or folder.
+    """A file or folder of the sources.
 
     Attributes:
-        path: Relative, with slashes.
+        path: The relative path, with slashes.
         data: The content of the file; None for a folder.
         executable: True if the owner may execute it.
     """
@@ -26,14 +26,14 @@ class Source(Message, frozen=True):
 
 
 class Check(Message, frozen=True):
-    """The first message, before the sources.
+    """The judge's first message, before the sources.
 
     Attributes:
         exercise: The exercise's id.
         domain: The ROS domain of the programs.
-        path: The workspace or launch file among the sources.
+        path: The path of the workspace or launch file among the sources.
         count: The number of sources that follow.
-        trouble: Why there are none, for the student; empty if some follow.
+        trouble: Why there are no sources, in words for the student; empty if some follow.
     """
 
     exercise: str
@@ -44,11 +44,11 @@ class Check(Message, frozen=True):
 
 
 class Start(Message, frozen=True):
-    """Build the submission, unless it is already built, and run it.
+    """A request to run the submission. It is built first, unless that was done already.
 
     Attributes:
         run: The number of the run.
-        arguments: The program's arguments; if an exercise is about several programs, the first one chooses the program.
+        arguments: The program's arguments. If an exercise is about several programs, the first argument chooses one.
     """
 
     run: int
@@ -56,13 +56,13 @@ class Start(Message, frozen=True):
 
 
 class Interrupt(Message, frozen=True):
-    """Send Ctrl-C to the program of the run, which goes on until it has ended by itself or is stopped."""
+    """A request to send Ctrl-C to the program of the run. The run continues until the program ends or is stopped."""
 
     run: int
 
 
 class Stop(Message, frozen=True):
-    """End the run."""
+    """A request to end the run."""
 
     run: int
 
@@ -98,7 +98,7 @@ class Output(Message, frozen=True):
 
 
 class Exited(Message, frozen=True):
-    """The program has ended by itself; None if its exit code is not known."""
+    """The program has ended by itself; the exit code is None if it is not known."""
 
     run: int
     code: int | None = None
@@ -111,7 +111,7 @@ class Stopped(Message, frozen=True):
 
 
 class Trouble(Message, frozen=True):
-    """The service failed, through no fault of the submission."""
+    """The service failed, which is not the submission's fault."""
 
     why: str
 
@@ -123,12 +123,12 @@ FromService = Ready | BuildEnded | ReportLine | Output | Exited | Stopped | Trou
 
 
 class Build(Message, frozen=True):
-    """The first message, before the sources.
+    """The notebook's first message, before the sources: a request for a build.
 
     Attributes:
-        count: How many sources follow.
-        path: The workspace among them.
-        only: The packages to build.
+        count: The number of sources that follow.
+        path: The path of the workspace among the sources.
+        only: The names of the packages to build.
     """
 
     count: int
@@ -137,13 +137,13 @@ class Build(Message, frozen=True):
 
 
 class NotBuilt(Message, frozen=True, tag="no"):
-    """The service builds nothing for this notebook, for the given reason."""
+    """The service builds nothing for this notebook, for this reason."""
 
     why: str
 
 
 class BuildFailed(Message, frozen=True, tag="failed"):
-    """The fields are those of :class:`autograder.workspaces.builds.colcon.Build`."""
+    """The build failed. The fields are those of :class:`autograder.workspaces.builds.colcon.Build`."""
 
     seconds: float
     trouble: str
@@ -153,12 +153,12 @@ class BuildFailed(Message, frozen=True, tag="failed"):
 
 
 class BuildDone(Message, frozen=True, tag="built"):
-    """The build follows as an archive.
+    """The build succeeded, and follows as an archive.
 
     Attributes:
-        pieces: The number of messages with the archive.
-        install: The path of the install folder that its files contain.
-        seconds: Wall time of the build.
+        pieces: The number of messages that contain the archive.
+        install: The path of the install folder that is written in the files of the build.
+        seconds: The duration of the build, in seconds of wall time.
     """
 
     pieces: int

@@ -1,1 +1,1 @@
-"""Serve students: JupyterLab, the course page (also as text), resetting a notebook, and the hand-out."""
+"""What students use: JupyterLab, the course page (also as text), resetting a notebook, and the hand-out."""

@@ -1,4 +1,4 @@
-"""Make the course page: as one HTML file that loads nothing else, as text for a terminal, and as JSON."""
+"""Makes the course page: as an HTML file that loads nothing else, as text for a terminal, and as JSON."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ def page_html(standing: Standing, base: str, token: str) -> str:
 
     Args:
         standing: The progress of the student.
-        base: The server's base address; it ends with a slash.
-        token: Proves to the server that an action comes from this page.
+        base: The base address of the server. It ends with a slash.
+        token: Proves to the server that a request comes from this page.
     """
     return _environment().get_template("page.html.j2").render(standing=standing, base=base, token=token)
 
@@ -39,7 +39,7 @@ def trouble_html(message: str, base: str) -> str:
 
     Args:
         message: The reason.
-        base: The server's base address; it ends with a slash.
+        base: The base address of the server. It ends with a slash.
     """
     return _environment().get_template("trouble.html.j2").render(message=message, base=base)
 
@@ -75,7 +75,7 @@ def standing_json(standing: Standing) -> str:
 
 
 def hours(minutes: int) -> str:
-    """Return a rough time: ``"40 minutes"``, ``"2 hours"``, ``"8½ hours"``."""
+    """Return a rounded duration: ``"40 minutes"``, ``"2 hours"``, ``"8½ hours"``."""
     if minutes < 60:
         return f"{minutes} minutes"
     halves = round(minutes / 30)

@@ -1,8 +1,8 @@
-"""Help in a kernel that has just started, in which the notebook's given cells have not run.
+"""Help in a kernel that was just started, in which the notebook's given cells have not run yet.
 
-JupyterLab's button *Check* asks :func:`cells_to_run` which of them to run first. A check that the student runs by hand
-ends with Python's ``NameError``; IPython loads this module as an extension, so that the error tells what to run. This
-module imports no ROS, so that a kernel starts as fast as before.
+JupyterLab's button *Check* asks :func:`cells_to_run` which of them to run first. If a student runs a check cell by
+hand, Python raises a ``NameError``; IPython loads this module as an extension, so that the error says what to run.
+This module does not import ROS, so that a kernel starts as fast as without it.
 """
 
 from __future__ import annotations
@@ -33,15 +33,15 @@ _ADVICE = (
 def cells_to_run(sources: Sequence[str], own: Sequence[int]) -> str:
     """Return the cells above a check that have to run before it in this kernel.
 
-    A cell has to run if it defines a name that a later cell reads and that the kernel does not have. So no cell
+    A cell has to run if it defines a name that a later cell reads and that the kernel does not have yet. So no cell
     runs twice, and no demonstration runs that the check does not need.
 
     Args:
         sources: The code cells of the notebook, from the first one to the check cell.
-        own: The indices of the cells that run in any case: the student's answer and the check.
+        own: The indexes of the cells that run in any case: the student's answer, and the check.
 
     Returns:
-        The indices of the other cells, as JSON.
+        The indexes of the other cells to run, as JSON.
     """
     shell: Any = get_ipython()
     known = {*vars(builtins), *shell.user_ns}
@@ -75,9 +75,9 @@ def _names(source: str) -> tuple[set[str], set[str]]:
 
 
 def load_ipython_extension(shell: Any) -> None:
-    """Explain a ``NameError`` in a new kernel of ``./course lab``; called by IPython at the kernel's start.
+    """Explain a ``NameError`` in a new kernel of ``./course lab``. IPython calls this when the kernel starts.
 
-    The notebook's first cell imports ``autograder.notebook``, whose messages replace these.
+    The notebook's first cell imports ``autograder.notebook``, whose own messages replace these.
     """
     if os.environ.get(NOTEBOOKS_VARIABLE):
         shell.set_custom_exc((NameError,), _show)
@@ -85,7 +85,7 @@ def load_ipython_extension(shell: Any) -> None:
 
 def _show(shell: Any, kind: type, error: NameError, trace: Any, tb_offset: Any = None) -> None:
     del kind, tb_offset
-    if trace.tb_next is not None and trace.tb_next.tb_next is None:  # raised by the cell itself
+    if trace.tb_next is not None and trace.tb_next.tb_next is None:  # the cell itself raised the error
         words = _ADVICE.format(error.name)
         error._render_traceback_ = lambda: [words]  # type: ignore[attr-defined]
     shell.showtraceback(running_compiled_code=True)

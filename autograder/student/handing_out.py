@@ -1,8 +1,7 @@
-"""Make the hand-out for students: notebooks and their judge, without solutions, answers and grader.
+"""Makes the hand-out for students: notebooks and their judge, without solutions, answers and grader.
 
-The repository contains every solution, so it cannot be given to a class. The hand-out is a course of its own,
-with the same ``./course``: its exercises and reference outputs are in ``exercises/``, and no folder is called
-``solutions``.
+The repository contains every solution, so it cannot be given to a class. The hand-out is a separate course with the
+same ``./course``. Its exercises and reference outputs are in ``exercises/``, and it has no folder ``solutions``.
 """
 
 from __future__ import annotations
@@ -27,14 +26,14 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
 
 WHOLE = ("course", "pyproject.toml", "LICENSE", "environment", "autograder", ".devcontainer", ".dockerignore")
-"""Files and folders that are handed out unchanged, except for those below."""
+"""Files and folders that are handed out unchanged, except for those in :data:`KEPT_BACK`."""
 KEPT_BACK = (
     "autograder/authoring",
     "autograder/grading",
     "autograder/student/handing_out.py",
     "autograder/masters",
 )
-"""Parts that make notebooks, contain solutions or grade a class."""
+"""Parts of them that make notebooks, contain solutions or grade a class. They are not handed out."""
 PAGES = (
     "students-guide.md",
     "learning-outcomes.md",
@@ -43,10 +42,10 @@ PAGES = (
     "ros2-command.md",
     "robot.md",
 )
-"""The handed-out pages of ``docs/``."""
+"""The pages of ``docs/`` that are handed out."""
 _MADE = frozenset({"__pycache__", ".ipynb_checkpoints"})
 _MADE_BY_COLCON = frozenset({"build", "install", "log"})
-"""Folders with generated files; colcon's are next to the folder ``src`` of a workspace."""
+"""Folders with generated files, which colcon makes next to the folder ``src`` of a workspace."""
 README = """\
 # {title}
 
@@ -92,21 +91,23 @@ The last line opens a map of all notebooks; press *Begin*.""",
     "guide": "",
     "mistakes": "",
 }
-"""A course of its own has neither ``./course`` nor these pages: its students install the wheel."""
+"""The words of the hand-out's README for a course that is not this repository. It has neither ``./course`` nor these
+pages; its students install the wheel.
+"""
 
 
 class CannotHandOut(Exception):
-    """The hand-out cannot be made; the message says why and what to do."""
+    """The hand-out cannot be made. The message says why, and what to do."""
 
 
 @dataclass(frozen=True)
 class HandOut:
-    """A finished hand-out.
+    """A hand-out that was made.
 
     Attributes:
-        place: The folder, or the zip.
+        place: The path of the folder or zip.
         files: The number of files in it.
-        size: The total of their bytes.
+        size: The total size of the files, in bytes.
     """
 
     place: Path
@@ -125,12 +126,12 @@ def hand_out(
     """Make the hand-out for a class.
 
     Args:
-        place: A folder that is empty or does not exist; with ``as_zip``, the zip file.
-        root: The whole course.
-        assignments: The names of the notebooks to hand out, graded or not; empty for all.
-        as_zip: True to make a zip.
-        with_solutions: True to add what cards show with full marks: the reference solutions and their reasons.
-            Students can read them earlier by opening the folder ``exercises``.
+        place: The folder to make, which must be empty or not exist; with ``as_zip``, the zip file to make.
+        root: The top folder of the whole course.
+        assignments: The names of the notebooks to hand out, graded or not; all if empty.
+        as_zip: True to make a zip file.
+        with_solutions: True to add what cards show with full marks: the reference solutions, and the reasons for
+            them. Students can read these earlier by opening the folder ``exercises``.
 
     Raises:
         CannotHandOut: The place is not empty, a name is not that of a notebook, a notebook of the chapters was
@@ -156,7 +157,7 @@ def hand_out(
 
 
 def _wanted(chapters: Sequence[course.Chapter], names: Collection[str]) -> list[course.Chapter]:
-    """Return the chapters with only the named labs; all labs if no name is given."""
+    """Return the chapters with only the named labs; if no name is given, with all labs."""
     known = [lab.name for chapter in chapters for lab in chapter.labs]
     for name in names:
         if name not in known:
@@ -171,7 +172,7 @@ def _wanted(chapters: Sequence[course.Chapter], names: Collection[str]) -> list[
 def _files(
     root: Path, chapters: Sequence[course.Chapter], *, with_solutions: bool
 ) -> Iterator[tuple[str, Path | bytes]]:
-    """Return the files by their names in the hand-out."""
+    """Yield the files of the hand-out, each with its path in the hand-out."""
     for name in WHOLE:
         yield from ((path.relative_to(root).as_posix(), path) for path in _below(root / name, root))
     yield from _pages(root)
@@ -185,7 +186,7 @@ def _files(
 
 
 def _pages(root: Path) -> Iterator[tuple[str, Path]]:
-    """Yield the pages and the pictures that they show. Other pictures, such as the README's, may show a solution."""
+    """Yield the pages and the pictures that they show. Other pictures, such as those in README, may show a solution."""
     pages = [page for name in PAGES if (page := root / "docs" / name).is_file()]
     text = "".join(page.read_text(encoding="utf-8") for page in pages)
     shown = (path for path in _below(root / "docs" / "images", root) if f"(images/{path.name})" in text)
@@ -203,7 +204,7 @@ def _notebook(
         raise CannotHandOut(
             f"{notebook} contains work, which would be handed out: {COMMAND} reset {lab.name}"
         )
-    # A link to a notebook that is not handed out would be broken, so only its text stays.
+    # A link to a notebook that is not handed out would be broken, so only the text of the link stays.
     beside = {name: f"{name}.ipynb" for name in names}
     content = relinked(notebook.read_bytes().decode(), lambda name: beside.get(name, "")).encode()
     yield notebook.relative_to(root).as_posix(), content
@@ -248,7 +249,7 @@ def _pack(place: Path, files: dict[str, Path | bytes]) -> None:
         for name, content in files.items():
             entry = zipfile.ZipInfo(
                 f"{place.stem}/{name}"
-            )  # a fixed date, so that the same files make the same zip
+            )  # a fixed date, so that the same files always give the same zip
             entry.compress_type = zipfile.ZIP_DEFLATED
             runs = isinstance(content, Path) and content.stat().st_mode & stat.S_IXUSR
             entry.external_attr = (0o755 if runs else 0o644) << 16

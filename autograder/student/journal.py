@@ -1,8 +1,8 @@
-"""Keep the journal of a student's checks: a small file next to the notebooks, which is never a grade.
+"""Keeps the journal of a student's checks: a small file next to the notebooks, which is never a grade.
 
-Each line is JSON: a check that ended, a notebook that was marked as read, or one that was reset. The course
-page and ``./course progress`` read it. No grade depends on it: a check goes on if the file cannot
-be written, and a damaged line is ignored.
+Each line is JSON: a check that ended, a notebook that was marked as read, or a notebook that was reset. The course
+page and ``./course progress`` read the journal. No grade depends on it: a check goes on even if the file cannot be
+written, and a damaged line is ignored.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 VARIABLE = "AUTOGRADER_JOURNAL"
-"""The environment variable with the path of this session's journal; empty for none."""
+"""The environment variable for the path of this session's journal; empty if there is none."""
 NAME = ".course-journal.jsonl"
-"""The journal's name in the folder of the notebooks."""
+"""The name of the journal in the folder of the notebooks."""
 MOST = 4_000_000
-"""Number of bytes that are read from the end of the file: about forty thousand checks."""
+"""The number of bytes to read from the end of the file: about forty thousand checks."""
 
 
 @dataclass(frozen=True)
@@ -40,10 +40,10 @@ class JournalEntry:
 
     Attributes:
         kind: What happened: a check ended, or a notebook was marked as read, unmarked, or reset.
-        name: The exercise's id for a check, such as ``"lab_1_2.talker"``; otherwise the notebook's name.
-        time: Unix time in seconds.
-        points: The points of a check.
-        possible: The most points that the check could have.
+        name: For a check, the exercise's id, such as ``"lab_1_2.talker"``; otherwise the name of the notebook.
+        time: The Unix time in seconds.
+        points: The points that the check earned.
+        possible: The maximum points of the check.
     """
 
     kind: Literal["check", "read", "unread", "reset"]
@@ -54,17 +54,17 @@ class JournalEntry:
 
     @property
     def notebook(self) -> str:
-        """The name of its notebook, such as ``"lab_1_2"``."""
+        """The name of the notebook, such as ``"lab_1_2"``."""
         return self.name.partition(".")[0]
 
     @property
     def full(self) -> bool:
-        """True for a check with full marks."""
+        """True for a check that earned full marks."""
         return self.kind == "check" and self.points >= self.possible > 0
 
 
 def place(folder: Path) -> Path:
-    """Return the journal for the notebooks in a folder: in that folder, or in the user's home if it is read-only.
+    """Return the journal for a folder of notebooks: in that folder or, if it is read-only, in the user's home.
 
     Args:
         folder: The folder that JupyterLab shows.
@@ -77,7 +77,7 @@ def place(folder: Path) -> Path:
 
 
 def own_place() -> Path | None:
-    """Return this session's journal: that of ``./course lab``, or else that of the course's own chapters."""
+    """Return the journal of this session: that of ``./course lab``, or else that of the course's own chapters."""
     named = os.environ.get(VARIABLE)
     if named is not None:
         return Path(named) if named else None
@@ -91,7 +91,7 @@ def note_check(verdict: Verdict, journal: Path | None = None) -> None:
 
     Args:
         verdict: The verdict of the check.
-        journal: Where; this session's own where not given.
+        journal: The journal to write to; by default this session's.
     """
     if verdict.state != "not_checked":
         note(JournalEntry("check", verdict.exercise, time.time(), verdict.score, verdict.max_score), journal)
@@ -102,7 +102,7 @@ def note(entry: JournalEntry, journal: Path | None = None) -> bool:
 
     Args:
         entry: The line.
-        journal: Where; this session's own where not given.
+        journal: The journal to write to; by default this session's.
     """
     try:
         journal = journal or own_place()
@@ -111,9 +111,10 @@ def note(entry: JournalEntry, journal: Path | None = None) -> bool:
         journal.parent.mkdir(parents=True, exist_ok=True)
         with _opened(journal, os.O_RDWR | os.O_APPEND | os.O_CREAT) as number:
             size = os.fstat(number).st_size
-            torn = size and os.pread(number, 1, size - 1) != b"\n"  # a full disk, a machine that went off
+            # The last line may be incomplete, because the disk was full or the machine was switched off.
+            torn = size and os.pread(number, 1, size - 1) != b"\n"
             os.write(number, (b"\n" if torn else b"") + msgspec.json.encode(entry) + b"\n")
-    except (OSError, RuntimeError):  # pathlib raises RuntimeError if there is no home
+    except (OSError, RuntimeError):  # pathlib raises RuntimeError if the user has no home folder
         return False
     return True
 
@@ -136,7 +137,7 @@ def entries(journal: Path | None) -> list[JournalEntry]:
 
 
 def best(lines: Iterable[JournalEntry]) -> dict[str, JournalEntry]:
-    """Return for each exercise the first of its best checks since its notebook was last reset."""
+    """Return, for each exercise, the first of its best checks since its notebook was last reset."""
     found: dict[str, dict[str, JournalEntry]] = {}
     for entry in lines:
         if entry.kind == "reset":
@@ -149,14 +150,14 @@ def best(lines: Iterable[JournalEntry]) -> dict[str, JournalEntry]:
 
 
 def finished(chapter: course.Chapter, reached: dict[str, JournalEntry]) -> float | None:
-    """Return the time at which all points of a chapter were reached; None before that.
+    """Return the time at which all points of a chapter were reached; None if they have not been reached.
 
     Args:
         chapter: The chapter.
-        reached: The best checks of its exercises.
+        reached: The best checks of the chapter's exercises.
 
     Returns:
-        Unix time in seconds.
+        The Unix time in seconds.
     """
     wanted = [exercise for lab in chapter.labs for exercise in chapter.exercises_of(lab)]
     if not wanted or not all(name in reached and reached[name].full for name in wanted):
@@ -166,8 +167,8 @@ def finished(chapter: course.Chapter, reached: dict[str, JournalEntry]) -> float
 
 @contextlib.contextmanager
 def _opened(path: Path, flags: int) -> Iterator[int]:
-    # The folder may belong to another user, whose work is being viewed: a pipe must not block a check, and a
-    # link must not make it write to a file elsewhere.
+    # The folder may belong to another user whose work is being viewed. So a pipe must not block a check, and a link
+    # must not make the check write to a file elsewhere.
     number = os.open(path, flags | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC, 0o600)
     try:
         if not stat.S_ISREG(os.fstat(number).st_mode):

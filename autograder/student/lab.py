@@ -1,7 +1,7 @@
-"""Start JupyterLab for a student: the chapters, nbgrader's Validate button, one ROS domain for the session.
+"""Starts JupyterLab for a student: the chapters, nbgrader's Validate button, and one ROS domain for the session.
 
 An instructor starts JupyterLab directly (``jupyter lab``), so everything that is switched off here is on there. The
-files in ``lab_config/`` list what is off; Jupyter reads them because their folder comes before its own.
+files in ``lab_config/`` say what is off. Jupyter reads them because it searches their folder before its own.
 """
 
 from __future__ import annotations
@@ -18,22 +18,27 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 SETTINGS = Path(__file__).with_name("lab_config")
-"""Without *Create Assignment*, formgrader and lists of courses, which are for instructors. *Validate* gives a cell ten
-minutes instead of half a minute, because a check may have to build a workspace."""
+"""The folder of Jupyter's settings for students. It switches off *Create Assignment*, formgrader and lists of courses,
+which are for instructors. It also gives *Validate* ten minutes per cell and not half a minute, because a check may have
+to build a workspace.
+"""
 PANEL = Path(__file__).with_name("labextensions")
-"""The side panel with the course page: an extension of JupyterLab's, ready to be loaded."""
+"""The folder of the side panel with the course page, a JupyterLab extension that is ready to be loaded."""
 COURSE_PAGE = "course"
-"""The path of the course page on the server, below its base address."""
+"""The path of the course page on the server, below the server's base address."""
 NOTHING_TO_SAVE = "--ServerApp.contents_manager_class=autograder.student.lab_server.OpenedNotebooks"
-"""A notebook that was only opened is not marked as unsaved."""
+"""The option that keeps JupyterLab from marking a notebook as unsaved when it was only opened."""
 QUIET = ("--ServerApp.log_level=WARN", "--LabApp.log_level=WARN")
-"""Hides Jupyter's twenty lines about its start. ``lab_server`` prints the one that a student needs, the address."""
+"""Options that hide Jupyter's twenty lines about its start. ``lab_server`` prints the only one that a student needs,
+with the address.
+"""
 NOTEBOOKS_VARIABLE = "AUTOGRADER_NOTEBOOKS"
-"""Names the folder of the session's notebooks to its terminals."""
+"""The environment variable that tells terminals the folder of the session's notebooks."""
 _CONFIG_PATH = "JUPYTER_CONFIG_PATH"
 _BUILD_TYPE = "CMAKE_BUILD_TYPE"
-"""As a check does, a student's `colcon build` builds interfaces for use: otherwise a value of the wrong type ends the
-process, and a check has to build them once more."""
+"""The environment variable with which a student's `colcon build` builds interfaces as a check does. Otherwise a value
+of the wrong type would end the process, and a check would have to build them once more.
+"""
 _DISCOVERY = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
 
 
@@ -50,8 +55,8 @@ def open_lab(folder: Path, arguments: Sequence[str] = ()) -> None:
 
     Raises:
         NoSuchFolderError: ``folder`` is not a folder.
-        ValueError: ``ROS_DOMAIN_ID`` is not a domain.
-        NoFreeDomainError: Every domain on this host is in use.
+        ValueError: ``ROS_DOMAIN_ID`` is not a valid domain number.
+        NoFreeDomainError: Every domain on this computer is in use.
     """
     if not folder.is_dir():
         raise NoSuchFolderError(
@@ -66,7 +71,7 @@ def open_lab(folder: Path, arguments: Sequence[str] = ()) -> None:
     from jupyterlab.labapp import LabApp
 
     try:
-        # In this process, because the claim on the domain ends with its process.
+        # JupyterLab runs in this process, because the claim on the domain ends with this process.
         LabApp.launch_instance(
             [*_start_page(), NOTHING_TO_SAVE, *QUIET, *_start_folder(Path.cwd()), *arguments]
         )
@@ -77,10 +82,10 @@ def open_lab(folder: Path, arguments: Sequence[str] = ()) -> None:
 
 
 def end_idle_workers() -> None:
-    """End the server's threads for reading and writing files, so that Python does not wait for them.
+    """End the server's threads that read and write files, so that Python does not wait for them.
 
-    Each of these threads (AnyIO's) ends with its request. A request that was being answered when the server
-    was stopped never ends, and the terminal would hang after Ctrl-C.
+    Each of these threads (AnyIO's) ends with its request. A request that was in progress when the server was stopped
+    never ends, so the terminal would hang after Ctrl-C.
     """
     for thread in threading.enumerate():
         stop = getattr(thread, "stop", None)
@@ -89,17 +94,17 @@ def end_idle_workers() -> None:
 
 
 def join_domain() -> DomainClaim | None:
-    """Claim a ROS domain on this machine for all kernels and terminals of the session.
+    """Claim a ROS domain on this computer for all kernels and terminals of the session.
 
-    So a node in a notebook hears one in a terminal, but not another user's. A domain that the user has
-    chosen is kept.
+    A node in a notebook can then hear one in a terminal, but not another user's. A domain that the user has chosen is
+    kept.
 
     Returns:
-        The claim on the domain, or None if ``ROS_DOMAIN_ID`` names it.
+        The claim on the domain; None if ``ROS_DOMAIN_ID`` names the domain.
 
     Raises:
-        ValueError: ``ROS_DOMAIN_ID`` is not a domain.
-        NoFreeDomainError: Every domain on this host is in use.
+        ValueError: ``ROS_DOMAIN_ID`` is not a valid domain number.
+        NoFreeDomainError: Every domain on this computer is in use.
     """
     if not any(os.environ.get(name) for name in _DISCOVERY):
         os.environ[_DISCOVERY[0]] = "LOCALHOST"
@@ -111,12 +116,12 @@ def join_domain() -> DomainClaim | None:
 
 
 def _start_page() -> list[str]:
-    """Return the options that open the course page, with the side panel."""
+    """Return the options that make JupyterLab open the course page, with the side panel."""
     return [f"--LabApp.default_url=/{COURSE_PAGE}", f"--LabApp.extra_labextensions_path={PANEL}"]
 
 
 def _start_folder(root: Path) -> list[str]:
-    """Return the options that open the chapter, if there is only one: a single folder to click on is no help."""
+    """Return the options that open the chapter if there is only one: a single folder to click on does not help."""
     inside = [path for path in root.iterdir() if not path.name.startswith((".", "_"))]
     return (
         [f"--FileContentsManager.preferred_dir={inside[0].name}"]

@@ -1,11 +1,12 @@
-"""Serve ``./course lab``: the course page, and notebooks that are not marked unsaved as soon as they are open.
+"""Serves ``./course lab``: the course page, and notebooks that are not marked as unsaved as soon as they are opened.
 
-``lab_config/`` switches the page on. It does not need JupyterLab, so it works even without the side panel.
+``lab_config/`` switches the page on. The page does not need JupyterLab, so it works even without the side panel.
 
-A released notebook names no version of Python, because it is made once and opened with any version. JupyterLab writes
-the kernel's version into each notebook that has none or a different one. From then on the notebook has changes to save:
-it is marked as unsaved, and asks a question when it is closed, before the student has written a letter. So the
-server puts the version in while it reads the file. The file itself stays as it is until the student saves.
+A released notebook names no version of Python, because it is made once and opened with any version. But JupyterLab
+writes the kernel's version into each notebook that has none or a different one. The notebook then has changes to
+save: it is marked as unsaved, and JupyterLab asks a question when it is closed, before the student has written a
+letter. So the server inserts the version when it reads the file. The file itself stays unchanged until the student
+saves.
 """
 
 from __future__ import annotations
@@ -35,7 +36,9 @@ if TYPE_CHECKING:
 
 
 VERSION = sys.version.split()[0]
-"""The version of the kernel's language (``IPythonKernel.language_info``): it runs on the server's own Python."""
+"""The version of the kernel's language (``IPythonKernel.language_info``), which is the version of the server's own
+Python.
+"""
 
 
 _THIS_MACHINE = ("", "localhost", "127.0.0.1", "::1")
@@ -47,7 +50,7 @@ If no page has opened in your browser, open this address:"""
 class _CourseHandler(JupyterHandler):
     auth_resource = "contents"
     _track_activity = False
-    """False: a page that updates its points from time to time must not keep an idle server alive."""
+    """False, because a page that updates its points from time to time must not keep an idle server alive."""
 
     @property
     def notebooks(self) -> Path:
@@ -56,7 +59,7 @@ class _CourseHandler(JupyterHandler):
 
     @property
     def journal(self) -> Path:
-        """The journal of that folder."""
+        """The journal for that folder."""
         named = os.environ.get(journal.VARIABLE)
         return Path(named) if named else journal.place(self.notebooks)
 
@@ -68,7 +71,7 @@ class _CourseHandler(JupyterHandler):
         """Return the notebook that a request names.
 
         Raises:
-            HTTPError: The request names none.
+            HTTPError: The request does not name a notebook.
         """
         try:
             name = json.loads(self.request.body)["notebook"]
@@ -123,7 +126,7 @@ class ResetNotebook(_CourseHandler):
     @web.authenticated
     @authorized
     async def post(self) -> None:
-        """Restore the released notebook, and return the name of the copy of the student's."""
+        """Restore the released notebook. Return the name of the copy of the student's notebook."""
         name = self.name_in_body()
         try:
             done = await asyncio.to_thread(resetting.reset, course.root(), self.notebooks, name, self.journal)
@@ -135,7 +138,7 @@ class ResetNotebook(_CourseHandler):
 
 
 class Certificate(_CourseHandler):
-    """The certificate of a chapter, as a file."""
+    """Serves the certificate of a chapter as a file."""
 
     @web.authenticated
     @authorized
@@ -152,12 +155,12 @@ class Certificate(_CourseHandler):
 
 
 class OpenedNotebooks(AsyncLargeFileManager):
-    """The usual file manager, which adds the kernel's version to notebooks as it reads them."""
+    """The usual file manager, which in addition inserts the kernel's version when it reads a notebook."""
 
     async def get(self, path: str, *args: Any, **options: Any) -> dict[str, Any]:
-        """Return the model of a file or folder, with the file's content if that is asked for."""
+        """Return the model of a file or folder, with the file's content if that is requested."""
         model: dict[str, Any] = await super().get(path, *args, **options)  # type: ignore[no-untyped-call]
-        # A notebook that is damaged or from another program is shown unchanged.
+        # A notebook that is damaged or comes from another program is shown unchanged.
         match model:
             case {
                 "type": "notebook",
@@ -186,9 +189,9 @@ def _load_jupyter_server_extension(server: ServerApp) -> None:
 
 
 def _tell_the_address_last(server: ServerApp) -> None:
-    """Print the address after everything has started, and leave out the server's own lines about it.
+    """Print the address after everything has started, and leave out the server's own lines about the address.
 
-    If other machines can reach the server, Jupyter's own lines stay: they contain its network address.
+    If other machines can reach the server, Jupyter's own lines are kept, because they contain its network address.
     """
 
     def tell() -> None:

@@ -1,4 +1,4 @@
-"""Reset a notebook: restore the released one, and keep the student's next to it."""
+"""Resets a notebook: restores the released one, and keeps the student's next to it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class CannotReset(Exception):
-    """The notebook was not reset; the message says why and what to do."""
+    """The notebook was not reset. The message says why, and what to do."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Reset:
 
     Attributes:
         notebook: The path of the restored notebook.
-        copy: The path of the student's notebook; None if there was none, or it was unchanged.
+        copy: The path of the copy of the student's notebook; None if there was no notebook, or it was unchanged.
     """
 
     notebook: Path
@@ -38,13 +38,13 @@ def reset(root: Path, folder: Path, name: str, entries_in: Path | None = None) -
     """Restore a released notebook, and keep the student's.
 
     Args:
-        root: The course.
+        root: The top folder of the course.
         folder: The folder of the notebooks.
         name: The name of the notebook, such as ``"lab_1_2"``, or a path to it.
-        entries_in: The journal, in which its points are reset; the default is this session's own.
+        entries_in: The journal in which the points are reset; by default this session's.
 
     Raises:
-        CannotReset: The notebook does not exist, or the folder cannot be written.
+        CannotReset: The notebook does not exist, or its folder cannot be written to.
         BrokenChapter: A chapter's description cannot be used.
     """
     chapter, lab = _find(root, name)
@@ -60,11 +60,12 @@ def reset(root: Path, folder: Path, name: str, entries_in: Path | None = None) -
 
 
 def released_text(lab: Path) -> bytes:
-    """Return a lab's notebook as released: stored in a hand-out, otherwise made from its master."""
+    """Return a lab's notebook as it was released. A hand-out contains it; otherwise it is made from the master."""
     kept = course.released(lab)
     if kept.is_file():
         return kept.read_bytes()
-    from autograder.masters.release import release_text  # not part of a hand-out
+    # Imported here, because a hand-out does not contain this module.
+    from autograder.masters.release import release_text
     from autograder.masters.source import source_notebook
 
     return release_text(source_notebook(lab / course.LAB)).encode()
@@ -80,7 +81,7 @@ def _find(root: Path, name: str) -> tuple[course.Chapter, Path]:
 
 
 def _keep(path: Path) -> Path:
-    """Copy a notebook into its folder, under a name that does not exist yet."""
+    """Copy a notebook within its folder, to a name that does not exist yet. Return the path of the copy."""
     day = time.strftime("%Y-%m-%d")
     for number in range(1, 1000):
         again = f", {number}" if number > 1 else ""

@@ -1,4 +1,4 @@
-"""Compute a student's progress: chapters, notebooks and exercises in order, with their points."""
+"""Computes a student's progress: chapters, notebooks and exercises in order, with their points."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ State = Literal["new", "begun", "done"]
 
 @dataclass(frozen=True)
 class ExerciseStanding:
-    """An exercise and its best check.
+    """An exercise, with the student's best check.
 
     Attributes:
         id: The exercise's id, such as ``"lab_1_2.talker"``.
         title: The title for people.
         points: The points of the best check.
-        possible: The most points that it can have.
+        possible: The maximum points of the exercise.
     """
 
     id: str
@@ -38,17 +38,17 @@ class ExerciseStanding:
 
 @dataclass(frozen=True)
 class NotebookStanding:
-    """A notebook of a chapter.
+    """A notebook of a chapter, with the student's progress.
 
     Attributes:
         name: The name, such as ``"lab_1_2"``.
         title: The heading of the notebook.
-        minutes: The time it takes, from its first cell; 0 if that names none.
+        minutes: The time that it takes in minutes, as its first cell says; 0 if the cell does not say.
         path: The path relative to the folder of the notebooks; empty if the file does not exist.
         exercises: The exercises, in the order in which they are done.
         read: True if the student has marked it as read.
-        touched: True if there is something to reset: it was checked, marked or changed.
-        worked: Unix time in seconds at which the student last checked, marked, reset or saved it; 0 for never.
+        touched: True if there is something to reset, because it was checked, marked or changed.
+        worked: The Unix time in seconds at which the student last checked, marked, reset or saved it; 0 for never.
     """
 
     name: str
@@ -62,17 +62,17 @@ class NotebookStanding:
 
     @property
     def points(self) -> float:
-        """Points reached."""
+        """The points that were reached."""
         return sum(one.points for one in self.exercises)
 
     @property
     def possible(self) -> float:
-        """Points that can be reached; 0 for a notebook to read."""
+        """The maximum points; 0 for a notebook that is only read."""
         return sum(one.possible for one in self.exercises)
 
     @property
     def state(self) -> State:
-        """The state: done if it has all points or, without exercises, is marked as read."""
+        """The state. A notebook is done if it has all points or, if it has no exercises, is marked as read."""
         if self.possible == 0:
             return "done" if self.read else "new"
         return "done" if self.points >= self.possible else "begun" if self.points > 0 else "new"
@@ -80,13 +80,13 @@ class NotebookStanding:
 
 @dataclass(frozen=True)
 class ChapterStanding:
-    """A chapter.
+    """A chapter, with the student's progress.
 
     Attributes:
-        name: The name of its folder.
+        name: The name of the chapter's folder.
         title: The title for people.
-        notebooks: The notebooks, in the order in which they are read.
-        finished: Unix time in seconds at which all points were reached; None before that.
+        notebooks: The notebooks, in reading order.
+        finished: The Unix time in seconds at which all points were reached; None if they have not been reached.
     """
 
     name: str
@@ -96,12 +96,12 @@ class ChapterStanding:
 
     @property
     def points(self) -> float:
-        """Points reached."""
+        """The points that were reached."""
         return sum(one.points for one in self.notebooks)
 
     @property
     def possible(self) -> float:
-        """Points that can be reached."""
+        """The maximum points."""
         return sum(one.possible for one in self.notebooks)
 
     @property
@@ -122,7 +122,7 @@ class Standing:
     Attributes:
         chapters: The chapters, in order.
         following: The notebook to continue with; None if all are done.
-        begun: True if the student has done anything yet.
+        begun: True if the student has begun any notebook.
     """
 
     chapters: tuple[ChapterStanding, ...]
@@ -134,7 +134,7 @@ def standing(root: Path, folder: Path, entries: Sequence[JournalEntry]) -> Stand
     """Return the progress of a student.
 
     Args:
-        root: The course.
+        root: The top folder of the course.
         folder: The folder of the notebooks.
         entries: The lines of the journal.
 
@@ -152,7 +152,7 @@ def standing(root: Path, folder: Path, entries: Sequence[JournalEntry]) -> Stand
 
 
 def _following(notebooks: Sequence[NotebookStanding]) -> NotebookStanding | None:
-    """Return the notebook last worked on; if it is done, the next one that is not, starting again after the last."""
+    """Return the notebook last worked on. If it is done, return the next one that is not, after the last the first."""
     times = [notebook.worked for notebook in notebooks]
     here = times.index(max(times)) if times else 0
     in_order = [*notebooks[here:], *notebooks[:here]]
@@ -182,13 +182,13 @@ def _chapter(
 
 
 def _is_changed(notebook: Path, lab: Path) -> bool:
-    """Return True if a notebook was changed since it was released; known only in a hand-out."""
+    """Return True if a notebook was changed since it was released. This is known only in a hand-out."""
     released = course.released(lab)
     return notebook.is_file() and released.is_file() and notebook.read_bytes() != released.read_bytes()
 
 
 def notebook_path(chapter: course.Chapter, lab: Path, folder: Path) -> Path:
-    """Return the path of a notebook, existing or not, in a folder of notebooks or of one chapter."""
+    """Return the path of a notebook, which need not exist, in a folder of notebooks or of one chapter."""
     alone = folder / f"{lab.name}.ipynb"
     return alone if alone.is_file() else folder / chapter.folder.name / f"{lab.name}.ipynb"
 

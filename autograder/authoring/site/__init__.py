@@ -1,1 +1,1 @@
-"""``autograder site``: the course, its guides and its known mistakes as one book of HTML pages."""
+"""``autograder site``: makes one book of HTML pages of the course, its guides and its known mistakes."""

@@ -1,4 +1,4 @@
-"""Build the book with Sphinx, from the sources alone, without a network."""
+"""Builds the book with Sphinx, from the sources alone, without a network."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 LARGEST = 1_000_000
-"""The most bytes that a page may have."""
+"""The maximum size of a page in bytes."""
 STYLE = "book.css"
 _ICON = re2.compile(r'(?:"?([\w-]+)"?):\[\d+,\d+,\[([^\]]*)\],"[0-9a-f]*",(?:"[^"]*"|\[[^\]]*\])\],?')
 """One of the 2,000 icons in the theme's script: name, size, other names, code and drawing."""
@@ -47,7 +47,7 @@ SETTINGS: dict[str, Any] = {
     "html_show_sphinx": False,
     "language": "en",
     "nb_execution_mode": "off",
-    # No page has a widget, and the scripts for widgets would be loaded from another host.
+    # No page has widgets, and the scripts for widgets would be loaded from another host.
     "nb_ipywidgets_js": {},
     "myst_enable_extensions": ["colon_fence", "html_image"],
     "myst_heading_anchors": 6,
@@ -60,14 +60,14 @@ def build_site(root: Path, folder: Path, edition: str, *, outputs: bool, tell: C
     """Build the book of a course.
 
     Args:
-        root: The folder of the course.
-        folder: The folder of the pages; the pages of an earlier build in it are replaced.
-        edition: One of ``autograder.authoring.site.pages.EDITIONS``.
-        outputs: Whether the notebooks are executed first.
-        tell: Prints a line.
+        root: The top folder of the course.
+        folder: The folder for the pages. Pages from an earlier build in it are replaced.
+        edition: A value from ``autograder.authoring.site.pages.EDITIONS``.
+        outputs: True to execute the notebooks first.
+        tell: Called with each line to print.
 
     Returns:
-        The number of problems: links that lead nowhere, pages that are too large.
+        The number of problems: links that lead nowhere, and pages that are too large.
     """
     with HeldFolder("course-site-") as held:
         executed = run_masters(masters(root), course_of(edition, root, held.path), tell) if outputs else {}
@@ -116,10 +116,10 @@ def _leave_out_what_no_page_needs(pages: Path) -> None:
 
 
 def course_of(edition: str, root: Path, folder: Path) -> Path:
-    """Return the course whose cards an edition shows; for a class a hand-out, as its cards offer no solution.
+    """Return the course whose cards an edition shows: for a class, a hand-out, because its cards offer no solution.
 
     Raises:
-        autograder.student.handing_out.CannotHandOut: An author has worked in a notebook of the chapters.
+        autograder.student.handing_out.CannotHandOut: A notebook of the chapters contains the author's own work.
     """
     if edition == SELF:
         return root
@@ -127,7 +127,10 @@ def course_of(edition: str, root: Path, folder: Path) -> Path:
 
 
 def _settle_what_is_elsewhere(app: Sphinx, tree: nodes.document) -> None:
-    """Pictures of other hosts become their words; links to files of the repository lead to it, or become words."""
+    """Replace pictures from other hosts by their text, and links to files of the repository by full addresses.
+
+    If the repository has no address, such a link becomes plain text.
+    """
     for picture in list(tree.findall(nodes.image)):
         if str(picture["uri"]).startswith(("http:", "https:")):
             picture.replace_self(nodes.Text(picture.get("alt", "")))
@@ -146,7 +149,11 @@ def _settle_what_is_elsewhere(app: Sphinx, tree: nodes.document) -> None:
 def _let_the_keyboard_move_tables(
     _app: Sphinx, _page: str, _template: str, context: dict[str, Any], _tree: nodes.document | None
 ) -> None:
-    """A table that is wider than a phone is moved sideways, which has to be possible by its arrow keys, too."""
+    """Let readers scroll wide tables with the arrow keys.
+
+    On a phone, a table that is wider than the screen is scrolled sideways, which must be possible by keyboard as
+    well.
+    """
     context["body"] = context.get("body", "").replace(
         '<table class="table"', '<table class="table" tabindex="0"'
     )

@@ -1,4 +1,7 @@
-"""Run the masters as a student would in JupyterLab, and keep everything that their cells show, moving pictures too."""
+"""Runs the masters as a student would in JupyterLab, and keeps everything that their cells show.
+
+Moving pictures are kept as well.
+"""
 
 from __future__ import annotations
 
@@ -28,14 +31,14 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 LIMIT = 600
-"""Seconds for one cell; the longest cell builds a workspace."""
+"""Time limit in seconds for one cell; the longest cell builds a workspace."""
 AT_ONCE = 3
-"""Notebooks that run at the same time."""
+"""The number of notebooks that run at the same time."""
 MOST_FRAMES = 60
 FRAME_SECONDS = 0.25
 RECORDED = "Recorded while this cell ran"
 MOVING = "moving_pictures"
-"""The key in a notebook's metadata of its moving pictures: SVG texts by their names."""
+"""The key in a notebook's metadata that contains its moving pictures: SVG texts by name."""
 _SVG_DATA = re2.compile(r'src="data:image/svg\+xml;base64,([A-Za-z0-9+/=]+)"')
 _STYLE = re2.compile(r"(?s)<style>(.*?)</style>")
 _INNER = re2.compile(r"(?s)^<svg([^>]*)>(.*)</svg>$")
@@ -43,15 +46,15 @@ _TITLE = re2.compile(r"(?s)<title>.*?</title>")
 
 
 def run_masters(masters: Sequence[Path], root: Path, tell: Callable[[str], None]) -> dict[str, NotebookNode]:
-    """Execute masters, each in a new kernel, a folder and a ROS domain of its own.
+    """Execute masters, each in a new kernel with its own folder and ROS domain.
 
     Args:
-        masters: The masters' files.
-        root: The folder of the course that the kernels and their judges use.
-        tell: Prints a line about each notebook that is done.
+        masters: The files of the masters.
+        root: The top folder of the course that the kernels and their judges use.
+        tell: Called with a line about each notebook that is done.
 
     Returns:
-        The executed source notebooks by the names of their labs.
+        The executed source notebooks, by the names of the labs.
 
     Raises:
         nbclient.exceptions.CellExecutionError: A cell raised an error.
@@ -67,12 +70,12 @@ def run_masters(masters: Sequence[Path], root: Path, tell: Callable[[str], None]
 
 
 def execute_in_new_kernel(client: NotebookClient, folder: Path, lines: Path, **variables: str) -> None:
-    """Execute a client's notebook as JupyterLab would: in a new kernel, with the log lines of rclpy in the cells.
+    """Execute a client's notebook as JupyterLab would: in a new kernel, with rclpy's log lines in the cells' output.
 
     Args:
-        client: The client of the notebook; its limits and its kernel are set here.
-        folder: The folder in which the kernel runs.
-        lines: The file of the student's journal.
+        client: The client of the notebook. Its limits and its kernel are set here.
+        folder: The working folder of the kernel.
+        lines: The path of the file that serves as the student's journal.
         variables: More environment variables for the kernel.
 
     Raises:
@@ -83,7 +86,7 @@ def execute_in_new_kernel(client: NotebookClient, folder: Path, lines: Path, **v
     client.timeout, client.kernel_name = LIMIT, "python3"
     client.resources = {"metadata": {"path": str(folder)}}
     environment = {**os.environ, **variables, journal.VARIABLE: str(lines)}
-    # If it is set, ipykernel leaves the log lines of rclpy out of the cells.
+    # With this variable, ipykernel leaves rclpy's log lines out of the cells.
     environment.pop("PYTEST_CURRENT_TEST", None)
     # The log lines also go to the kernel's own output, where no reader sees them.
     client.execute(env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -97,7 +100,9 @@ def _run(notebook: NotebookNode, name: str, root: Path) -> NotebookNode:
         claim = claim_free_domain()
         variables = {DOMAIN_VARIABLE: str(claim.domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
         variables[course.VARIABLE] = str(root)
-        variables["GIT_CONFIG_GLOBAL"] = os.devnull  # a new package would name the builder's address
+        variables["GIT_CONFIG_GLOBAL"] = (
+            os.devnull
+        )  # otherwise a new package would contain the builder's address
         try:
             execute_in_new_kernel(client, folder, held.path / "journal.jsonl", **variables)
         finally:
@@ -108,7 +113,7 @@ def _run(notebook: NotebookNode, name: str, root: Path) -> NotebookNode:
 
 
 class _Recorder(NotebookClient):
-    """Keeps each picture that a live picture shows, not only the last one."""
+    """A client that keeps each picture that a live picture shows, not only the last one."""
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
@@ -122,7 +127,7 @@ class _Recorder(NotebookClient):
         return super().process_message(msg, cell, cell_index)
 
     async def _async_poll_output_msg(self, parent_msg_id: str, cell: NotebookNode, cell_index: int) -> None:
-        """Read the messages of a cell, and what live pictures of earlier cells show meanwhile: nbclient drops that."""
+        """Read a cell's messages, and what live pictures of earlier cells show meanwhile (nbclient drops those)."""
         assert self.kc is not None
         while True:
             msg = await ensure_async(self.kc.iopub_channel.get_msg(timeout=None))
@@ -137,7 +142,7 @@ class _Recorder(NotebookClient):
 
 
 def _put_moving_pictures(notebook: NotebookNode, name: str, frames: dict[str, list[str]]) -> None:
-    """Replace the last picture of each live picture by the picture that moves."""
+    """Replace the last picture of each live picture by one that moves."""
     pictures: dict[str, str] = {}
     for shown in frames.values():
         if len(set(shown)) < 3:
@@ -156,10 +161,10 @@ def _put_moving_pictures(notebook: NotebookNode, name: str, frames: dict[str, li
 
 
 def moving_picture(frames: Sequence[str]) -> str:
-    """One SVG that shows these SVGs one after the other, again and again, and only the last one if motion is reduced.
+    """Return one SVG that shows these SVGs one after the other, repeatedly; only the last one if motion is reduced.
 
     Args:
-        frames: At least one picture, all of the same size and with the same style.
+        frames: At least one picture. All have the same size and style.
     """
     step = -(-len(frames) // MOST_FRAMES)
     kept = [*frames[:-1:step], frames[-1]]
@@ -188,11 +193,11 @@ def moving_picture(frames: Sequence[str]) -> str:
 
 
 def show_as_a_students(notebook: NotebookNode, folder: str) -> None:
-    """Join what a cell printed in pieces, and show the folder of the run as a student's: its name differs each time.
+    """Join what a cell printed in pieces, and replace the folder of the run, whose name varies, by a student's.
 
     Args:
         notebook: An executed notebook.
-        folder: The folder in which it was executed.
+        folder: The folder in which the notebook was executed.
     """
     CoalesceStreamsPreprocessor().preprocess(notebook, {})
     for cell in notebook.cells:

@@ -1,4 +1,4 @@
-"""The sources of the book: notebooks and Markdown pages at the places that they have in the course, so links hold."""
+"""The sources of the book: notebooks and Markdown pages, placed as in the course, so that links stay valid."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 SELF, CLASS = "self", "class"
 EDITIONS = (SELF, CLASS)
-"""For learners on their own, with solutions; for classes, without."""
+"""The editions of the book: for learners on their own, with solutions; and for classes, without."""
 SUMMARY = "Solution (click to expand)"
 STATIC = "_static"
 _ATTACHMENT = re2.compile(r"\(attachment:([^)]+)\)")
@@ -41,10 +41,11 @@ def write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str,
     """Write the sources of the book.
 
     Args:
-        root: The folder of the course.
+        root: The top folder of the course.
         folder: An empty folder.
-        edition: One of ``EDITIONS``.
-        executed: The executed source notebooks by the names of their labs; a lab without one has no outputs.
+        edition: A value from ``EDITIONS``.
+        executed: The executed source notebooks, by the names of the labs. A lab without one has no outputs in the
+            book.
     """
     (folder / STATIC).mkdir()
     if (root / "docs").is_dir():
@@ -53,7 +54,7 @@ def write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str,
     for page in root.glob("*.md"):
         name = "index.md" if page.name == "README.md" else page.name
         text = page.read_text(encoding="utf-8")
-        if name == "index.md" and edition == CLASS:  # README's pictures may show how a task is solved
+        if name == "index.md" and edition == CLASS:  # the pictures in README may show how a task is solved
             text = _README_PICTURE.sub("", text)
         (folder / name).write_text(text + _contents(root) if name == "index.md" else text, encoding="utf-8")
     for page in folder.rglob("*.md"):
@@ -81,18 +82,18 @@ def write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str,
 
 
 def book_page(source: NotebookNode, edition: str, outcomes: tuple[str, ...] = ()) -> NotebookNode:
-    """The page of a notebook: each cell as students get it, and its solution folded below it, or absent.
+    """Return the page of a notebook: each cell as students get it, with its solution folded below it or left out.
 
     Args:
-        source: The source notebook, with outputs or without.
-        edition: One of ``EDITIONS``.
-        outcomes: What a reader can do after this notebook.
+        source: The source notebook, with or without outputs.
+        edition: A value from ``EDITIONS``.
+        outcomes: What a reader can do after this notebook, as sentences.
     """
     page = nbformat.reads(release_text(source), as_version=4)
     secret = _lines_of_solutions(source, page) if edition == CLASS else frozenset[str]()
     cells = []
     for solved, cell in zip(source.cells, page.cells, strict=True):
-        # The book has its own links to the pages before and after, and a page is read, not run.
+        # Left out: the book has its own links to the pages before and after, and a page is read, not run.
         if _WAYS.match(cell.source) or cell.get("id") == SET_UP_CELL:
             continue
         changed = solved.source != cell.source
@@ -119,7 +120,7 @@ def book_page(source: NotebookNode, edition: str, outcomes: tuple[str, ...] = ()
 
 
 def _lines_of_solutions(source: NotebookNode, page: NotebookNode) -> frozenset[str]:
-    """The lines that only the solutions have: a cell may print the file that another one has written."""
+    """Return the lines that only the solutions contain: a cell may print a file that another cell has written."""
     solved, open_ = (
         {line.strip() for cell in notebook.cells for line in cell.source.split("\n")}
         for notebook in (source, page)
@@ -142,7 +143,7 @@ def _folded(solved: NotebookNode, outputs: list[NotebookNode]) -> NotebookNode:
 
 
 def _with_plain_anchors(text: str) -> str:
-    """Links to headings of notebooks as the book names them: in small letters, as GitHub does for Markdown."""
+    """Return a text with anchors in lower case, as the book writes the anchors of a notebook's headings."""
 
     def plain(link: re2._Match[str]) -> str:
         anchor = re2.sub(r"[^\w\- ]", "", unquote(link[2]).lower()).replace(" ", "-")
@@ -152,7 +153,7 @@ def _with_plain_anchors(text: str) -> str:
 
 
 def _outcomes(root: Path) -> dict[str, tuple[str, ...]]:
-    """The rows of the page of learning outcomes, by the names of the labs."""
+    """Return the rows of the page of learning outcomes, by the names of the labs."""
     found: dict[str, tuple[str, ...]] = {}
     page = root / "docs" / "learning-outcomes.md"
     for outcome, lab in _OUTCOME.findall(page.read_text(encoding="utf-8")) if page.exists() else ():
@@ -161,7 +162,7 @@ def _outcomes(root: Path) -> dict[str, tuple[str, ...]]:
 
 
 def _contents(root: Path) -> str:
-    """The tree of the book: the chapters, then the pages of each kind of reader."""
+    """Return the tree of the book's pages: first the chapters, then the pages for each kind of reader."""
     trees = {}
     for chapter in course.chapters(root):
         trees[chapter.title] = [f"chapters/{chapter.folder.name}/{lab.name}" for lab in chapter.labs]
@@ -175,7 +176,7 @@ def _contents(root: Path) -> str:
 
 
 def _guides(root: Path) -> dict[str, list[Path]]:
-    """The pages by their readers, as the list in ``docs/README.md`` has them; pages that it does not name come last."""
+    """Return the pages by kind of reader, as listed in ``docs/README.md``. Pages that are not listed come last."""
     index = root / "docs" / "README.md"
     _, *parts = _READER.split(index.read_text(encoding="utf-8") if index.is_file() else "")
     left = {*root.glob("*.md"), *(root / "docs").rglob("*.md")} - {root / "README.md"}

@@ -78,7 +78,7 @@ class Waiting:
     def cell(self) -> str:
         """Return which cell a person has to edit; empty if the table has no such line."""
         column = "student" if not self.student else "assignment" if not self.assignment else "use"
-        return f'"  ({NAME}, line {self.line}, cell {column})' if self.line else ""
+        return f" ({NAME}, line {self.line}, cell {column})" if self.line else ""
 
     @property
     def sentence(self) -> str:

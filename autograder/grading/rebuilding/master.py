@@ -61,7 +61,9 @@ def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
     for step in steps:
         try:
             notebook, resources = _step(step)().preprocess(notebook, resources)
-        except Exception as error:  # nbgrader's steps raise various errors, for example if END SOLUTION is missing
+        except (
+            Exception
+        ) as error:  # nbgrader's steps raise various errors, for example if END SOLUTION is missing
             raise MasterUnusable(f"{source} cannot be prepared as nbgrader does it: {error}") from error
     _check_cells(source, notebook)
     for cell in notebook.cells:
