@@ -18,7 +18,9 @@ VARIABLE = "AUTOGRADER_COURSE"
 SOLUTIONS = "solutions"
 """The name of the folder that contains the chapters as authors write them."""
 HANDED_OUT = "exercises"
-"""The name of the folder that replaces it in a hand-out: the judge's part of the chapters, without masters."""
+"""The name of the folder that replaces ``solutions`` in a hand-out. It contains the judge's part of the chapters,
+without masters.
+"""
 CHAPTERS = "chapters"
 """The name of the folder with the notebooks that students open. It has one folder for each chapter."""
 CHAPTER = "chapter.toml"
@@ -181,7 +183,7 @@ def interfaces() -> tuple[str, ...]:
 
 
 def interface_modules() -> tuple[str, ...]:
-    """Return the names of modules that may contain their classes. Not every package has all three kinds."""
+    """Return the names of modules that may contain the classes of these packages. Not all have all three kinds."""
     return tuple(f"{package}.{kind}" for package in interfaces() for kind in ("msg", "srv", "action"))
 
 
@@ -211,7 +213,7 @@ def _description(file: Path) -> dict[str, Any]:
     )
     if not named or not isinstance(said.get("title", ""), str):
         raise BrokenChapter(
-            f"{file}: title is a text; labs, interfaces and each lab of the table exercises are lists of names"
+            f"{file}: title must be a text; labs, interfaces and each lab of the table exercises must be lists of names"
         )
     return said
 

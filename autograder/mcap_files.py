@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 ROS_2 = "ros2"
 """The MCAP profile for messages in CDR with the definitions of their types."""
 _LINE = "=" * 80
-"""The line that separates the definition of a type from those of the types that it contains."""
+"""The line that separates the definition of a type from the definitions of the types that it contains."""
 _FIELD = re2.compile(r"^\s*([A-Za-z][\w/]*)(?:<=\d+)?(?:\[[^\]]*\])?\s+\w")
 """Matches a line of a definition: a type, perhaps bounded or an array, and a name."""
 

@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part
 
 _ENDS = {"message": "publisher", "sent": "subscription"}
-"""For a message that the subject sends, and for one that it receives, the role of its endpoint."""
+"""The role of the subject's endpoint for each kind of message event: a message that it sent, or one that it received.
+"""
 _OF_CALLS = (
     "asked", "answered", "request", "response", "goal", "goal_sent", "goal_answer", "goal_answered", "feedback",
     "feedback_heard", "cancel", "cancel_sent", "cancel_answer", "cancel_answered", "result_request", "result",

@@ -81,7 +81,7 @@ def _differences(then: Verdict, now: Verdict) -> Iterator[str]:
     for name in dict.fromkeys((*before, *after)):
         old, new = before.get(name), after.get(name)
         if old is None or new is None:
-            yield f"criterion {name}: {'there was none' if old is None else 'there is none any more'}"
+            yield f"criterion {name}: {'it is new' if old is None else 'it no longer exists'}"
         elif (old.passed, old.points) != (new.passed, new.points):
             yield f"criterion {name}: was {_held(old.passed, old.points)}, is {_held(new.passed, new.points)}"
     if _key(then) != _key(now):
@@ -94,9 +94,9 @@ def _other_words(then: Verdict, now: Verdict) -> Iterator[str]:
     for new in now.criteria:
         old = before.get(new.name)
         if old is not None and (old.expected, old.seen) != (new.expected, new.seen):
-            yield f"criterion {new.name} says it in other words now: {_quoted(new.expected)}, {_quoted(new.seen)}"
+            yield f"criterion {new.name} is worded differently now: {_quoted(new.expected)}, {_quoted(new.seen)}"
     if then.diagnosis and now.diagnosis and _key(then) == _key(now) and then.diagnosis != now.diagnosis:
-        yield f"the diagnosis says it in other words now: {_quoted(now.diagnosis.text)}"
+        yield f"the diagnosis is worded differently now: {_quoted(now.diagnosis.text)}"
 
 
 def _points(verdict: Verdict) -> str:

@@ -53,7 +53,7 @@ class BadTable(ValueError):
 
 
 class AnswerEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What a table says about one answer.
+    """The entry of a table for one answer.
 
     Attributes:
         why: Why the answer is right, or how its mistake shows.

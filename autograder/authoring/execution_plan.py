@@ -62,7 +62,7 @@ class NothingToExecuteError(LookupError):
 def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
     """Return the notebooks of a course, each as a master and as a chapter.
 
-    As a chapter, the file that students open is executed, not a newly built one.
+    For a chapter, the file that students open is executed, not a newly built one.
 
     Args:
         root: The top folder of the course, which contains ``solutions`` and ``chapters``.
@@ -85,7 +85,7 @@ def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
             continue
         chapter = chapter_path(root, master)
         if not chapter.is_file():
-            raise NothingToExecuteError(f"{chapter.relative_to(root)} is not there: run `{COMMAND} build`.")
+            raise NothingToExecuteError(f"{chapter.relative_to(root)} does not exist: run `{COMMAND} build`.")
         try:
             built = nbformat_nodes.read(chapter.read_text(encoding="utf-8"))
         except Exception as error:  # nbformat passes on any error of the libraries that it uses

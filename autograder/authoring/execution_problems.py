@@ -37,13 +37,13 @@ _HOW_IT_ENDED = {
     Ended.OUT_OF_CPU: "used too much processor time",
     Ended.TOO_MANY_PROCESSES: "started too many processes",
     Ended.TOO_MUCH_OUTPUT: "printed too much",
-    Ended.NOT_RUN: "did not have its turn",
+    Ended.NOT_RUN: "was not run",
 }
 
 
 @dataclass(frozen=True)
 class Problem:
-    """One problem.
+    """A problem that was found in an executed notebook.
 
     Attributes:
         cell: The index of the cell; None if the problem concerns the whole notebook.

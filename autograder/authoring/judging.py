@@ -26,7 +26,7 @@ class Judgeable(Protocol):
         ...
 
     def verdict(self, seed: str) -> bytes:
-        """Judge it in this process, which was forked for that. Return the verdict as JSON."""
+        """Judge the answer in this process, which was forked for that. Return the verdict as JSON."""
         ...
 
 

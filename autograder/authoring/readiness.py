@@ -105,7 +105,7 @@ def _of_linters(lab: Path) -> Iterator[str]:
     programs = {name: installed_program(name) for name in ("ruff", "mypy")}
     for name, program in programs.items():
         if not program.is_file():
-            yield f"{name}: not installed, so nothing was looked at. Type: {installing('dev', clone='--tests')}"
+            yield f"{name}: not installed, so nothing was checked. Type: {installing('dev', clone='--tests')}"
     files = [str(file) for file in sorted(lab.glob("*.py"))]
     for name, *words in (
         ("ruff", "check", "--quiet", "--output-format=concise", f"--config={_SETTINGS}"),

@@ -88,7 +88,9 @@ def recording(exercise_id: str) -> str:
         )
     if not report.verdict.passed:
         missed = "; ".join(f"{c.title} ({c.seen})" for c in report.verdict.criteria if not c.passed)
-        raise CannotRecord(f"{exercise.id}: the reference solution is not right by its own measure: {missed}")
+        raise CannotRecord(
+            f"{exercise.id}: the reference solution does not meet the criteria of its own exercise: {missed}"
+        )
     return report.reference
 
 

@@ -30,7 +30,7 @@ JOBS = 4
 
 
 class NothingToTry(LookupError):
-    """There is no such answer. The message lists those that exist, or says where to write one."""
+    """No answer has the requested name. The message lists the answers that exist, or says where to write one."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ def try_exercise(
         autograder.exercises.BrokenExercise: The exercise's file is not a valid exercise.
         autograder.authoring.answer_tables.BadTable: A table of the exercise's answers cannot be used.
         autograder.authoring.recording.CannotRecord: The master's solution cannot be recorded.
-        NothingToTry: There is no such answer.
+        NothingToTry: No answer has one of the requested names.
     """
     exercises.get(exercise_id)
     wanted: Sequence[Answer] = chosen(exercise_id, only)

@@ -152,7 +152,7 @@ class Supervision:
                         return answer, received
                     self._take(answer, received)
         except ChannelClosed as error:
-            raise NoSandbox(f"the supervisor of the boxes is gone: {error}") from error
+            raise NoSandbox(f"the supervisor of the boxes has ended: {error}") from error
 
     def _take(self, message: dict[str, Any], descriptors: Sequence[int]) -> None:
         close_all(descriptors)

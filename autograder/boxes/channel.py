@@ -82,7 +82,7 @@ class Channel:
             raise ChannelClosed(str(error)) from error
         if not data:
             close_all(descriptors)
-            raise ChannelClosed("the other end is gone")
+            raise ChannelClosed("the other end has closed the connection")
         for descriptor in descriptors:
             os.set_inheritable(descriptor, False)
         message: dict[str, Any] = json.loads(data)

@@ -125,7 +125,7 @@ class BoxGuard:
         self._group.close()
 
     def _look(self) -> Ended | None:
-        # Chance decides which process the kernel kills. That it killed any means that the memory was used up.
+        # If the kernel killed any process, the memory was used up. Which process it kills depends on chance.
         if self._group.ran_out_of_memory:
             return Ended.OUT_OF_MEMORY
         use = use_of(self._first, None if self._memory else _memory_of)
@@ -148,7 +148,7 @@ class BoxGuard:
             return Ended.OUT_OF_MEMORY
         files = 0 if self._memory else _scratch_of(self._first)
         if use.memory + files > self._limits.memory_now:
-            # This counts shared memory several times. Measure exactly before ending the box.
+            # The quick measurement counts shared memory several times, so measure exactly before ending the box.
             exactly = use_of(self._first, _exact_memory_of)
             return Ended.OUT_OF_MEMORY if exactly.memory + files > self._limits.memory_now else None
         return None
@@ -161,7 +161,7 @@ class Use:
     Attributes:
         threads: The number of threads. Each process has at least one.
         memory: Memory in bytes that belongs to no file; 0 if it was not measured.
-        most_memory: The largest such amount that any single process had at any time.
+        most_memory: The largest memory in bytes that any single process had at any time.
         cpu_seconds: Processor time in seconds, including that of children that have ended and were waited for.
         files: The number of open files, sockets and pipes. They matter because data waiting in them, and event
             watches on them, belong to no process.
@@ -347,20 +347,20 @@ Guard = BoxGuard | NoGuard
 
 def guards() -> Mapping[str, str]:
     """Return what enforces each limit on this host, by limit. ``autograder doctor`` shows this."""
-    watched = "looked at four times a second (no cgroup can be made here)"
+    watched = "checked four times a second (no cgroup can be made here)"
     return {
         "memory": _cgroup("memory") or watched,
         "processes": _cgroup("pids") or _processes_without(watched),
-        "processor time": "looked at four times a second, and a limit on each process",
+        "processor time": "checked four times a second, and a limit on each process",
         "share of the processors": _cgroup("cpu") or "none (no cgroup can be made here)",
         "disk": "a file system in memory, with a size and a number of files",
-        "open files": "a limit on each process, and all together looked at four times a second",
+        "open files": "a limit on each process, and all of them together checked four times a second",
     }
 
 
 def _processes_without(watched: str) -> str:
     if os.geteuid() == 0:
-        return f"{watched}; a bomb of forks may be faster: do not grade as root"
+        return f"{watched}; a fork bomb may be faster than the checks: do not grade as root"
     return f"{watched}, and a limit on the user in the box"
 
 

@@ -42,7 +42,8 @@ _UNBUFFERED = 2
 _HEAD = 1024
 """The number of bytes to read of a script to get its first line."""
 _FOR_THE_LOADER = "LD_LIBRARY_PATH"
-"""A variable that the loader reads once, when a process starts (ld.so(8)). It opens the folders in it at each search.
+"""A variable that the loader reads once, when a process starts (ld.so(8)). The loader opens the folders that the
+variable names at each search.
 """
 _OF_PROCESSORS = "glibc-hwcaps"
 """A folder that the loader searches first, but only if it existed at the loader's first search (ld.so(8))."""
@@ -57,7 +58,7 @@ def prepare(libraries: str, *library_folders: str) -> None:
 
     Args:
         libraries: The ``LD_LIBRARY_PATH`` of every box.
-        library_folders: The folders that come before it in this process's own library path.
+        library_folders: The folders that come before ``libraries`` in this process's own library path.
     """
     _environment.update({**os.environ, _FOR_THE_LOADER: libraries})
     _library_folders.extend(library_folders)

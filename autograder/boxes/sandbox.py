@@ -289,7 +289,7 @@ def _own_libraries(environment: Mapping[str, str]) -> list[Path]:
 def why_impossible() -> str:
     """Return one sentence that says why no sandbox is possible here and what to do; empty if one is possible.
 
-    This is tried out by making one.
+    To find out, the function tries to make one.
     """
     if shutil.which("bwrap") is None:
         return "bubblewrap is not installed. On Debian or Ubuntu, type: sudo apt-get install -y bubblewrap"
@@ -315,8 +315,8 @@ def _reason(error: str) -> str:
     apparmor = Path("/proc/sys/kernel/apparmor_restrict_unprivileged_userns")
     if os.geteuid() != 0 and apparmor.exists() and apparmor.read_text().strip() == "1":
         return (
-            "this system keeps user namespaces from ordinary users: "
-            "type sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0, or grade as root"
+            "this system does not let ordinary users make user namespaces: type sudo sysctl "
+            "kernel.apparmor_restrict_unprivileged_userns=0, or grade as root"
         )
     if "unshare" in error or "namespace" in error:
         return (

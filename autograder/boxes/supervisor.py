@@ -142,7 +142,7 @@ class _Supervisor:
         command, the descriptors that came with the message are the command's standard input, output and error.
         """
         if name in self._started:
-            raise ValueError(f"there is a box named {name} already")
+            raise ValueError(f"a box named {name} already exists")
         info, writing = os.pipe()
         # In a separate session, because Ctrl-C is meant for the command and its process group, not for bubblewrap.
         words = [*arguments, "--new-session", "--info-fd", str(writing)]

@@ -50,7 +50,7 @@ LIMITS = {
         "Look for a loop that prints without waiting, or print less.",
     ),
 }
-"""For each limit of a box, what the student is told, and the advice."""
+"""For each limit of a box, the message that the student gets, and the advice."""
 _SHORTAGES = {
     "OSError: [Errno 28]": (
         "disk_full",
@@ -66,7 +66,7 @@ _SHORTAGES = {
     "RuntimeError: can't start new thread": ("too_many_processes", *LIMITS[Ended.TOO_MANY_PROCESSES]),
     "MemoryError": ("out_of_memory", *LIMITS[Ended.OUT_OF_MEMORY]),
 }
-"""Limits that a program sees as an error. For the beginning of the error's text: the diagnosis, the message and the
+"""Limits that a program meets as an error: the beginning of the error's text, with the diagnosis, the message and the
 advice.
 """
 
@@ -91,7 +91,7 @@ def grader_trouble(check: CellCheck, reason: str) -> Verdict:
         check.title,
         check.points,
         f"This could not be checked: {reason}",
-        "This is the grader's trouble, not yours. It is tried again at the next grading run.",
+        "This is the grader's trouble, not yours. The next grading run tries again.",
     )
 
 
@@ -135,7 +135,7 @@ def without_verdict(
             return zero_points(
                 check,
                 "not_asked",
-                "The check cell ran, but the check that belongs to it was never made.",
+                "The check cell ran, but it never requested its check.",
                 "Make sure that no cell of yours redefines `check`.",
             )
         case limit_exceeded:
@@ -171,7 +171,7 @@ def _limit_exceeded(check: CellCheck, ended: Ended, place: str) -> Verdict:
 
 def _out_of_time(check: CellCheck, before: list[tuple[str, CellRun]]) -> Verdict:
     slow = [title for title, cell in before if cell.ended is Ended.TIMED_OUT]
-    reason = "The notebook's time was up before this check cell had its turn."
+    reason = "The notebook's time was over before this check cell could run."
     if slow:
         reason = (
             f"The cell that begins with “{slow[-1]}” did not end at its time limit, nor when interrupted."
@@ -254,7 +254,7 @@ def verdict_by_tests(check: CellCheck, run: CellRun) -> Verdict | None:
     """
     if run.ended is Ended.RAISED and run.error.startswith(_ASSERTION):
         said = run.error.removeprefix(_ASSERTION).lstrip(": ").strip()
-        text = f"A test of this cell does not hold: {said}" if said else "A test of this cell does not hold."
+        text = f"A test in this cell failed: {said}" if said else "A test in this cell failed."
         step = "Read the line with the arrow in the output: it says which test it was."
         return _tested(check, 0.0, Diagnosis("assertion_failed", text, step))
     if run.ended is Ended.RAISED and run.error.startswith(_STUB):

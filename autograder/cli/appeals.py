@@ -133,7 +133,7 @@ def replay(file: Path, mcap: Path | None, bag: Path | None, as_json: bool) -> No
 def check_name(path: Path) -> None:
     """End with exit code 2 if the name of a file for messages does not end in .mcap."""
     if path.suffix != ".mcap":
-        _fail(f"the name of a file of messages ends in .mcap, such as check.mcap; {path.name} does not")
+        _fail(f"the name of a file for messages must end in .mcap, such as check.mcap; {path.name} does not")
 
 
 def save_messages(seen: Kept, path: Path) -> str:

@@ -1,8 +1,8 @@
 """Grades a class: rebuilds notebooks, executes them in parallel, and writes the results one after the other.
 
-The order of the steps makes it fail closed. First, grades that may be wrong are set to zero in the gradebook. Then
-each result goes into the store of the class, and from there, by a single writer, into the gradebook. So a run that is
-killed leaves zeros and finished results, never a wrong grade, and the next run continues from there.
+The order of the steps ensures that a failure leaves no wrong grade. First, grades that may be wrong are set to zero
+in the gradebook. Then each result goes into the store of the class, and from there, by a single writer, into the
+gradebook. So a run that is killed leaves zeros and finished results, and the next run continues from there.
 
 A submission is kept in memory only until it is written, so a class may have any size.
 """
@@ -277,7 +277,7 @@ class _Batch:
         judged |= {key: work.rows for key, work in works.items() if work.rows is not None}
         for student, assignment in sorted((entries.keys() & self._entered.keys()) - works.keys()):
             self._notices.append(
-                f"{student}/{assignment} is not in submitted any more; its points stay in the gradebook"
+                f"{student}/{assignment} is no longer in submitted; its points stay in the gradebook"
             )
         rows = true_rows(
             self._roster.names,

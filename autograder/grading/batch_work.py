@@ -150,10 +150,10 @@ def find_work(
         work = Work(submission, fingerprints.of(submission), names[submission.assignment])
         if is_not_believed(submission.folder):
             found.notices.append(
-                f"{submission.student}/{submission.assignment}: its timestamp.txt was not written by "
-                f"`{COMMAND} collect`, as the others of this class were, and is not believed: type "
-                f"{course_command('collect', directory.path)}, write the time under handed_in in the line of this "
-                f"work in {NAME}, and type it again"
+                f"{submission.student}/{submission.assignment}: its timestamp.txt is ignored, because, "
+                f"unlike the others of this class, it was not written by `{COMMAND} collect`: type "
+                f"{course_command('collect', directory.path)}, write the time under handed_in in the "
+                f"line of this work in {NAME}, and type the command again"
             )
         (found.works if asked.has(*work.key) else found.others).append(work)
     return found

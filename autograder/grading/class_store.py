@@ -334,7 +334,7 @@ class ClassStore:
             if form not in (0, _FORM):
                 whose = " of a newer course" if form > _FORM else ""
                 raise StoreTrouble(
-                    self._path, f"it has the form {form}{whose}, and this course knows {_FORM}"
+                    self._path, f"its version is {form}{whose}, but this course knows version {_FORM}"
                 )
             if may_make and not form:
                 make = f"BEGIN IMMEDIATE; {_TABLES} PRAGMA user_version = {_FORM}; COMMIT;"

@@ -102,7 +102,7 @@ class GradebookTrouble(GradingError):
     def __init__(self, path: Path, said: str) -> None:
         advice = next(
             (words for sign, words in _GRADEBOOK_ADVICE.items() if sign in said),
-            "Look whether it is there and whole; nbgrader keeps no copy of it, your backup does.",
+            "Check that it exists and is not damaged; nbgrader keeps no copy of it, your backup does.",
         )
         super().__init__(
             f"The gradebook of {path} cannot be read or written ({said}). {advice} What was graded so far is "
@@ -179,8 +179,8 @@ def clear_disk_errors(path: Path) -> Iterator[None]:
             raise DiskFull(path) from error
         if isinstance(error, ModuleNotFoundError) and str(error.name).startswith("psycopg"):
             raise GradingError(
-                f"The gradebook of {path} is in PostgreSQL, and there is nothing here to speak with it. "
-                f"Type: {installing('postgresql', clone='--with postgresql')}"
+                f"The gradebook of {path} is in PostgreSQL, and the library to connect to it is not "
+                f"installed here. Type: {installing('postgresql', clone='--with postgresql')}"
             ) from error
         said = said_by_database(error)
         if said:
@@ -211,7 +211,7 @@ def clear_place_errors(path: Path, option: str) -> Iterator[None]:
             raise
         reason = f"{path} cannot be written: {error.strerror}"
         if isinstance(error, IsADirectoryError):
-            reason = f"{path} is a folder, and a file is to be written there"
+            reason = f"{path} is a folder, but a file has to be written there"
         elif isinstance(error, FileExistsError | NotADirectoryError):
             in_the_way = [one for one in path.parents if one.exists() and not one.is_dir()]
             reason = f"{in_the_way[0]} is not a folder" if in_the_way else reason

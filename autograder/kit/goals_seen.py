@@ -38,7 +38,8 @@ class Goal:
             out.
         sent: The time at which each of these messages was sent, by the publisher's clock, in seconds since the epoch.
         answered_at: The time at which the server's answer to the goal arrived, by the judge's clock; None if unknown.
-        cancel_answered_at: The time at which the answer to the cancel request arrived, likewise.
+        cancel_answered_at: The time at which the answer to the cancel request arrived, by the judge's clock; None if
+            unknown.
         cancel_accepted: True if the server accepted the cancel request; None if it did not answer or none was sent.
         cancelled_too_late: True if the server answered the cancel request by saying that the goal had already ended.
         before_cancel: The number of feedback messages that arrived before the cancel request was sent.

@@ -69,7 +69,7 @@ def _blocks(stack: Stack) -> bool:
 
 
 def _in_callback(stack: Stack) -> bool:
-    """Return True if the innermost code of the student's in this stack was called by an executor."""
+    """Return True if an executor called the innermost code of the student in this stack."""
     return any(frame.rclpy == "executors.py" for frame in stack[_innermost_own(stack) :])
 
 

@@ -167,7 +167,7 @@ def keeps_rate(seen: Part, expected: Part) -> Finding:
 
 
 def another_rate(seen: Part, expected: Part) -> str:
-    """Return in words how often it publishes on a topic if that is not the reference's rate; else an empty text."""
+    """Return in words how often the subject publishes on a topic if not at the reference's rate; else an empty text."""
     rate = rate_of(seen.of("message"), _period(expected))
     return keeps_rate(seen, expected).seen if rate is not None and not rate.kept else ""
 

@@ -260,7 +260,9 @@ _DASH = r"[\d\-−][\-−]"
 _UNSIGNED = rf"(?:^|[^\d\-−]|{_DASH})"
 """Matches the characters before a number that has no sign."""
 _UNSIGNED_ZERO = rf"(?:^|[^\d.\-−]|{_DASH}|(?:^|\D)\.)"
-"""The same for a 0. The 0 in 0.5 and in 1.0 is not a number of its own, but a 0 after a row of dots is."""
+"""Matches the characters before a 0 that has no sign. The 0 in 0.5 and in 1.0 is not a number of its own, but a 0 after
+a row of dots is.
+"""
 
 
 def mentions(lines: Sequence[str], number: int) -> bool:

@@ -111,7 +111,7 @@ def build_command(
             console.print(f"{word:<10} {path.relative_to(root)}  {meaning}", highlight=False, soft_wrap=True)
     in_step = sum(path.suffix == NOTEBOOK for path in (*report.unchanged, *report.written))
     notebooks = "chapter notebook" if in_step == 1 else "chapter notebooks"
-    console.print(f"{in_step} {notebooks} in step with the masters.", highlight=False)
+    console.print(f"{in_step} {notebooks} up to date with the masters.", highlight=False)
     return 0 if report.in_step else 1
 
 
@@ -120,7 +120,7 @@ def _lines(report: BuildReport) -> list[tuple[str, tuple[Path, ...], str]]:
         ("written", report.written, ""),
         ("stale", report.stale, f"— run: {COMMAND} build"),
         ("edited", report.edited, "— it contains work: move it away, then build again"),
-        ("orphan", report.orphans, "— no master stands for it: write one, or delete it"),
+        ("orphan", report.orphans, "— there is no master for it: write one, or delete the file"),
     ]
 
 

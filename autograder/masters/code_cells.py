@@ -131,7 +131,9 @@ def _marker(lines: list[str], marker: str) -> int:
             ONE_THING,
         )
     if _words(lines[places[0]]) != marker:
-        raise CellError(places[0], "A marker is misspelt.", f"Its line holds '{marker}' and nothing else.")
+        raise CellError(
+            places[0], "A marker is misspelt.", f"Its line must contain '{marker}' and nothing else."
+        )
     return places[0]
 
 

@@ -158,7 +158,7 @@ def _text(exercise: str, code: list[str], why: Path) -> str:
         or any(len(line) > WIDTH for line in reason.splitlines())
     ):
         raise MasterError(
-            why, 1, f"A reason has one or {LINES} lines.", "Say the one thing that is worth it."
+            why, 1, f"A reason has one or {LINES} lines.", "Give only the most important reason."
         )
     words, _, rest = other.partition("```python\n")
     example, fence, after = rest.partition("\n```")

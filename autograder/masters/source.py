@@ -208,7 +208,7 @@ def _is_python(master: Path, cell: MasterCell, unsolved: str) -> None:
             master,
             cell.line,
             f"Without its solution the cell is not valid Python ({error.msg}).",
-            "Students get it so: leave a docstring or a 'pass' outside of the region.",
+            "Students get it in this form: leave a docstring or a 'pass' outside of the region.",
         ) from error
 
 
@@ -277,7 +277,7 @@ def _node(named: NamedCell) -> NotebookNode:
     if cell.kind is CellRole.DEMONSTRATION:
         metadata["tags"] = [CellRole.DEMONSTRATION.value]
     if cell.folded:
-        # The first is for Colab, the second for JupyterLab.
+        # The first key is for Colab, the second for JupyterLab.
         metadata |= {"cellView": "form", "jupyter": {"source_hidden": True}}
     if cell.kind in (CellRole.TEXT, CellRole.MANUAL):
         figures = {"attachments": from_dict(cell.attachments)} if cell.attachments else {}

@@ -35,7 +35,7 @@ def complete_package(workspace: str | Path = "ros2_ws", source: Path | None = No
     try:
         source = source or course.root() / course.SOLUTIONS / "ros2_ws" / "src" / PACKAGE
     except course.NoCourse:  # in a sandbox there is no course folder
-        return "This notebook is graded by itself: what your package lacks, the check takes from the course's own."
+        return "This notebook is graded by itself: the check takes whatever your package lacks from the course's own."
     if not source.is_dir():  # a hand-out for students contains no solutions
         return _what_is_missing(package)
     if not (package / "package.xml").is_file():

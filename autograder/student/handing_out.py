@@ -33,7 +33,8 @@ KEPT_BACK = (
     "autograder/student/handing_out.py",
     "autograder/masters",
 )
-"""Parts of them that make notebooks, contain solutions or grade a class. They are not handed out."""
+"""Parts of the files in :data:`WHOLE` that make notebooks, contain solutions or grade a class. They are not handed out.
+"""
 PAGES = (
     "students-guide.md",
     "learning-outcomes.md",

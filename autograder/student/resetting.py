@@ -54,7 +54,7 @@ def reset(root: Path, folder: Path, name: str, entries_in: Path | None = None) -
         copy = _keep(path) if path.exists() and path.read_bytes() != fresh else None
         write_whole(path, fresh)
     except OSError as error:
-        raise CannotReset(f"{path} cannot be put back: {error.strerror or error}") from error
+        raise CannotReset(f"{path} cannot be restored: {error.strerror or error}") from error
     journal.note(journal.JournalEntry("reset", lab.name, time.time()), entries_in)
     return Reset(path, copy)
 

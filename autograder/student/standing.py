@@ -152,7 +152,7 @@ def standing(root: Path, folder: Path, entries: Sequence[JournalEntry]) -> Stand
 
 
 def _following(notebooks: Sequence[NotebookStanding]) -> NotebookStanding | None:
-    """Return the notebook last worked on. If it is done, return the next one that is not, after the last the first."""
+    """Return the notebook last worked on; if it is done, the next one that is not. After the last comes the first."""
     times = [notebook.worked for notebook in notebooks]
     here = times.index(max(times)) if times else 0
     in_order = [*notebooks[here:], *notebooks[:here]]

@@ -188,7 +188,7 @@ def sources_of(src: Path, packages: Iterable[Package]) -> Tree:
             size += len(source.data or b"")
             if len(sources) > MAX_FILES or size > MAX_BYTES:
                 raise BadSources(
-                    f"{src} holds more than {MAX_FILES} files or {MAX_BYTES // 10**6} MB: is it a workspace?"
+                    f"{src} contains more than {MAX_FILES} files or {MAX_BYTES // 10**6} MB: is it a workspace?"
                 )
     return Tree(tuple(sources))
 
@@ -249,7 +249,7 @@ def _validate(file: Path, shown: str) -> None:
 
 
 def _told(error: Exception) -> str:
-    return "it is too deep" if isinstance(error, RecursionError | MemoryError) else str(error)
+    return "it is nested too deeply" if isinstance(error, RecursionError | MemoryError) else str(error)
 
 
 def _parsed(setup: str) -> ast.Module:

@@ -146,7 +146,7 @@ class WorkspaceService:
     def _serve_notebook(self, lines: Lines, folder: Path) -> None:
         """Answer one request for a build (:mod:`autograder.workspaces.builds.own_builds`)."""
         if not self._left.acquire(blocking=False):
-            lines.say(messages.NotBuilt("this notebook has had enough builds"))
+            lines.say(messages.NotBuilt("this notebook has reached its maximum number of builds"))
             return
         try:
             order = lines.hear(messages.Build)

@@ -199,7 +199,7 @@ def checked(sources: Iterable[Source]) -> list[Source]:
     for path in taken:
         above = (str(parent) for parent in PurePosixPath(path).parents)
         if any(taken[name].data is not None for name in above if name in taken):
-            raise BadSources(f"{path} lies in a file")
+            raise BadSources(f"{path} would be inside a file, not in a folder")
     return [source for source in _bounded(list(taken.values())) if _is_source(source)]
 
 

@@ -286,8 +286,8 @@ def refuse_students_folder(folder: Path) -> None:
     for outer in place.parents:
         if place.relative_to(outer).parts[0] in _STUDENTS_FILES and (outer / CONFIG_NAME).is_file():
             raise ClassIncomplete(
-                f"{folder} holds files of students, so it is not used as a class. "
-                f"The class is {outer}: name that folder."
+                f"{folder} contains files of students, so it is not used as a class. The class is "
+                f"{outer}: name that folder."
             )
 
 

@@ -23,7 +23,7 @@ _HEX = frozenset("0123456789abcdef")
 _EARLIEST = datetime(2024, 5, 23)
 """The earliest accepted time: the release day of ROS 2 Jazzy."""
 _AHEAD = timedelta(days=1)
-"""How far ahead of this machine's clock a time may be, because it may come from another machine."""
+"""The maximum time by which a recorded time may be ahead of this machine's clock. It may come from another machine."""
 
 
 def read_timestamp(folder: Path) -> str:

@@ -123,7 +123,7 @@ class _Carrier:
                 for who in await self._look():
                     self._start(self._introduce(*who))
         except Exception as error:
-            _tell(self._grader, Broken(f"the scheduler is gone: {_first_line(error)}"))
+            _tell(self._grader, Broken(f"the scheduler has ended: {_first_line(error)}"))
 
     async def _look(self) -> list[tuple[str, str, int]]:
         """Report workers that have left. Return address, name and number of threads of each new one."""
@@ -162,7 +162,7 @@ class _Carrier:
 
     async def _give(self, give: Give) -> None:
         if give.worker not in self._workers:
-            _tell(self._grader, Failed(give.number, "the worker is gone"))
+            _tell(self._grader, Failed(give.number, "the worker has ended"))
             return
         key = f"autograder-{self._batch}-{give.number}"
         future = self._client.submit(

@@ -85,7 +85,7 @@ class ClientLink:
         except Hangup:
             self._news.put(Broken(f"the client process ended{self._last_words()}"))
         except (msgspec.MsgspecError, ValueError, MemoryError) as error:
-            self._news.put(Broken(f"the client process spoke nonsense: {error}"))
+            self._news.put(Broken(f"the client process sent an invalid message: {error}"))
 
     def _last_words(self) -> str:
         with contextlib.suppress(ValueError, OSError):

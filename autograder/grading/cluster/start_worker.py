@@ -105,4 +105,4 @@ async def _work(address: str, name: str, slots: int, folder: str, tell: Callable
     with contextlib.suppress(Exception):
         await worker.close(timeout=_GOODBYE_SECONDS, executor_wait=False)
     if ended_by_scheduler:
-        tell(f"{name} ends: the scheduler at {address} is gone, or has ended it.")
+        tell(f"{name} ends: the scheduler at {address} has ended, or has told the worker to end.")

@@ -37,7 +37,7 @@ def put_right(directory: ClassDirectory) -> Iterator[str]:
 
 
 def beside_their_place(directory: ClassDirectory) -> tuple[list[RefusedFile], list[str]]:
-    """Return the files that a person has to move, and sentences for the instructor. There is one for each folder."""
+    """Return the files that a person has to move, at most one for each folder, and sentences for the instructor."""
     submitted = directory.path / "submitted"
     refused = _refused(
         submitted, f"put it into {submitted}/STUDENT/ASSIGNMENT, or hand it to `{COMMAND} collect`"
@@ -55,7 +55,7 @@ def beside_their_place(directory: ClassDirectory) -> tuple[list[RefusedFile], li
             more = f" and {len(others) - 1} more are" if others[1:] else " is"
             notices.append(f"{label}{more} left out: the notebook in the same folder is graded")
     notices += [
-        f"{' and '.join(names)} are two students, told apart by capitals alone"
+        f"{' and '.join(names)} are two students whose ids differ only in capital letters"
         for names in alike.values()
         if names[1:]
     ]

@@ -116,7 +116,7 @@ def _of_group(place: Place, group: list[Line], looks: Looks) -> Iterator[_Why]:
                 yield one, *((State.UNCHANGED, "") if same else (State.EARLIER, f"{chosen[0].label} {why}"))
         return
     for one in by_hand:
-        yield one, State.EARLIER, "it was at its place once: write yes under use to have it there again"
+        yield one, State.EARLIER, "it was in submitted before: write yes under use to put it there again"
     pool = [one for one in group if not one.is_by_hand]
     for sift in (_people, _unreadable):
         doubts = sift(place, pool, looks)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 _MOST_MARKS = 10
 """The maximum number of ways to read a name; real names have fewer."""
-# Browsers, Canvas and Drive add this to a name that already exists, and file managers to the name of a copy.
+# Browsers, Canvas and Drive add such a mark to a name that already exists, and file managers to the name of a copy.
 _COPY_OF = "Copy of "
 _MARK = r" ?\((\d{1,6})\)|-(\d{1,6})| - [Cc]opy"
 _MARKED = re2.compile(rf"^(?P<base>.+?)(?P<marks>(?:{_MARK})+)$")
@@ -43,8 +43,8 @@ class Found:
         when: The time of handing in, in the LMS's own time; None if the name contains no readable time.
         order: A number that increases with later files of one student, if the LMS numbers files.
         late: True if the LMS marks the file as late.
-        readings: If the name can be read in several ways, the student by each, the longest name first. The first of
-            these who is in the class is meant. Empty if there is only one way.
+        readings: If the name can be read in several ways, the student according to each, with the longest name first;
+            else empty. The first of these students who is in the class is meant.
         assignment: The assignment, if the instructor's pattern finds one in the name.
     """
 

@@ -44,9 +44,9 @@ class Owners:
     Attributes:
         found: The facts in the name; None if its form is unknown.
         members: For each member of the group, the students who may be meant; empty if none is known.
-        is_sure: True if a number of the system identifies them, not just a name that students may choose.
-        rivals: If several systems may have made the name, and it would mean different students or times in them,
-            these systems.
+        is_sure: True if a number of the system identifies the students, and not just a name that students may choose.
+        rivals: The systems that may have made the name, if there are several, and if they would mean different
+            students or times by it.
     """
 
     found: Found | None
@@ -136,7 +136,7 @@ class StudentOf:
         return self.owners((name, "") if path.is_dir() else (name,), 1, is_alone=True)
 
     def find(self, way: Found) -> Owners | None:
-        """Return the students who may be meant, by the first way to read the name that identifies any."""
+        """Return the students who may be meant, by the first reading of the name that identifies any student."""
         readings = way.readings if self._roster.students and way.readings else (way.identity,)
         for identity in readings:
             members, is_sure = self._of(identity)
@@ -188,7 +188,7 @@ class StudentOf:
         return ((found,) if found else ()), is_sure
 
     def _is_another(self, student: Student, identity: Identity) -> bool:
-        """Return True if the student has a different number there, and so is not the person with this name."""
+        """Return True if the student has a different number in that system, and so is not the person with this name."""
         lms = identity.lms
         by_number = lms in (*_BY_NUMBER, "gradescope")
         theirs = (by_number and identity.number) or (lms in _BY_LOGIN and identity.login) or ""

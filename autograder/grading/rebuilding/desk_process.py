@@ -64,5 +64,5 @@ def answer_to(data: bytes) -> bytes:
     except UnreadableSubmission as error:
         document = Unreadable(str(error)[:LONGEST_REASON])
     except MemoryError:
-        document = Unreadable("To read the file takes far more memory than to read a notebook.")
+        document = Unreadable("Reading the file takes far more memory than reading a notebook.")
     return msgspec.json.encode(document)

@@ -76,7 +76,7 @@ class NamedCells:
             except (OSError, UnreadableSubmission) as error:
                 found[target] = []
                 self.notes.append(
-                    f"{path} cannot be read ({error}): what is for it is told by file names alone"
+                    f"{path} cannot be read ({error}): files for it are recognized only by their names"
                 )
         return found
 

@@ -54,7 +54,7 @@ def rebuild(
     ]
     remarks += sorting.remarks()
     if left_out:
-        remarks.append(f"{left_out} cell(s) had not the form of a notebook cell and were left out.")
+        remarks.append(f"{left_out} cell(s) were not valid notebook cells and were left out.")
     return _finished(master, sorting.cells(), remarks)
 
 
@@ -117,7 +117,7 @@ class _Sorting:
             found += self._remarks_on(name, places)
         order = sorted(self._chosen, key=lambda name: self._chosen[name])
         if order != [name for name in self._master if name in self._chosen]:
-            found.append("Cells of the notebook had changed places. They were put in their order again.")
+            found.append("Cells of the notebook had changed places. They were put back into their order.")
         unmarked = self._matches.unmarked
         strangers = {
             cell.grade_id
@@ -154,7 +154,7 @@ class _Sorting:
         if len(found) == 1:
             yield f"{_were(found)} missing. What it asks for is in another cell, and that one counts."
         elif found:
-            yield f"{_were(found)} missing. What they ask for is in other cells, and those count."
+            yield f"{_were(found)} missing. Other cells contain the answers, and those count."
 
     def _remarks_on(self, name: str, places: Sequence[int]) -> list[str]:
         master, cell = self._master[name], self._submitted[self._chosen[name]]

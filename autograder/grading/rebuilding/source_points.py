@@ -79,7 +79,7 @@ def check_release(directory: ClassDirectory, cells: dict[str, tuple[GradedCell, 
     """
     if not cells:
         raise ClassIncomplete(
-            f"{directory.path / 'source'} holds no assignment. Put one there, or make a new class."
+            f"{directory.path / 'source'} contains no assignment. Put one there, or make a new class."
         )
     for assignment, wanted in cells.items():
         entered = gradebook_reading.worth(directory.gradebook_url, assignment)

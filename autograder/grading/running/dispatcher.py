@@ -269,9 +269,9 @@ class Dispatcher:
                     self._lost(number, f"its worker could not run it: {reason}")
             case Broken(reason):
                 raise SchedulerGone(
-                    f"The Dask scheduler at {self._address} cannot be reached ({reason}). "
-                    "Look whether it runs, and whether its address and its TLS settings are right. "
-                    "What was graded so far is kept."
+                    f"The Dask scheduler at {self._address} cannot be reached ({reason}). Check that it "
+                    "runs, and that its address and its TLS settings are right. What was graded so far "
+                    "is kept."
                 )
             case _:
                 pass  # this answer is no longer needed
@@ -280,7 +280,7 @@ class Dispatcher:
         try:
             offer = admitted_offer(data)
         except Forged as error:
-            self._refuse(address, name, f"{error}. Look at that machine")
+            self._refuse(address, name, f"{error}. Check that machine")
             return
         if address != ADDRESS and offer.version != course_version():
             self._refuse(
@@ -355,7 +355,7 @@ class Dispatcher:
     def _forged(self, number: int, reason: str) -> None:
         address = self._flights[number].worker
         if address == ADDRESS:
-            self._lost(number, f"the answer of its worker process is not possible: {reason}")
+            self._lost(number, f"its worker process gave an impossible answer: {reason}")
             return
         for held in self._workers[address].flights:
             self._flights[held].job.attempts -= 1  # this was the fault of the worker, not of the notebook
@@ -364,7 +364,7 @@ class Dispatcher:
     def _turn_out(self, address: str, reason: str) -> None:
         """Give an accepted worker no more work. Other workers execute its tasks."""
         name = self._workers[address].name
-        self._forget(address, f"its worker was turned out: {reason}")
+        self._forget(address, f"its worker was given no more work: {reason}")
         self._refuse(address, name, reason)
 
     def _give_up_on_silent(self, now: float) -> None:

@@ -53,7 +53,7 @@ def require(directory: ClassDirectory) -> None:
     why = why_impossible()
     if why:
         raise SandboxMissing(
-            f"Submissions cannot be shut off from your files and from each other here: {why}. "
-            "To grade all the same, trusting every submission: --unsafe-no-sandbox, "
-            "or c.WireExecute.unsafe_no_sandbox = True in nbgrader_config.py."
+            f"Submissions cannot be isolated from your files and from each other here: {why}. To grade "
+            "them nevertheless, trusting every submission: --unsafe-no-sandbox, or "
+            "c.WireExecute.unsafe_no_sandbox = True in nbgrader_config.py."
         )

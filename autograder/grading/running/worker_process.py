@@ -96,7 +96,7 @@ class WorkerProcess:
                 execution = self._ask(task)
                 if execution.trouble:
                     if self._is_stale():
-                        raise WorkerLost(execution.trouble)  # with new fork servers it may succeed
+                        raise WorkerLost(execution.trouble)  # with new fork servers, the task may succeed
                     return replace(execution, trouble=f"{execution.trouble}{self._last_words()}")
                 return execution
             except (WorkerLost, OSError, ValueError) as error:

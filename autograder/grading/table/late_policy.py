@@ -25,7 +25,10 @@ class LatePolicy(LateSubmissionPlugin):
     """Subtracts a percentage of the points for each day that the work is late."""
 
     percent_per_day = Float(
-        10.0, min=0, max=100, help="Taken off for each day that has begun, in percent."
+        10.0,
+        min=0,
+        max=100,
+        help="The percentage of the points that is subtracted for each day that has begun.",
     ).tag(config=True)
     grace_minutes = Float(
         0.0, min=0, help="Work that is late by at most this many minutes loses nothing."

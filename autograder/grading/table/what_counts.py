@@ -113,8 +113,8 @@ def read_what_counts(directory: ClassDirectory, cells: Mapping[str, Sequence[Gra
         said = msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8-sig")), type=_File)
     except (OSError, ValueError) as error:
         raise GradingError(
-            f'{path} cannot be used: {error}. It may hold leave_out = ["EXERCISE"], drop_lowest = 1, and tables named '
-            "points and weights."
+            f'{path} cannot be used: {error}. It may contain leave_out = ["EXERCISE"], drop_lowest = 1, '
+            "and tables named points and weights."
         ) from error
     exercises = {cell.exercise for of_assignment in cells.values() for cell in of_assignment}
     for name, known in (

@@ -52,7 +52,7 @@ def converse(connection: socket.socket, order: Open | None) -> Report:
     except Hangup:
         return Report()  # the other side connected and sent nothing
     except NotUnderstood:
-        _tell(lines, Refused("the first message asks for a check"))
+        _tell(lines, Refused("the first message must request a check"))
         return Report()
     connection.settimeout(None)
     asked = first.exercise[:MAX_NAME].encode("utf-8", "replace").decode()

@@ -63,7 +63,10 @@ class JudgeServer:
         with connection:
             order = self._order
             if self._controlled and (order is None or self._child is not None):
-                _refuse(connection, "no check is expected now: it counts once, while its cell is running")
+                _refuse(
+                    connection,
+                    "no check is expected now: a check counts once, and only while its cell is running",
+                )
                 return
             limit = max(
                 (e.limit for e in exercises.unbroken() if order is None or e.id == order.exercise),

@@ -80,7 +80,7 @@ class PathSubject(InOwnProcesses):
             for source in sources:
                 self._lines.say(source)
         except Hangup as error:
-            raise JudgeFailed(f"the grader's side of workspaces is gone: {error}") from error
+            raise JudgeFailed(f"the grader's workspace service is gone: {error}") from error
         threading.Thread(target=self._listen, args=(self._lines,), daemon=True).start()
         self._ready.wait()
         self._check()
@@ -130,7 +130,7 @@ class PathSubject(InOwnProcesses):
         if not self.trouble:
             self._say(workspaces.Stop(self._run))
             if not self._stopped.wait(STOP_LIMIT):
-                raise JudgeFailed("the grader's side did not end what it ran")
+                raise JudgeFailed("the grader's workspace service did not end the run")
         if waited:
             raise JudgeFailed("the build did not end in time; is the machine too busy?")
         self._check()
@@ -144,7 +144,7 @@ class PathSubject(InOwnProcesses):
         try:
             self._lines.say(message)
         except Hangup as error:
-            raise JudgeFailed(self.trouble or f"the grader's side of workspaces is gone: {error}") from error
+            raise JudgeFailed(self.trouble or f"the grader's workspace service is gone: {error}") from error
 
     def _collected(self) -> tuple[list[Source], str]:
         """Return the sources that the notebook sends, or the reason why they cannot be used."""
@@ -171,7 +171,7 @@ class PathSubject(InOwnProcesses):
             while True:
                 self._take(lines.hear(workspaces.FromService))
         except (Hangup, NotUnderstood) as error:
-            self._fail(f"the grader's side of workspaces is gone: {error}")
+            self._fail(f"the grader's workspace service is gone: {error}")
 
     def _take(self, message: workspaces.FromService) -> None:
         match message:

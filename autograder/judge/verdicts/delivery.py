@@ -16,7 +16,9 @@ NOT_DELIVERED = (
     "judge cannot tell whether your node sent any. Close some, or wait a little, and check again."
 )
 _DATAGRAMS, _BYTES = 16, 4096
-"""Together more than a socket can hold if this memory is used up, and less than half of what it can hold otherwise."""
+"""The datagrams to send. Together they are more than a socket can hold if this memory is used up, and less than half of
+what it can hold otherwise.
+"""
 _ARRIVES_WITHIN = 10.0
 """Time limit in seconds of wall time. Inside one machine, a datagram waits only for a processor."""
 

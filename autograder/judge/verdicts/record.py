@@ -46,7 +46,7 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
     subject.begin(domain_id)
     interface = _interface(exercise, subject, domain_id)
     if exercise.roles and not any(interface.get(role) for role in exercise.roles):
-        raise NotRecordable(f"{exercise.id}: the reference solution showed no {' or '.join(exercise.roles)}")
+        raise NotRecordable(f"{exercise.id}: the reference solution had no {' or '.join(exercise.roles)}")
     bare = Reference(exercise.id, interface)
     wrong: Reference | None = None
     for number in range(LOOKS):

@@ -86,7 +86,9 @@ class MadeNodes:
             try:
                 plain_init(node, node_name, *args, **kwargs)
             except NotInitializedException as error:
-                error.add_note("ROS is not up in this notebook: call start_ros() before you make a node.")
+                error.add_note(
+                    "ROS is not running in this notebook: call start_ros() before you make a node."
+                )
                 raise
 
         Node.__init__ = init  # type: ignore[method-assign, assignment]

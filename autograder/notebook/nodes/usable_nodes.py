@@ -95,7 +95,7 @@ def _check_is_usable(node: Node) -> None:
         destroyed = is_destroyed(node)
     except AttributeError:
         raise UnusableNodeError(
-            f'{kind} has no inside of a node yet: begin its __init__ with super().__init__("a_name")'
+            f'{kind} is not initialized as a node: begin its __init__ with super().__init__("a_name")'
         ) from None
     if destroyed:
         raise UnusableNodeError(

@@ -72,7 +72,7 @@ def recording(path: str | os.PathLike[str], topics: Collection[str] = ()) -> Rec
     """
     file = Path(path)
     if file.suffix != ".mcap":
-        raise ValueError(f"a recording is a file such as hello.mcap: {file.name} has another ending")
+        raise ValueError(f"a recording is a file such as hello.mcap: {file.name} does not end in .mcap")
     return Recording(file, [name if name.startswith("/") else f"/{name}" for name in topics])
 
 

@@ -152,10 +152,9 @@ def _full(name: str, space: str) -> str:
 
 
 def _topic_ends(node: Node) -> Iterator[End]:
-    """The query is by topic, because a query by node finds only one of two nodes that have the same name.
+    """Yield the ends of all topics, with the names of their nodes.
 
-    They are asked for by topic: if two nodes have the same name, asking by the node's name returns only one of
-    them only.
+    The query is by topic, because a query by node finds only one of two nodes that have the same name.
     """
     for topic, types in node.get_topic_names_and_types():
         # Topics that every node has, and an action's own topics, are not shown.

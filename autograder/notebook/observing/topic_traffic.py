@@ -82,7 +82,7 @@ def message_class(type_name: str) -> Any:
         package, kind, name = type_name.split("/")
         return getattr(importlib.import_module(f"{package}.{kind}"), name)
     except (ValueError, ImportError, AttributeError) as error:
-        raise LookupError(f"there is no message type {type_name} here") from error
+        raise LookupError(f"the message type {type_name} is not installed here") from error
 
 
 def _taken(subscription: Subscription) -> int:

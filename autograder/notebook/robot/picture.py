@@ -77,8 +77,9 @@ class RobotPicture:
         if self.robots < 2:
             return ""
         return (
-            f" {self.robots} robots are called /robot, and each of them obeys /cmd_vel. If another notebook has started"
-            " one, end it there with robot.stop(). That of a kernel which was restarted goes away within half a minute."
+            f"{self.robots} robots are called /robot, and each of them obeys /cmd_vel. If another "
+            "notebook has started one, end it there with robot.stop(). The robot of a restarted kernel "
+            "disappears within half a minute."
         )
 
     def _repr_html_(self) -> str:

@@ -60,7 +60,7 @@ class _ShortHeaders(tarfile.TarInfo):
         is_pax = found.type in (tarfile.XHDTYPE, tarfile.XGLTYPE, tarfile.SOLARIS_XHDTYPE)
         if is_pax and not 0 <= found.size <= MAX_PAX:
             raise BadArtefacts(
-                f"the archive says more than {MAX_PAX} bytes, or fewer than none, of one of its files"
+                f"the archive has a header of more than {MAX_PAX} bytes, or one of a negative size"
             )
         return found
 
@@ -73,7 +73,7 @@ def pack(install: Path) -> bytes:
         nonlocal size
         size += member.size
         if size > MAX_BYTES:
-            raise BadArtefacts("the build made too much to be packed")
+            raise BadArtefacts("the result of the build is too large to be packed")
         return member
 
     try:
@@ -99,7 +99,7 @@ def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> None:
             fault.
     """
     if not archive:
-        raise BadArtefacts("what the build made could not be packed")
+        raise BadArtefacts("the result of the build could not be packed")
     folder.mkdir(mode=0o755)
     number = size = 0
     made: set[PurePosixPath] = set()
@@ -125,7 +125,7 @@ def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> None:
             or getattr(error, "errno", None) in _OF_THIS_MACHINE
         ):
             raise
-        raise BadArtefacts(f"what the build made cannot be read: {error}") from error
+        raise BadArtefacts(f"the result of the build cannot be read: {error}") from error
 
 
 def check_room(size: int, most: int, number: int = 0) -> None:
@@ -171,7 +171,7 @@ def _parts(name: str) -> tuple[str, ...]:
         or len(parts) > MAX_DEPTH
         or any(len(os.fsencode(p)) > MAX_NAME for p in parts)
     ):
-        raise BadArtefacts(f"{name[:80]!r} is no path inside the install folder")
+        raise BadArtefacts(f"{name[:80]!r} is not a path inside the install folder")
     return parts
 
 
@@ -190,7 +190,7 @@ def _copy(link: PurePosixPath, links: Mapping[PurePosixPath, PurePosixPath], fol
         target = links.get(target, target)
     place, source = folder / link, folder / target
     if target in links or not source.is_file():
-        raise BadArtefacts(f"{str(link)!r} is a link to no file of the build's")
+        raise BadArtefacts(f"{str(link)!r} is a link that leads to no file of the build")
     if os.path.lexists(place):
         raise BadArtefacts(f"{str(link)!r} is there twice")
     place.parent.mkdir(parents=True, exist_ok=True)

@@ -181,7 +181,7 @@ def place(made: Build) -> Path:
         CannotPlace: The folder was made with ``--merge-install``, or is not writable.
     """
     if made.install is None:
-        raise ValueError("a build that failed has nothing to place")
+        raise ValueError("a build that failed cannot be copied")
     target = made.workspace / "install"
     if (target / _LAYOUT).is_file() and not is_isolated(target):
         raise CannotPlace(f"{target} was built with --merge-install: delete it, and build again")
