@@ -29,7 +29,7 @@ MAY_IMPORT = {
     "exercises": frozenset({"course", "kit"}),
     "messages": frozenset({"verdict"}),
     "cards": frozenset({"verdict"}),
-    "boxes": frozenset({"verdict", "process_trees", "temporary_folders"}),
+    "boxes": frozenset({"messages", "verdict", "process_trees", "temporary_folders"}),
     "masters": frozenset({"course", "exercises", "regular_files"}),
     "mcap_files": frozenset[str](),
     "process_trees": frozenset[str](),

@@ -44,6 +44,8 @@ class Entrance:
         call: The argument for the function ``run``.
         reader_seconds: The limit in seconds of processor time for a process that may only read from and write to its
             descriptors (:func:`autograder.boxes.seccomp_filter.filter_for_readers`); 0 for any other process.
+        filters_itself: True for such a process that takes its filter itself, before it reads anything: a desk first
+            connects to its kernel (:mod:`autograder.boxes.kernel_desk`).
     """
 
     cwd: str
@@ -54,6 +56,7 @@ class Entrance:
     hidden_memory: bool = True
     call: Mapping[str, Any] = field(default_factory=dict)
     reader_seconds: int = 0
+    filters_itself: bool = False
 
 
 def enter(channel: Channel, run: Run) -> None:
@@ -120,7 +123,9 @@ def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
         die_with_parent()
         signal.signal(signal.SIGINT, signal.default_int_handler)
         if entrance.reader_seconds:
-            _become_a_reader(entrance.reader_seconds)
+            _limit_processor_time(entrance.reader_seconds)
+            if not entrance.filters_itself:
+                syscalls.filter_system_calls(filter_for_readers())
         run(entrance.call, descriptors)
         code = 0
     except SystemExit as error:
@@ -142,13 +147,12 @@ def give_up_rights(filters: bytes) -> None:
     syscalls.prctl(syscalls.PR_SET_DUMPABLE, 1)
 
 
-def _become_a_reader(seconds: int) -> None:
-    """Set the limit on processor time and the system call filter for readers, under which SIGXCPU cannot be caught.
+def _limit_processor_time(seconds: int) -> None:
+    """Set the limit on processor time. Under the filters of readers and desks, SIGXCPU cannot be caught or held back.
 
     SIGXCPU comes a second before SIGKILL, so that reaching the limit differs from a machine that is out of memory.
     """
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
-    syscalls.filter_system_calls(filter_for_readers())
 
 
 def take_limits(cgroups: Sequence[str], rlimits: Mapping[str, int]) -> None:

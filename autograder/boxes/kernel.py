@@ -1,8 +1,7 @@
-"""A Jupyter kernel in a process of its own, reached over Unix sockets with polling and deadlines.
+"""A Jupyter kernel in a process of its own, and the desk that reads its messages, seen from outside of both.
 
-nbclient is made for trusted notebooks: it keeps all output, trusts the format of each message and learns of a dead
-kernel from a heartbeat. Here every wait ends at a message, at the end of the process or at a deadline, whichever
-comes first, and a message is read only as far as it has the right format (Jupyter messaging specification 5.4).
+nbclient is made for trusted notebooks: it keeps all output, and learns of a dead kernel from a heartbeat. Here every
+wait ends at an answer of the desk, at the end of the kernel's process or at a deadline, whichever comes first.
 """
 
 from __future__ import annotations
@@ -11,35 +10,33 @@ import contextlib
 import os
 import secrets
 import select
+import signal
 import socket
-import time
-from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Protocol
+
+import msgspec
 
 from autograder.boxes.box import NoSandbox
+from autograder.boxes.desk_messages import FURTHER_BYTES, MOST_ESCAPED, Do, Order, Said, admitted_answer
 from autograder.boxes.execution import Ended
 from autograder.boxes.guards import INTERVAL, NoGuard
-from autograder.boxes.jupyter_messages import SignedMessages
-from autograder.boxes.limits import Left, first_of, until, wall_time
-from autograder.boxes.zmtp import ZmtpConnection
+from autograder.boxes.limits import wall_time
+from autograder.messages.lines import Hangup, Lines, Silent, TooLong
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.boxes.boxed_processes import ForkedProcess
+    from autograder.boxes.desk_messages import Answer
     from autograder.boxes.guards import Guard
-    from autograder.boxes.limits import Limits
+    from autograder.boxes.limits import Left, Limits
+    from autograder.boxes.outputs import NotebookOutputs
 
-Output = Callable[[str, str, Mapping[str, Any]], None]
-"""Called for each output with the request's id, the message type and the content."""
-
-_ASK_AGAIN_S = 0.5
-_LAST_OUTPUT_S = 2.0
-"""Seconds of silence after which a cell's last outputs are no longer expected."""
 SHELL, IOPUB = 1, 2
 """The channels in use, by their numbers in the names of the sockets."""
-_TOO_LARGE = "\n[output that was too large was dropped]\n"
+_DESK_SECONDS = 30.0
+"""Seconds for a desk to take an order, to end, or to read what an ended kernel has left."""
 
 
 class KernelFailed(RuntimeError):
@@ -48,35 +45,46 @@ class KernelFailed(RuntimeError):
 
 @dataclass(frozen=True)
 class Channels:
-    """The channels with which a kernel starts.
+    """The channels with which a kernel and its desk start.
 
     Attributes:
-        address: The path in the names of the sockets.
+        folder: The folder of the kernel's sockets.
         key: The key that signs the messages.
         shell: The listening socket for requests.
         iopub: The listening socket for outputs.
         log: A pipe for what the kernel prints outside any cell; further text is dropped once the pipe is full.
+        orders: The desk's end of the socket for its orders.
     """
 
-    address: str
+    folder: Path
     key: str
     shell: int
     iopub: int
     log: int
+    orders: int
 
 
-Start = Callable[[Channels], "ForkedProcess"]
+class Place(Protocol):
+    """The part of :class:`autograder.boxes.notebook_boxes.BoxedPlace` that a kernel needs."""
+
+    def start_kernel(self, channels: Channels) -> ForkedProcess:
+        """Start the kernel's process."""
+        ...
+
+    def start_desk(self, channels: Channels) -> ForkedProcess:
+        """Start the process of its desk."""
+        ...
 
 
 class Kernel:
     """A running kernel.
 
     Args:
-        folder: The folder for the sockets. Its path must be short, as Unix socket names have at most 107 characters.
-            No box sees it.
-        start: Starts the kernel's process.
-        limits: ``start_seconds``, ``interrupt_grace``, ``message_bytes`` and ``flood_bytes`` are used.
-        on_output: Gets every output; it is never called after :meth:`close`.
+        folder: A folder for the sockets. Its path must be short, as Unix socket names have at most 107 characters.
+            Only the desk's box sees what is made there.
+        place: Starts the processes.
+        limits: ``start_seconds``, ``interrupt_grace`` and ``notebook_output_bytes`` are used.
+        outputs: Gets the outputs.
         guard: Reports that the box has exceeded another limit.
 
     Raises:
@@ -84,28 +92,39 @@ class Kernel:
     """
 
     def __init__(
-        self, folder: Path, start: Start, limits: Limits, on_output: Output, guard: Guard | None = None
+        self, folder: Path, place: Place, limits: Limits, outputs: NotebookOutputs, guard: Guard | None = None
     ) -> None:
         self._limits = limits
         self._guard = guard or NoGuard()
-        self._read_before = self._dropped_before = 0
-        self._on_output = on_output
-        key = secrets.token_hex(32)
-        self._form = SignedMessages(key)
+        self._outputs = outputs
+        self._sent = self._answered = -1
+        self._cells: set[int] = set()
+        self._desk_failed = self._desk_lost = False
         self._log, log = _log_pipe()
-        shell, iopub = (_listener(folder / f"k-{number}") for number in (SHELL, IOPUB))
-        try:
-            self._process = start(Channels(str(folder / "k"), key, shell.fileno(), iopub.fileno(), log))
-        except (OSError, NoSandbox) as error:
-            os.close(self._log)
-            raise KernelFailed(f"the kernel could not be started: {error}") from error
-        finally:
-            for listener in (shell, iopub):
-                listener.close()
-            os.close(log)
-        self._shell = ZmtpConnection(folder / f"k-{SHELL}", "DEALER", limits.message_bytes)
-        self._iopub = ZmtpConnection(folder / f"k-{IOPUB}", "SUB", limits.message_bytes)
-        self._closed = False
+        sockets = folder / "kernel"
+        sockets.mkdir()
+        shell, iopub = (_listener(sockets / f"k-{number}") for number in (SHELL, IOPUB))
+        own, orders = socket.socketpair()
+        own.settimeout(_DESK_SECONDS)
+        self._desk_says = own
+        self._lines = Lines(own, MOST_ESCAPED * limits.notebook_output_bytes + FURTHER_BYTES)
+        given = (shell.fileno(), iopub.fileno(), log, orders.fileno())
+        channels = Channels(sockets, secrets.token_hex(32), *given)
+        with contextlib.ExitStack() as started:
+            started.callback(self._lines.close)
+            started.callback(os.close, self._log)
+            try:
+                self._process = place.start_kernel(channels)
+                started.callback(self._process.end)
+                self._desk = place.start_desk(channels)
+            except (OSError, NoSandbox) as error:
+                raise KernelFailed(f"the kernel could not be started: {error}") from error
+            finally:
+                for end in (shell, iopub, orders):
+                    end.close()
+                os.close(log)
+            started.callback(self._desk.end)
+            self._open = started.pop_all()
 
     @property
     def alive(self) -> bool:
@@ -114,99 +133,42 @@ class Kernel:
 
     @property
     def lost(self) -> bool:
-        """True if the grader itself lost the process: then its exit tells nothing about the notebook."""
-        return self._process.lost
+        """True if the grader itself lost the process or its desk: their end then tells nothing about the notebook."""
+        return self._process.lost or self._desk_lost
 
     def await_ready(self) -> None:
-        """Wait until the kernel answers and its outputs reach us.
+        """Wait until the kernel answers and its outputs reach the desk.
 
         Raises:
             KernelFailed: The kernel ended, or did not answer within ``start_seconds``.
         """
-        if not self._shake_hands(time.monotonic() + self._limits.start_seconds):
+        self._sent = 0
+        if self._await_answer(wall_time(self._limits.start_seconds)) is None:
+            if self._desk_failed:
+                raise KernelFailed("the process that reads the kernel's messages ended while it started")
             if self.alive:
                 raise KernelFailed(f"the kernel did not answer within {self._limits.start_seconds:g} s")
             raise KernelFailed(f"the kernel ended while it started: {self._last_words()}")
 
-    def execute(self, source: str, left: Left, request: Callable[[str], None] = lambda _: None) -> Ended:
+    def execute(self, cell: int, source: str, left: Left) -> Ended:
         """Execute one cell.
 
         A cell that is still running at its limit is interrupted; a kernel that does not react is killed.
 
         Args:
+            cell: The index of the cell.
             source: The cell's text.
             left: Returns the seconds that the cell has left.
-            request: Called with the id of this request before any output of it arrives.
         """
         if not self.alive:
             return self._died()
-        self._count_anew()
-        self._dropped_before = self._iopub.dropped
-        content = {
-            "code": source,
-            "silent": False,
-            "store_history": True,
-            "user_expressions": {},
-            "allow_stdin": False,
-            "stop_on_error": False,
-        }
-        asked, parts = self._form.written("execute_request", content)
-        request(asked)
-        self._shell.send(parts)
-        ended = self._await_reply(asked, left)
-        if ended is not None:
-            return ended
-        stopped_for = Ended.TOO_MUCH_OUTPUT if self._floods else self._guard.reason() or Ended.TIMED_OUT
-        self._count_anew()
-        self._process.interrupt()  # as JupyterLab's stop button does
-        # An interrupt can hit the kernel's own code, such as its flush of printed text; then the cell's answer is
-        # lost. A request that is sent after it is still answered.
-        next_one = self._ask("kernel_info_request", {})
-        grace = wall_time(self._limits.interrupt_grace)
-        if self._await_reply(asked, grace, next_one) is None:
-            self.kill()
-        return stopped_for
-
-    def kill(self) -> None:
-        """End the process and everything that it started."""
-        self._process.end()
-
-    def close(self) -> None:
-        """Kill the kernel and close the sockets; may be called twice."""
-        if self._closed:
-            return
-        self._closed = True
-        self.kill()
-        os.close(self._log)
-        self._shell.close()
-        self._iopub.close()
-
-    def _await_reply(self, request: str, left: Left, next_one: str = "") -> Ended | None:
-        """Wait for the end of a cell. Return how it ended, or None if it is still running when its time is up.
-
-        Args:
-            request: The id of the request that executes the cell.
-            left: Returns the seconds that the cell has left.
-            next_one: The id of a later request; an answer to it also shows that the cell has ended.
-        """
-        reply: Mapping[str, Any] | None = None
-        idle = False
-        for channel, message in self._messages(left):
-            content = _answer(message, request)
-            idle = idle or (channel is self._iopub and content.get("execution_state") == "idle")
-            if channel is self._shell and content and message.get("msg_type") == "execute_reply":
-                reply = content
-            if channel is self._shell and next_one and _parent(message) == next_one:
-                return Ended.TIMED_OUT
-            if reply is not None:
-                break
-        if reply is None:
-            return None if self.alive else self._died()
-        if not idle:
-            self._await_idle(request, left)
-        if self._iopub.dropped > self._dropped_before:
-            self._on_output(request, "stream", {"name": "stdout", "text": _TOO_LARGE})
-        if _asks_to_exit(reply):
+        self._cells.add(cell)
+        said = self._ask(Do.EXECUTE, left, cell, source)
+        if said is None and not self.alive:
+            return self._died()
+        if said is None or said is Said.FLOODS:
+            return self._stopped(Ended.TIMED_OUT if said is None else Ended.TOO_MUCH_OUTPUT)
+        if said is Said.EXITS:
             self._process.wait(self._limits.interrupt_grace)
             self.kill()
             return self._died()
@@ -214,100 +176,102 @@ class Kernel:
             # The cell ended before the watch saw the excess: treat it as the watch would have done a moment later.
             self.kill()
             return self._died()
-        return Ended.DONE if reply.get("status") == "ok" else Ended.RAISED
+        return Ended.DONE if said is Said.DONE else Ended.RAISED
 
-    def _await_idle(self, request: str, left: Left) -> None:
-        """Wait for a cell's last outputs, which use a different socket and may arrive after it.
+    def kill(self) -> None:
+        """End the process and everything that it started."""
+        self._process.end()
 
-        If the machine is busy, they may be much later: an earlier cell's line of 100 MB may be in front of them.
-        """
-        last_read, silence = -1, wall_time(_LAST_OUTPUT_S)
+    def close(self) -> None:
+        """Kill the kernel and its desk, and close the sockets; may be called twice."""
+        self._open.close()
 
-        def before_silence() -> float:
-            nonlocal last_read, silence
-            if self._iopub.read > last_read:
-                last_read, silence = self._iopub.read, wall_time(_LAST_OUTPUT_S)
-            return silence()
-
-        longest = wall_time(max(left(), _LAST_OUTPUT_S))
-        for channel, message in self._messages(first_of(before_silence, longest)):
-            if channel is self._iopub and _answer(message, request).get("execution_state") == "idle":
-                return
-
-    def _shake_hands(self, deadline: float) -> bool:
-        """Send requests until both an answer and its echo among the outputs have arrived. Return True if they have."""
-        answered = heard = False
-        asked: set[str] = set()
-        while self.alive and time.monotonic() < deadline:
-            # Sent repeatedly, because outputs are lost that were published before our subscription reached the
-            # kernel.
-            asked.add(self._ask("kernel_info_request", {}))
-            for channel, message in self._messages(until(min(deadline, time.monotonic() + _ASK_AGAIN_S))):
-                if _parent(message) in asked:
-                    answered |= channel is self._shell
-                    heard |= channel is self._iopub
-                if answered and heard:
-                    return True
-        return False
-
-    @property
-    def _floods(self) -> bool:
-        return self._iopub.read + self._shell.read - self._read_before > self._limits.flood_bytes
-
-    def _count_anew(self) -> None:
-        """Count the bytes read from now on. The rest of an earlier cell's too large message does not count."""
-        self._read_before = self._iopub.read + self._shell.read + self._iopub.owed
+    def _stopped(self, why: Ended) -> Ended:
+        """Stop the cell that runs, and return how it ended."""
+        if why is not Ended.TOO_MUCH_OUTPUT:
+            why = self._guard.reason() or why
+        self._process.interrupt()  # as JupyterLab's stop button does
+        if self._ask(Do.SETTLE, wall_time(self._limits.interrupt_grace)) is None:
+            self.kill()
+        return Ended.TOO_MUCH_OUTPUT if self._desk_failed else why
 
     def _died(self) -> Ended:
-        """Return how the kernel's end counts for the cell."""
+        """Take what the kernel has said before its end, and return how this end counts for the cell."""
+        self.kill()  # also the programs that it has started and that hold its sockets open
+        if not self._desk_failed:
+            self._ask(Do.DRAIN, wall_time(_DESK_SECONDS), of_living=False)
+        if self._desk_failed:
+            return Ended.TOO_MUCH_OUTPUT
         return self._guard.reason() or Ended.KERNEL_DIED
 
-    def _messages(self, left: Left) -> Iterator[tuple[ZmtpConnection, dict[str, Any]]]:
-        """Yield messages until the time is up, a limit is exceeded or the kernel ends; outputs are passed on here."""
+    def _ask(
+        self, do: Do, left: Left, cell: int = 0, source: str = "", *, of_living: bool = True
+    ) -> Said | None:
+        """Give the desk an order, and return its answer; None if none comes (:meth:`_await_answer`)."""
+        self._sent += 1
+        try:
+            self._lines.say_json(msgspec.json.encode(Order(self._sent, do, cell, source)))
+        except Hangup as error:
+            self._desk_ended(error)
+            return None
+        return self._await_answer(left, of_living=of_living)
+
+    def _await_answer(self, left: Left, *, of_living: bool = True) -> Said | None:
+        """Wait for the desk's answer to the last order.
+
+        Return None if the time is up, a limit is exceeded, or the kernel or its desk has ended first; in the last case,
+        and at a limit, the kernel is killed.
+
+        Args:
+            left: Returns the seconds that are left.
+            of_living: False to wait, too, if the kernel has ended.
+        """
+        waiting = select.poll()
+        waiting.register(self._desk_says, select.POLLIN)
+        if of_living:
+            waiting.register(self._process, select.POLLIN)
         while True:
-            ready = self._ready(_wait_ms(left))
-            if self._guard.exceeded():
+            is_over = (of_living and not self.alive) or left() <= 0
+            try:
+                while (answer := self._answer()).number < self._sent:
+                    pass
+                return answer.said
+            except Silent:
+                pass
+            except (Hangup, ValueError) as error:
+                self._desk_ended(error)
+                return None
+            if self._guard.exceeded() and of_living:
                 self.kill()
-                return
-            # Outputs first: they were sent before the reply that ends the cell.
-            for channel in (self._iopub, self._shell):
-                if channel in ready:
-                    for message in self._received(channel):
-                        if channel is self._iopub:
-                            self._hand_on(message)
-                        yield channel, message
-            if ready:
-                if left() > 0 and not self._floods:
-                    continue
-                return
-            if not self.alive or left() <= 0 or self._floods:
-                return
+                return None
+            if is_over:
+                return None
+            waiting.poll(1 + int(1000 * max(0.0, min(left(), INTERVAL))))
 
-    def _ready(self, wait_ms: int) -> list[ZmtpConnection]:
-        """Return the connections with new data within ``wait_ms`` milliseconds; none once the process has ended."""
-        channels = (self._iopub, self._shell)
-        poll = select.poll()
-        poll.register(self._process.fileno(), select.POLLIN)
-        for channel in channels:
-            if (descriptor := channel.fileno()) >= 0:
-                poll.register(descriptor, select.POLLIN | (select.POLLOUT if channel.wants_to_write else 0))
-        come = dict(poll.poll(0 if any(channel.is_waiting for channel in channels) else wait_ms))
-        return [channel for channel in channels if channel.is_waiting or channel.fileno() in come]
+    def _answer(self) -> Answer:
+        """Take the next answer of the desk, if there is one.
 
-    def _received(self, channel: ZmtpConnection) -> Iterator[dict[str, Any]]:
-        for parts in channel.received():
-            with contextlib.suppress(Exception):  # a message with a wrong format or a forged signature
-                yield self._form.read(parts)
+        Raises:
+            Silent: There is none.
+            Hangup: The desk has ended, or says too much.
+            ValueError: It is not an answer.
+        """
+        line = self._lines.hear_json(0.0)
+        answer = admitted_answer(line, range(self._answered + 1, self._sent + 1), self._cells)
+        self._answered = answer.number
+        for cell, outputs in answer.outputs.items():
+            self._outputs.put(cell, msgspec.to_builtins(outputs))
+        return answer
 
-    def _hand_on(self, message: Mapping[str, Any]) -> None:
-        content = message.get("content")
-        if isinstance(content, Mapping):
-            self._on_output(_parent(message), str(message.get("msg_type")), content)
-
-    def _ask(self, message_type: str, content: dict[str, Any]) -> str:
-        asked, parts = self._form.written(message_type, content)
-        self._shell.send(parts)
-        return asked
+    def _desk_ended(self, error: Exception) -> None:
+        """End a kernel whose desk has failed: the kernel has made it fail, unless the system has killed the desk."""
+        self._desk_failed = True
+        has_ended = isinstance(error, Hangup) and not isinstance(error, TooLong)
+        if has_ended and self._desk.wait(_DESK_SECONDS):
+            # A desk cannot kill itself, so the system has killed it, usually because memory is short.
+            self._desk_lost = self._desk.lost or self._desk.status == signal.SIGKILL
+        self._desk.end()
+        self.kill()
 
     def _last_words(self) -> str:
         with contextlib.suppress(OSError):
@@ -315,10 +279,6 @@ class Kernel:
             if lines:
                 return lines[-1][:500]
         return "without a word"
-
-
-def _wait_ms(left: Left) -> int:
-    return int(1000 * max(0.0, min(left(), INTERVAL))) + 1
 
 
 def _listener(path: Path) -> socket.socket:
@@ -335,22 +295,3 @@ def _log_pipe() -> tuple[int, int]:
     for end in (reading, writing):
         os.set_blocking(end, False)
     return reading, writing
-
-
-def _parent(message: Mapping[str, Any]) -> str:
-    header = message.get("parent_header")
-    return str(header.get("msg_id", "")) if isinstance(header, Mapping) else ""
-
-
-def _answer(message: Mapping[str, Any], request: str) -> Mapping[str, Any]:
-    """The content of a message if it answers ``request``, else empty."""
-    content = message.get("content")
-    return content if _parent(message) == request and isinstance(content, Mapping) else {}
-
-
-def _asks_to_exit(reply: Mapping[str, Any]) -> bool:
-    """True if the cell called ``exit()`` or ``quit()``: the kernel answers first and ends a moment later."""
-    payload = reply.get("payload")
-    return isinstance(payload, list) and any(
-        isinstance(p, Mapping) and p.get("source") == "ask_exit" for p in payload
-    )

@@ -19,6 +19,7 @@ import zmq
 from ipykernel.kernelapp import IPKernelApp
 from traitlets.config import Config
 
+from autograder.boxes import kernel_desk
 from autograder.boxes.fork_server import INTERFACES, RCLPY, preload, preload_ros
 from autograder.boxes.kernel import IOPUB, SHELL
 from autograder.temporary_folders import HeldFolder
@@ -59,6 +60,7 @@ def prepare(*interfaces: str) -> None:
         with contextlib.suppress(Exception):
             importlib.import_module(name).prepare()
     preload_ros((*INTERFACES, *interfaces))
+    kernel_desk.prepare()
 
 
 def _rehearsed() -> list[str]:
@@ -95,12 +97,17 @@ def _rehearse() -> None:
 
 
 def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
-    """Run a kernel until it is shut down.
+    """Run a kernel until it is shut down, or the desk that reads what a kernel says.
 
     Args:
-        call: ``key``, with which messages are signed, and ``address``, the path in the names of the sockets.
-        descriptors: The listening sockets of the shell and iopub channels, and a descriptor for other output.
+        call: ``key``, with which messages are signed, and ``address``, the path in the names of the sockets. For a desk
+            the argument of :func:`autograder.boxes.kernel_desk.run`.
+        descriptors: The listening sockets of the shell and iopub channels, and a descriptor for other output. For a
+            desk the socket of its orders.
     """
+    if len(descriptors) == 1:
+        kernel_desk.run(call, descriptors)
+        return
     shell, iopub, log = descriptors
     for standard in (1, 2):
         os.dup2(log, standard)

@@ -29,8 +29,9 @@ class Limits:
         cell_output_bytes: The maximum number of bytes kept of one cell's output. The rest is dropped, and a line in
             the output says so.
         notebook_output_bytes: The maximum number of bytes kept of all cells' output together.
-        message_bytes: The maximum size of a message that is read from a kernel.
+        message_bytes: The maximum size of an output; a larger one is dropped unread.
         flood_bytes: The number of bytes that a cell may output, kept or not, before it is stopped.
+        desk_bytes: Memory in bytes that the process that reads a kernel's messages may write to.
         cpu_seconds: Processor time in seconds for all processes of a box together, each time that a submission is
             executed.
         memory_bytes: Memory in bytes for all processes of a box together, including files in the box's scratch.
@@ -62,6 +63,7 @@ class Limits:
     notebook_output_bytes: int = 2_000_000
     message_bytes: int = 8_000_000
     flood_bytes: int = 50_000_000
+    desk_bytes: int = 700_000_000
     cpu_seconds: float = 200.0
     memory_bytes: int = 2_000_000_000
     beside_bytes: int = 400_000_000
@@ -74,6 +76,11 @@ class Limits:
     socket_bytes: int = 100_000_000
     scratch_bytes: int = 1_000_000_000
     scratch_files: int = 100_000
+
+    @property
+    def of_the_desk(self) -> dict[str, int]:
+        """Limits of the process that reads a kernel's messages (setrlimit(2))."""
+        return {"RLIMIT_DATA": self.desk_bytes, "RLIMIT_CORE": 1}
 
     @property
     def of_the_judge(self) -> dict[str, int]:

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import contextlib
 import itertools
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from autograder.boxes.boxed_processes import ForkedProcess
+from autograder.boxes.desk_messages import Setting
 from autograder.boxes.enter_box import Entrance
-from autograder.boxes.environment import box_environment, kernel_environment
+from autograder.boxes.environment import base_environment, box_environment, kernel_environment
 from autograder.boxes.guards import BoxGuard, NoGuard
 from autograder.boxes.mounts import HOME, WORK, Bind
 from autograder.boxes.sandbox import Enclosure
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 
 SHARED_FOLDER = Path("/run/judge")
 """The path, in the student's box, of the folder that the box shares with its grader."""
+DESK_FOLDER = Path("/run/kernel")
+"""The path, in the box of a kernel's desk, of the folder with the kernel's sockets."""
 _STUDENT, _JUDGE = "student", "judge"
 _PROGRAMS_SCRATCH_BYTES, _PROGRAMS_SCRATCH_FILES = 1_000_000, 1_000
 """The limits of the programs' scratch. Only the supervisor writes there; what a program writes is in the memory of its
@@ -127,8 +130,14 @@ class BoxedPlace:
             [channels.shell, channels.iopub, channels.log],
             cwd=WORK,
             environment=box_environment(self._variables),
-            call={"key": channels.key, "address": channels.address},
+            call={"key": channels.key, "address": str(channels.folder / "k")},
         )
+
+    def start_desk(self, channels: Channels) -> ForkedProcess:
+        """Start the desk that reads what the kernel says: another fork of that fork server enters a box of its own."""
+        box = self.enclosure.box("desk", [Bind(channels.folder, DESK_FOLDER)], scratch=False)
+        entrance = _desk_entrance(channels, DESK_FOLDER, self._limits, boxed=True)
+        return ForkedProcess(self._addresses.kernels, entrance, [channels.orders], box)
 
     def start_judge(self, listener: int, orders: int, *, of_programs: bool = False) -> ForkedProcess:
         """Start a judge: a child of the judges' fork server enters a box that is made for it.
@@ -193,10 +202,15 @@ class UnboxedPlace:
             cwd=str(self._cwd),
             environment=kernel_environment(self._folder, self._variables),
             boxed=False,
-            call={"key": channels.key, "address": channels.address},
+            call={"key": channels.key, "address": str(channels.folder / "k")},
         )
         descriptors = [channels.shell, channels.iopub, channels.log]
         return ForkedProcess(self._addresses.kernels, entrance, descriptors)
+
+    def start_desk(self, channels: Channels) -> ForkedProcess:
+        """Start the desk that reads what the kernel says, as another fork."""
+        entrance = _desk_entrance(channels, channels.folder, self._limits, boxed=False)
+        return ForkedProcess(self._addresses.kernels, entrance, [channels.orders])
 
     def start_judge(self, listener: int, orders: int, *, of_programs: bool = False) -> ForkedProcess:
         """Start a judge as a fork of the judges' fork server."""
@@ -212,3 +226,31 @@ class UnboxedPlace:
 
     def __exit__(self, *_: object) -> None:
         pass
+
+
+def _desk_entrance(channels: Channels, folder: Path, limits: Limits, *, boxed: bool) -> Entrance:
+    """Return the settings with which a kernel's desk starts.
+
+    Args:
+        channels: The kernel's.
+        folder: The folder of the kernel's sockets, as the desk sees it.
+        limits: All limits.
+        boxed: See :class:`Entrance`.
+    """
+    setting = Setting(
+        str(folder / "k"),
+        channels.key,
+        limits.message_bytes,
+        limits.flood_bytes,
+        limits.cell_output_bytes,
+        limits.notebook_output_bytes,
+    )
+    return Entrance(
+        cwd="/",
+        environment=base_environment(),
+        boxed=boxed,
+        rlimits=limits.of_the_desk,
+        call=asdict(setting),
+        reader_seconds=int(limits.cpu_seconds),
+        filters_itself=True,
+    )

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import base64
 import binascii
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 IMAGES = ("image/png", "image/jpeg")
@@ -18,6 +18,9 @@ OUTPUT_BYTES = 32
 """Bytes that each output, each update and each line of a traceback counts at least: a million empty ones fill the
 memory and take long to render.
 """
+
+_CLOSING_LINE = 200
+"""Bytes that a desk itself adds to an output that it had to cut."""
 
 
 class Budget:
@@ -173,6 +176,36 @@ class OutputCollector:
         self._outputs.clear()
         self._displays.clear()
         self._clear_at_next = False
+
+
+class NotebookOutputs:
+    """The outputs of a notebook's cells as a process in a box says them, cut and cleaned here again.
+
+    Args:
+        cells: The number of cells.
+        cell_bytes: The most bytes that the process should have kept of a cell.
+        notebook_bytes: The same for the notebook.
+    """
+
+    def __init__(self, cells: int, cell_bytes: int, notebook_bytes: int) -> None:
+        self._cell_bytes = cell_bytes + _CLOSING_LINE
+        self._budget = Budget(notebook_bytes + _CLOSING_LINE * cells)
+        self._used = [0] * cells
+        self._outputs: list[tuple[dict[str, Any], ...]] = [()] * cells
+
+    def put(self, cell: int, outputs: Iterable[Mapping[str, Any]]) -> None:
+        """Replace the outputs of a cell."""
+        self._budget.left += self._used[cell]
+        before = self._budget.left
+        collector = OutputCollector(self._cell_bytes, self._budget)
+        for output in outputs:
+            collector.handle(str(output.get("output_type")), output)
+        self._used[cell] = before - self._budget.left
+        self._outputs[cell] = collector.outputs()
+
+    def of(self, cell: int) -> tuple[dict[str, Any], ...]:
+        """Return the outputs of a cell in nbformat's format."""
+        return self._outputs[cell]
 
 
 def _text(value: Any) -> str:

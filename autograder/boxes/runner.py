@@ -8,18 +8,18 @@ from __future__ import annotations
 
 import contextlib
 import time
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from autograder.boxes.execution import Cell, CellCheck, CellRun, CellType, Ended, Execution
 from autograder.boxes.hang_limits import Hangs, seconds_again
-from autograder.boxes.kernel import Kernel, KernelFailed, Start
+from autograder.boxes.kernel import Kernel, KernelFailed, Place
 from autograder.boxes.limits import Patient, first_of, wall_time
-from autograder.boxes.outputs import Budget, OutputCollector
+from autograder.boxes.outputs import NotebookOutputs
 from autograder.boxes.verdicts_without_judge import LIMITS, grader_trouble, verdict_by_tests, without_verdict
 from autograder.verdict import State, Verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from autograder.boxes.guards import Guard
@@ -54,7 +54,7 @@ def run_notebook(
     cells: Sequence[Cell],
     *,
     judge: contextlib.AbstractContextManager[Judge],
-    start: Start,
+    place: Place,
     folder: Path,
     limits: Limits,
     guard: Guard | None = None,
@@ -65,7 +65,7 @@ def run_notebook(
     Args:
         cells: The cells of the rebuilt notebook.
         judge: Entered while the kernel starts. At the end of its context, the judge is ended.
-        start: Starts the process of the kernel.
+        place: Starts the processes of the kernel and its desk.
         folder: The folder for the kernel's sockets. Its path must be short.
         limits: The limits of the notebook.
         guard: Reports if a limit of the box is exceeded.
@@ -79,7 +79,7 @@ def run_notebook(
     run = _Run(cells, limits, patient)
     try:
         with (
-            contextlib.closing(Kernel(folder, start, limits, run.on_output, guard)) as kernel,
+            contextlib.closing(Kernel(folder, place, limits, run.outputs, guard)) as kernel,
             judge as ready,
         ):
             kernel.await_ready()
@@ -101,22 +101,14 @@ class _Run:
         self._cells = cells
         self._patient = patient
         self._limits = limits
-        budget = Budget(limits.notebook_output_bytes)
-        self._collectors = [OutputCollector(limits.cell_output_bytes, budget) for _ in cells]
+        self.outputs = NotebookOutputs(len(cells), limits.cell_output_bytes, limits.notebook_output_bytes)
         self._ended = [Ended.NOT_RUN for _ in cells]
         self._seconds = [0.0 for _ in cells]
-        self._requests: dict[str, int] = {}
         self._verdicts: dict[int, Verdict] = {}
         self._trouble = ""
         self._hangs = Hangs.of(cells)
         self._allowed = [self._limit(cell) for cell in cells]
         self._hung_before: dict[int, tuple[str, str]] = {}
-
-    def on_output(self, request: str, message_type: str, content: Mapping[str, Any]) -> None:
-        """Add an output to the cell that requested it, even if that cell ended long ago."""
-        index = self._requests.get(request)
-        if index is not None:
-            self._collectors[index].handle(message_type, content)
 
     def all_cells(self, kernel: Kernel, judge: Judge) -> None:
         """Run every cell that has to run, as long as the kernel is alive and time is left."""
@@ -131,9 +123,7 @@ class _Run:
                 began = time.monotonic()
                 self._allow(index, cell)
                 of_cell = self._patient(self._allowed[index])
-                self._ended[index] = kernel.execute(
-                    cell.source, first_of(of_cell, of_notebook), self._remember(index)
-                )
+                self._ended[index] = kernel.execute(index, cell.source, first_of(of_cell, of_notebook))
                 self._seconds[index] = time.monotonic() - began
                 if self._ended[index] is Ended.TIMED_OUT:
                     self._hangs.note(cell, _title(cell))
@@ -216,9 +206,6 @@ class _Run:
         self._trouble = f"the judge failed: {type(error).__name__}: {error}"
         self._verdicts[index] = grader_trouble(check, self._trouble)
 
-    def _remember(self, index: int) -> Any:
-        return lambda request: self._requests.__setitem__(request, index)
-
     def _limit(self, cell: Cell) -> float:
         if cell.check is not None and not cell.check.asserts:
             return cell.check.limit + self._limits.check_margin
@@ -226,7 +213,7 @@ class _Run:
         return self._limits.cell_seconds * (self._limits.terminal_factor if is_terminal else 1.0)
 
     def _cell_run(self, index: int) -> CellRun:
-        outputs = self._collectors[index].outputs()
+        outputs = self.outputs.of(index)
         errors = [f"{o['ename']}: {o['evalue']}"[:500] for o in outputs if o["output_type"] == "error"]
         return CellRun(
             self._ended[index], outputs, errors[-1] if errors else "", round(self._seconds[index], 3)

@@ -37,7 +37,7 @@ from typing import TYPE_CHECKING
 from autograder.boxes import syscalls
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
 _X86_64: Mapping[str, int] = {
     "ioctl": 16, "shmget": 29, "socket": 41, "socketpair": 53, "setsockopt": 54, "clone": 56, "semget": 64,
@@ -88,6 +88,19 @@ _READERS: Mapping[str, Mapping[str, int]] = {
 }  # fmt: skip
 """The system calls that a reader may make. None of them opens, starts, sends or waits, and none sets a signal handler.
 """
+_DESKS: Mapping[str, Mapping[str, int]] = {
+    "x86_64": {
+        "poll": 7, "sched_yield": 24, "nanosleep": 35, "getpid": 39, "sendto": 44,
+        "recvfrom": 45, "gettid": 186, "futex": 202, "restart_syscall": 219, "clock_nanosleep": 230, "epoll_wait": 232,
+        "epoll_ctl": 233, "ppoll": 271, "epoll_pwait": 281, "getrandom": 318,
+    },
+    "aarch64": {
+        "epoll_ctl": 21, "epoll_pwait": 22, "ppoll": 73, "futex": 98, "nanosleep": 101, "clock_nanosleep": 115,
+        "sched_yield": 124, "restart_syscall": 128, "getpid": 172, "gettid": 178,
+        "sendto": 206, "recvfrom": 207, "getrandom": 278,
+    },
+}  # fmt: skip
+"""The further calls of a kernel's desk: it waits for its connections and uses them. It makes and starts none."""
 _FUTEX = {"x86_64": 202, "aarch64": 98}
 _FUTEX_WAKE = (1, 129)
 """FUTEX_WAKE, and its variant for a single process (linux/futex.h). Releasing a lock calls it even if no thread waits.
@@ -204,14 +217,32 @@ def filter_for_readers(machine: str = "") -> bytes:
         machine: The machine as in ``uname -m``; by default this machine.
     """
     machine = machine or platform.machine()
-    known = ARCHITECTURES.get(machine)
-    if known is None:
+    if machine not in ARCHITECTURES:
         return b""
-    program = _beginning(known)
-    for number in sorted(_READERS[machine].values()):
+    decide_on_futex = _where(_FUTEX[machine], _refuse_others(1, _FUTEX_WAKE, errno.EPERM))
+    return _filter_with(machine, _READERS[machine].values(), decide_on_futex)
+
+
+def filter_for_desks(machine: str = "") -> bytes:
+    """Return the filter of a process that reads what a kernel says on connections that it has already.
+
+    Such a process can open nothing, start nothing, reach no other process, and make no further connection.
+
+    Args:
+        machine: As for :func:`filter_for_boxes`.
+    """
+    machine = machine or platform.machine()
+    if machine not in ARCHITECTURES:
+        return b""
+    return _filter_with(machine, [*_READERS[machine].values(), *_DESKS[machine].values()])
+
+
+def _filter_with(machine: str, allowed: Iterable[int], decide: Sequence[_Instruction] = ()) -> bytes:
+    """Return a filter that refuses every call but the allowed ones and those that ``decide`` allows."""
+    program = _beginning(ARCHITECTURES[machine])
+    for number in sorted(allowed):
         program += [(_JUMP_EQUAL, 0, 1, number), (_RETURN, 0, 0, _ALLOW)]
-    program += _where(_FUTEX[machine], _refuse_others(1, _FUTEX_WAKE, errno.EPERM))
-    return _packed([*program, _fail(errno.EPERM)])
+    return _packed([*program, *decide, _fail(errno.EPERM)])
 
 
 _Instruction = tuple[int, int, int, int]

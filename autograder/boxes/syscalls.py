@@ -8,6 +8,7 @@ from __future__ import annotations
 import ctypes
 import fcntl
 import os
+import platform
 import socket
 import struct
 from pathlib import Path
@@ -29,6 +30,8 @@ PR_SET_NO_NEW_PRIVS = 38
 PR_CAP_AMBIENT = 47
 _PR_CAP_AMBIENT_CLEAR_ALL = 4
 _SECCOMP_MODE_FILTER = 2
+_SECCOMP = {"x86_64": 317, "aarch64": 277}
+_SECCOMP_SET_MODE_FILTER, _SECCOMP_FILTER_FLAG_TSYNC = 1, 1
 _CAPABILITY_VERSION_3 = 0x20080522
 _MS_REC, _MS_PRIVATE, _MS_NOSUID, _MS_NODEV, _MS_NOEXEC = 0x4000, 1 << 18, 2, 4, 8
 _SIOCGIFFLAGS, _SIOCSIFFLAGS, _IFF_UP = 0x8913, 0x8914, 1
@@ -70,19 +73,25 @@ def drop_capabilities() -> None:
     _check(_libc.capset(header, bytes(24)), "capset")
 
 
-def filter_system_calls(program: bytes) -> None:
-    """Install a seccomp filter for all later system calls of this process and its children.
+def filter_system_calls(program: bytes, *, every_thread: bool = False) -> None:
+    """Install a seccomp filter for all later system calls of this thread, the threads that it starts, and its children.
 
     Args:
         program: Instructions of 8 bytes each (linux/filter.h, struct sock_filter). If empty, the process only loses
             the ability to gain rights by executing a program (no_new_privs).
+        every_thread: True to install it for the other threads of this process, too (seccomp(2)).
     """
     prctl(PR_SET_NO_NEW_PRIVS, 1)
     if not program:
         return
     code = ctypes.create_string_buffer(program, len(program))
     head = struct.pack("@HxxxxxxP", len(program) // 8, ctypes.addressof(code))
-    result = _libc.prctl(PR_SET_SECCOMP, _SECCOMP_MODE_FILTER, ctypes.c_char_p(head), 0, 0)
+    if every_thread:
+        call = ctypes.c_long(_SECCOMP[platform.machine()])
+        flags = (_SECCOMP_SET_MODE_FILTER, _SECCOMP_FILTER_FLAG_TSYNC)
+        result = -abs(_libc.syscall(call, *flags, ctypes.c_char_p(head)))  # or the number of a thread
+    else:
+        result = _libc.prctl(PR_SET_SECCOMP, _SECCOMP_MODE_FILTER, ctypes.c_char_p(head), 0, 0)
     _check(result, "seccomp")
 
 

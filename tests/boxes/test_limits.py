@@ -62,7 +62,7 @@ def run(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses) -> Ite
                 execution = run_notebook(
                     [Cell(source), CHECK],
                     judge=contextlib.nullcontext(SilentJudge()),
-                    start=place.start_kernel,
+                    place=place,
                     folder=folder,
                     limits=limits,
                     guard=place.guard,

@@ -5,24 +5,24 @@ from __future__ import annotations
 import contextlib
 import os
 import secrets
-import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 import psutil
 import pytest
 
-from autograder.boxes import kernel
 from autograder.boxes.box import NoSandbox
 from autograder.boxes.execution import Cell, CellCheck, CellType, Ended, Execution
 from autograder.boxes.fork_server import Addresses
 from autograder.boxes.limits import Left, Limits, Patient, wall_time
 from autograder.boxes.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.boxes.runner import Unfinished, run_notebook
-from autograder.boxes.zmtp import ZmtpConnection
 from autograder.temporary_folders import scratch_folder
 from autograder.verdict import State, Verdict
+
+if TYPE_CHECKING:
+    from autograder.boxes.kernel import Channels
 
 CHECK = CellCheck("lab.one", "One", points=10, worth=10, limit=2)
 
@@ -68,7 +68,7 @@ def run(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses, unboxe
             return run_notebook(
                 [Cell(cell) if isinstance(cell, str) else cell for cell in cells],
                 judge=judge(),
-                start=place.start_kernel,
+                place=place,
                 folder=folder,
                 limits=holds,
                 patient=patient,
@@ -204,19 +204,7 @@ def test_input_is_refused_at_once(run: Run) -> None:
     assert "StdinNotImplementedError" in execution.cells[0].error
 
 
-@pytest.mark.parametrize("run", ["in a box"], indirect=True)
-def test_what_is_printed_behind_a_line_that_is_long_on_its_way(
-    run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """On a crowded machine 40 MB take seconds to be read, and the next cell's output comes after them."""
-    received = ZmtpConnection.received
-
-    def received_slowly(connection: ZmtpConnection) -> Iterator[list[bytes]]:
-        time.sleep(0.02)
-        return received(connection)
-
-    monkeypatch.setattr(ZmtpConnection, "received", received_slowly)
-    monkeypatch.setattr(kernel, "_LAST_OUTPUT_S", 1.0)
+def test_what_is_printed_behind_a_line_that_is_long_on_its_way(run: Run) -> None:
     execution = run(["print('x' * 40_000_000)", "print('alive')"])
     assert "alive" in str(execution.cells[1].outputs)
 
@@ -291,7 +279,7 @@ def test_a_kernel_that_cannot_start_is_the_graders_trouble(tmp_path: Path) -> No
     execution = run_notebook(
         [check()],
         judge=contextlib.nullcontext(SayingJudge(passed())),
-        start=place.start_kernel,
+        place=place,
         folder=tmp_path,
         limits=Limits(),
     )
@@ -300,13 +288,15 @@ def test_a_kernel_that_cannot_start_is_the_graders_trouble(tmp_path: Path) -> No
 
 
 def test_a_kernel_without_a_box_is_no_fault_of_the_judge(tmp_path: Path) -> None:
-    def start(_: kernel.Channels) -> NoReturn:
-        raise NoSandbox("no room for a box")
+    class NoPlace(UnboxedPlace):
+        def start_kernel(self, channels: Channels) -> NoReturn:
+            raise NoSandbox("no room for a box")
 
+    place = NoPlace(Addresses("", "", ""), tmp_path, {}, {}, "JUDGE", JudgeSetting(), Limits())
     execution = run_notebook(
         [check()],
         judge=contextlib.nullcontext(SayingJudge(passed())),
-        start=start,
+        place=place,
         folder=tmp_path,
         limits=Limits(),
     )

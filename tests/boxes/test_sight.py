@@ -55,7 +55,7 @@ def ask(request: pytest.FixtureRequest, tmp_path: Path, boxed: Addresses) -> Ask
             run = run_notebook(
                 [Cell(source.format(code=code))],
                 judge=contextlib.nullcontext(SilentJudge()),
-                start=place.start_kernel,
+                place=place,
                 folder=folder,
                 limits=limits,
                 guard=place.guard,

@@ -12,10 +12,12 @@ from pathlib import Path
 import pytest
 
 from autograder.boxes.seccomp_filter import (
+    _DESKS,
     _FUTEX,
     _READERS,
     ARCHITECTURES,
     filter_for_boxes,
+    filter_for_desks,
     filter_for_readers,
 )
 from autograder.boxes.syscalls import (
@@ -177,6 +179,16 @@ def test_a_reader_reads_writes_has_memory_and_ends(machine: str) -> None:
 
 
 @machines
+def test_a_desk_uses_its_connections_and_makes_none(machine: str) -> None:
+    program = filter_for_desks(machine)
+    allowed = {number for number in range(500) if _says(program, machine, number) == ALLOW}
+    assert allowed == {*_READERS[machine].values(), *_DESKS[machine].values()}
+    for name in (*ARCHITECTURES[machine].calls, "socket", "clone"):
+        assert _says(program, machine, name) != ALLOW, name
+    assert _says(program, machine, 0, audit=0x40000003) == KILL
+
+
+@machines
 def test_another_machines_calls_end_the_process(machine: str) -> None:
     assert decide(machine, 0, audit=0x40000003) == KILL  # 32-bit x86
     if ARCHITECTURES[machine].x32:
@@ -189,7 +201,7 @@ def test_the_numbers_are_the_kernels(machine: str) -> None:
     if not header.exists():
         pytest.skip(f"{header} is not installed")
     official = {name: int(number) for name, number in re.findall(pattern, header.read_text())}
-    ours = {**ARCHITECTURES[machine].calls, **_READERS[machine], "futex": _FUTEX[machine]}
+    ours = {**ARCHITECTURES[machine].calls, **_READERS[machine], **_DESKS[machine], "futex": _FUTEX[machine]}
     assert {name: official[name] for name in ours if name in official} == {
         name: number for name, number in ours.items() if name in official
     }
@@ -198,3 +210,4 @@ def test_the_numbers_are_the_kernels(machine: str) -> None:
 
 def test_a_machine_that_is_not_known_has_no_filter() -> None:
     assert filter_for_boxes(machine="riscv64") == filter_for_readers("riscv64") == b""
+    assert filter_for_desks("riscv64") == b""

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder.boxes.execution import Execution
-from autograder.boxes.outputs import IMAGES, Budget, OutputCollector
+from autograder.boxes.outputs import IMAGES, NotebookOutputs
 from autograder.grading.rebuilding.parsing import BASE64
 from autograder.grading.rebuilding.submission import (
     MAX_BYTES,
@@ -38,8 +38,6 @@ to 6 bytes.
 """
 _MOST_SLOTS = 1_000
 _LONGEST_WORDS = 1_000
-_CLOSING_LINE = 200
-"""The number of bytes that a sandbox itself adds to an output that it had to cut."""
 
 
 class Forged(ValueError):
@@ -126,11 +124,9 @@ def _look_at(verdict: Verdict, check: CellCheck) -> None:
 
 def _harmless(cells: tuple[CellRun, ...], limits: Limits) -> tuple[CellRun, ...]:
     """Return the cells with their outputs cut and cleaned again, as the sandbox should already have done."""
-    budget = Budget(limits.notebook_output_bytes + _CLOSING_LINE * len(cells))
-    harmless = []
-    for cell in cells:
-        collector = OutputCollector(limits.cell_output_bytes + _CLOSING_LINE, budget)
-        for output in cell.outputs:
-            collector.handle(str(output.get("output_type")), output)
-        harmless.append(replace(cell, outputs=collector.outputs(), error=cell.error[:500]))
-    return tuple(harmless)
+    outputs = NotebookOutputs(len(cells), limits.cell_output_bytes, limits.notebook_output_bytes)
+    for index, cell in enumerate(cells):
+        outputs.put(index, cell.outputs)
+    return tuple(
+        replace(cell, outputs=outputs.of(index), error=cell.error[:500]) for index, cell in enumerate(cells)
+    )

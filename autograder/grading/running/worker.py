@@ -128,7 +128,7 @@ def _execute(
     execution = run_notebook(
         task.cells,
         judge=judges,
-        start=place.start_kernel,
+        place=place,
         folder=folder,
         limits=task.limits,
         guard=place.guard,
