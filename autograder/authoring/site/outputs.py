@@ -36,7 +36,7 @@ AT_ONCE = 3
 """The number of notebooks that run at the same time."""
 MOST_FRAMES = 60
 FRAME_SECONDS = 0.25
-RECORDED = "Recorded while this cell ran"
+RECORDED = "Recorded while the notebook ran"
 MOVING = "moving_pictures"
 """The key in a notebook's metadata that contains its moving pictures: SVG texts by name."""
 _SVG_DATA = re2.compile(r'src="data:image/svg\+xml;base64,([A-Za-z0-9+/=]+)"')
