@@ -113,17 +113,16 @@ class Preparation:
     def _launched(
         self, command: Sequence[str], file: Path | None, made: Build | None, course: Build | None
     ) -> Prepared:
-        """Return a launch with both builds. The course's comes first if the student's lacks programs."""
+        """Return a launch with both builds. If the student lacks programs, the course lends them and comes first."""
         environment: Mapping[str, str] = {**self.builds.jobs.environment, **_ALL_OUTPUT}
         builds: dict[str, Build] = {}
         if made is not None:
             builds[WORKSPACE] = made
             environment = self._with(environment, WORKSPACE, made)
-            command = self._at_its_place(command, made)
         if course is not None:
-            builds[COURSE] = course
-            first = made is not None and file is not None and lacks_programs(file, made, course)
-            environment = self._with(environment, COURSE, course, last=not first)
+            lent = made is not None and file is not None and lacks_programs(file, made, course)
+            builds[COURSE] = self.builds.lend(made, course) if made is not None and lent else course
+            environment = self._with(environment, COURSE, builds[COURSE], last=not lent)
         return Prepared(command, environment, builds)
 
     def _built(self, found: Build, targets: Targets) -> Build:
@@ -138,12 +137,3 @@ class Preparation:
             return found
         entry = made.install.parent
         return relocated(found, entry, self.builds.jobs.place(name, entry))
-
-    def _at_its_place(self, command: Sequence[str], made: Build) -> Sequence[str]:
-        """Return the command with the paths into a build as the started program sees them."""
-        if made.install is None:
-            return command
-        entry = made.install.parent
-        return [
-            word.replace(f"{entry}/", f"{self.builds.jobs.place(WORKSPACE, entry)}/", 1) for word in command
-        ]

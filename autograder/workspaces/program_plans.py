@@ -103,11 +103,7 @@ def _launch_plan(package: str, file: str, arguments: Sequence[str]) -> Plan:
         return [path for path in found if path.name == found[0].name]
 
     def command(made: Build) -> Sequence[str]:
-        # Launch by path: by name, ros2 would find the course's package first if the student's package lacks the
-        # programs.
-        paths = installed(made)
-        name = [str(paths[0])] if len(paths) == 1 else [package, paths[0].name]
-        return alone(arguments) or [ros2(), "launch", *name]
+        return alone(arguments) or [ros2(), "launch", package, installed(made)[0].name]
 
     return Plan(
         targets=targets,

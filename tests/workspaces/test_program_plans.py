@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.kit.runners import ALONE, LaunchesFromPackage
+from autograder.workspaces.builds.builds import Builds
 from autograder.workspaces.builds.colcon import Build
 from autograder.workspaces.packages import Package
 from autograder.workspaces.program_plans import lacks_programs, launch_targets, plan_for
+from autograder.workspaces.running.plain_jobs import PlainJobs
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -77,9 +79,21 @@ def test_in_launch_files_that_are_far_too_long_nothing_is_taken_for_missing(tmp_
     assert list(launch_targets(file)(own)) == []
 
 
-def installed(workspace: Path, *files: str) -> Build:
+def test_lent_programs_are_in_one_folder_with_the_student_s_launch_files(tmp_path: Path) -> None:
+    """ROS finds a package in one prefix only: there a launch file looks for the file that it includes."""
+    own, course = (
+        installed(tmp_path / "own", f"{SHARE}/launch/both.launch.py", programs=()),
+        tmp_path / "course",
+    )
+    lent = Builds(tmp_path, PlainJobs({}, handed_in=True)).lend(own, built(course, "talker", "listener"))
+    (prefix,) = lent.prefixes
+    assert (prefix / SHARE / "launch" / "both.launch.py").is_file()
+    assert lent.programs(PACKAGE) == ("listener", "talker")
+
+
+def installed(workspace: Path, *files: str, programs: tuple[str, ...] = ("talker", "listener")) -> Build:
     """A workspace whose package has installed these files."""
-    made = built(workspace, "talker", "listener")
+    made = built(workspace, *programs)
     for name in files:
         file = workspace / "install" / PACKAGE / name
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -115,7 +129,7 @@ def test_what_the_package_has_installed_is_launched(
     assert plan.missing(made) == missing
     file = tmp_path / "install" / PACKAGE / launched if launched else None
     assert plan.launches(made) == file
-    assert file is None or plan.command(made)[1:] == ["launch", str(file)]
+    assert file is None or plan.command(made)[1:] == ["launch", PACKAGE, file.name]
 
 
 def test_of_two_installed_files_of_one_name_ros2_launch_itself_complains(tmp_path: Path) -> None:

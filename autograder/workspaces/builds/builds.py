@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 
 from autograder.workspaces.builds import artefacts, cache
 from autograder.workspaces.builds.colcon import choose, command, failed, moved
+from autograder.workspaces.builds.install_folder import merge
 from autograder.workspaces.builds.interface_packages import holds_only_interfaces
 from autograder.workspaces.packages import WORKSPACE, sources_of
 from autograder.workspaces.running.jobs import BuildOrder
@@ -120,6 +121,24 @@ class Builds:
             return made
         alone = self._build(replace(found, packages=own), targets, name, cancelled)
         return replace(alone, packages=found.packages) if alone.ok else made
+
+    def lend(self, made: Build, course: Build) -> Build:
+        """Return the course's build with the student's files added, for a package that lacks the course's programs.
+
+        ROS finds each package in one prefix only. So the prefix that has the lent programs must also have the
+        student's launch files, which other launch files may include by the package.
+        """
+        assert course.install is not None
+        names = {prefix.name for prefix in made.prefixes}
+        built = [package for package in made.packages if package.name in names]
+        sources = sources_of(made.workspace / "src", built)
+        order = key(sources, type(self.jobs).__name__, "lent", course.install.parent.name)
+        with cache.entry(order, self._folder) as entry:
+            install = entry.folder / "install"
+            if not entry.complete:
+                merge(course.prefixes, made.prefixes, install)
+                entry.finish()
+        return replace(course, install=install)
 
     def _build(
         self, found: Build, targets: Targets | None, name: str, cancelled: Callable[[], bool]

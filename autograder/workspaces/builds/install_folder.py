@@ -167,6 +167,21 @@ def without_workspaces(environment: Mapping[str, str], workspace: Path) -> dict[
     return result
 
 
+def merge(lent: Iterable[Path], own: Iterable[Path], install: Path) -> None:
+    """Write the lent prefixes into a new install folder, with all files of a student's prefix of the same name.
+
+    Lent programs and modules replace the student's. Of all other files, the student's are kept.
+    """
+    students = {prefix.name: prefix for prefix in own}
+    for prefix in lent:
+        target = install / prefix.name
+        layers = [(prefix, target), (prefix / "lib", target / "lib")]
+        if prefix.name in students:
+            layers.insert(1, (students[prefix.name], target))
+        for layer, there in layers:
+            shutil.copytree(layer, there, ignore_dangling_symlinks=True, dirs_exist_ok=True)
+
+
 def place(made: Build) -> Path:
     """Copy a build from the cache into the workspace's ``install`` folder, so that terminals can source it.
 
