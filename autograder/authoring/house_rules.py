@@ -24,7 +24,7 @@ _MINUTES = re.compile(r"^\*\d+ minutes · for ", re.MULTILINE)
 _PICTURE = re.compile(r"!\[[^\]]*\]\([^)]*\)")
 """Matches a figure, whose alternative text does not count, because it is for readers who cannot see the figure."""
 PREDICTION = "**Before you run it:**"
-"""The beginning of a question that students answer before they run commands that only show something."""
+"""The beginning of a question that students answer before they run a demonstration."""
 _PARAGRAPH = re.compile(r"\n\s*\n|\n(?=\d+\. |- )")
 _CODE = re.compile(r"`[^`]*`|\]\([^)]*\)")
 """Matches code and links, because parentheses in them do not count."""
@@ -93,11 +93,12 @@ def _introductions(cells: list[NamedCell]) -> Iterator[str]:
 
 def _predictions(cells: list[NamedCell]) -> Iterator[str]:
     for before, one in itertools.pairwise(cells):
-        types_commands = one.cell.kind is CellRole.DEMONSTRATION and one.cell.source.startswith("%%bash")
-        if types_commands and PREDICTION not in before.cell.source:
+        # A cell that only defines or stops something has no result that a student could predict.
+        shows = one.cell.source.startswith("%%bash") or "print(" in one.cell.source
+        if one.cell.kind is CellRole.DEMONSTRATION and shows and PREDICTION not in before.cell.source:
             yield (
-                f"commands are predicted: write '{PREDICTION} …?' before line {one.cell.line}, and the answer in a "
-                "<details>"
+                f"a demonstration is predicted: write '{PREDICTION} …?' before line {one.cell.line}, and the answer "
+                "in a <details>"
             )
 
 

@@ -72,7 +72,13 @@ def test_folded_text_does_not_delay_the_first_task(lab: Path) -> None:
             "Publish on `battery`",
             "Look:\n\n```{code-cell} ipython3\n:tags: [demonstration]\n\n%%bash --no-raise-error\nls\n```\n\n"
             "Publish on `battery`",
-            "lab.md: commands are predicted: ",
+            "lab.md: a demonstration is predicted: ",
+        ),
+        (
+            "lab.md",
+            "Publish on `battery`",
+            "Look:\n\n```{code-cell} ipython3\n:tags: [demonstration]\n\nprint(Battery)\n```\n\nPublish on `battery`",
+            "lab.md: a demonstration is predicted: ",
         ),
         (
             "lab.md",
