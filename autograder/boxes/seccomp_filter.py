@@ -11,11 +11,11 @@ same files in every box.
 
 The filter also refuses calls for which the kernel keeps memory that it charges to no cgroup and that no guard can
 count: attributes of files (access control lists), memory policies (``mbind``; the policy of a file in memory outlives
-its mapping), filters of sockets and of system calls (each is compiled, and all boxes share the space for that), and
-the two kinds of file locks that ``/proc/locks`` does not show for a box: those of an open file description, and those
-of a process that shares its table of open files and has ended. The guard counts all other locks
-(:mod:`autograder.boxes.guards`). Of the network protocols, a box has those whose waiting data the guard counts: UDP,
-TCP, and netlink to list the interfaces.
+its mapping), names of a process's pieces of memory (``prctl``), filters of sockets and of system calls (each is
+compiled, and all boxes share the space for that), and the two kinds of file locks that ``/proc/locks`` does not show
+for a box: those of an open file description, and those of a process that shares its table of open files and has
+ended. The guard counts all other locks (:mod:`autograder.boxes.guards`). Of the network protocols, a box has those
+whose waiting data the guard counts: UDP, TCP, and netlink to list the interfaces.
 
 A refused call fails with EPERM, as for any user without the right to make it. Calls for attributes of files fail with
 EOPNOTSUPP, as on a file system without attributes, which ``cp -p`` expects. ``clone3`` fails as if it did not exist
@@ -140,6 +140,8 @@ _LOCKS_OF_NOBODY = (37, 38)
 """F_OFD_SETLK and F_OFD_SETLKW: locks that belong to an open file description and not to a process
 (asm-generic/fcntl.h).
 """
+_NAMES_OF_MEMORY = 0x53564D41
+"""PR_SET_VMA, with which a process may give each of its 65,530 pieces of memory a name (linux/prctl.h)."""
 _NAMESPACES = (
     syscalls.CLONE_NEWNS | syscalls.CLONE_NEWCGROUP | syscalls.CLONE_NEWUTS | syscalls.CLONE_NEWIPC
     | syscalls.CLONE_NEWUSER | syscalls.CLONE_NEWPID | syscalls.CLONE_NEWNET
@@ -199,7 +201,7 @@ def filter_for_boxes(*, hidden_memory: bool = True, machine: str = "") -> bytes:
     program += _where(calls["clone"], _decide_on_clone())
     program += _where(calls["ioctl"], _refuse_any(1, _TERMINAL_TRICKS))
     program += _where(calls["fcntl"], _refuse_any(1, (*_OTHERS_WAIT, *_LOCKS_OF_NOBODY)))
-    program += _where(calls["prctl"], _refuse_any(0, (syscalls.PR_SET_SECCOMP,)))
+    program += _where(calls["prctl"], _refuse_any(0, (syscalls.PR_SET_SECCOMP, _NAMES_OF_MEMORY)))
     program += _where(calls["setsockopt"], [*_only_if(1, _SOL_SOCKET), *_refuse_any(2, _SOCKET_FILTERS)])
     program += _where(calls["socket"], _decide_on_socket())
     program += _where(calls["socketpair"], _refuse_others(0, (socket.AF_UNIX,), errno.EAFNOSUPPORT))

@@ -143,6 +143,11 @@ def test_no_program_for_the_kernel_is_made(machine: str) -> None:
 
 
 @machines
+def test_pieces_of_memory_have_no_names(machine: str) -> None:
+    assert decide(machine, "prctl", 0x53564D41, 0) == ERRNO | errno.EPERM  # PR_SET_VMA
+
+
+@machines
 def test_descriptors_are_arranged_and_files_locked_and_nobody_is_made_to_wait_for_a_file(
     machine: str,
 ) -> None:
