@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from random import Random
+from typing import TYPE_CHECKING
 
 import pytest
 from exercise_1_3._cancel_evidence import HONOURED
@@ -22,6 +23,9 @@ from autograder.kit.goal_reports import LATE, left_at_once
 from autograder.kit.service_calls import BIASED, EXTREME
 from autograder.kit.service_client_mistakes import ANSWER_NOT_AWAITED
 from autograder.kit.texts_said import has_much_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 TOPIC, TYPE = "/chatter", "std_msgs/msg/String"
 EXITED = Event(9.0, "subject", "exited", {"code": 1})
@@ -70,6 +74,20 @@ def test_one_answer_is_right_in_one_case_at_most() -> None:
         planted = [case for _, case in mismatch.mismatches(Random(seed))]
         for key in mismatch.KEYS:
             assert len({case[key] for case in planted}) == len(planted)
+
+
+@pytest.mark.parametrize("takes", [min, max])
+def test_who_takes_the_first_or_the_last_topic_of_a_node_is_wrong_in_each_run(
+    takes: Callable[[set[str]], str],
+) -> None:
+    """A node's topics are listed in the order of the alphabet; two of them are those that every node has."""
+    for seed in range(300):
+        right = [
+            takes({case[key], "/parameter_events", "/rosout"}) == case[key]
+            for _, case in mismatch.mismatches(Random(seed))
+            for key in ("topic_published", "topic_subscribed")
+        ]
+        assert not all(right)
 
 
 def test_the_names_that_are_told_give_no_topic_away() -> None:
