@@ -1,0 +1,76 @@
+"""Sentences of the course that were untrue once, and what every reader should find: a robot, a project, two links."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+CHAPTER = Path(__file__).resolve().parents[2] / "solutions" / "01_ros2_fundamentals"
+
+
+def text_of(lab: str) -> str:
+    """The master of a lab as one line, without the marks of quotations."""
+    return " ".join((CHAPTER / lab / "lab.md").read_text(encoding="utf-8").replace("\n> ", "\n").split())
+
+
+@pytest.mark.parametrize(
+    ("lab", "untrue", "true"),
+    [
+        # The judge demands each message, and two may have one text.
+        (
+            "lab_1_2",
+            "no line comes twice",
+            "Log every message exactly once, even if its text equals the previous one",
+        ),
+        ("lab_1_2", "not spun does nothing", "A node that is not spun calls no callbacks"),
+        # ROS 1 sent its messages directly, too.
+        (
+            "00_nervous_system",
+            "so that this is possible: messages go directly",
+            "a topic can have a *deadline*",
+        ),
+        # An execute callback that awaits can be canceled with one thread.
+        (
+            "lab_1_4",
+            "**Common pitfall.** A cancel request works only with",
+            "because it is `async` and awaits, can be canceled with one thread",
+        ),
+        ("lab_1_4", "Pages about ROS 1 call", "Other texts say *preemptable*"),
+        # Inside one program a second type is an error.
+        (
+            "inspecting_topics",
+            "gives no error if they do not",
+            "only inside one program a second type for a name is an error",
+        ),
+    ],
+)
+def test_what_was_untrue_is_said_as_it_is(lab: str, untrue: str, true: str) -> None:
+    text = text_of(lab)
+    assert true in text
+    assert untrue not in text
+
+
+@pytest.mark.parametrize(
+    ("lab", "words"),
+    [
+        ("00_nervous_system", "inter-process communication*, IPC"),
+        ("00_nervous_system", "[Learning Outcomes](../../docs/learning-outcomes.md)"),
+        ("summary", "**inter-process communication (IPC)**"),
+        ("summary", "| | how many | preemptable | examples |"),
+        ("summary", "[Learning Outcomes](../../docs/learning-outcomes.md)"),
+        ("summary", "*Bridging Python Agents to ROS 2*"),
+        ("summary", 'check("summary.patrol", Patrol)'),
+        ("exercise_1_1", 'check("exercise_1_1.package", "ros2_ws")'),
+        ("lab_1_4", "`rclpy.shutdown()` in `on_result`, the last callback of the chain"),
+        *((lab, "robot = start_robot()") for lab in ("exercise_1_1", "exercise_1_2", "exercise_1_3")),
+    ],
+)
+def test_what_a_reader_looks_for_is_there(lab: str, words: str) -> None:
+    assert words in text_of(lab)
+
+
+def test_a_class_is_copied_by_hand_into_a_program_once_and_then_by_a_command() -> None:
+    copies = [lab for lab in CHAPTER.glob("*/lab.md") if "TODO: copy" in lab.read_text(encoding="utf-8")]
+    assert [lab.parent.name for lab in copies] == ["lab_1_2"]
+    assert text_of("lab_1_2").count("TODO: copy") == 1
