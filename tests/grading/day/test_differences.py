@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from click.testing import CliRunner
 from instructor import by_person, due, penalty
+from own_assignment import EngineWithAsserts, hand_in, write_assignment
 from test_true_table import DUE, EARLY, LATE, shown, total
 from tiny_class import LISTENER, TALKER
 
@@ -15,6 +16,7 @@ from autograder.grading import batch
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.rebuilding import task_making
+from autograder.grading.running import engine
 
 if TYPE_CHECKING:
     import pytest
@@ -78,6 +80,22 @@ def test_a_run_of_one_student_changes_no_words_about_the_others(
         "ben  lab_1_2.talker  0 → 9 (crashed → wrong_text)",
         "eve  lab_1_2.listener  – → 7 (wrong_text)",
         "eve  lab_1_2.talker  – → 9 (wrong_text)",
+    ], said
+
+
+def test_a_run_of_one_assignment_changes_no_words_about_the_others(
+    tiny: TinyClass, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(engine, "execute_all", EngineWithAsserts().execute_all)
+    write_assignment(tiny)
+    hand_in(tiny, "ada", "def add(a, b):\n    return 3")
+    tiny.submit("ada", 4, 7)
+    tiny.grade()
+    tiny.submit("ada", 5, 7)
+    tiny.grade(assignments=["lab_1_2"])
+    said = CliRunner().invoke(cli, ["compare", str(tiny.path)]).output
+    assert [line.strip() for line in said.splitlines() if "→" in line][1:] == [
+        "ada  lab_1_2.talker  4 → 5"
     ], said
 
 
