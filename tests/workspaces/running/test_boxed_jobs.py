@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -16,9 +17,12 @@ import pytest
 
 from autograder.boxes.fork_server import BESIDE, SUPERVISOR_MODULE, ForkServer
 from autograder.boxes.sandbox import Enclosure, why_impossible
+from autograder.kit.runners import LaunchesFromPackage
+from autograder.workspaces import preparation
 from autograder.workspaces.builds.colcon import look
 from autograder.workspaces.graded_builds import GradedBuilds
-from autograder.workspaces.program_plans import course_interfaces
+from autograder.workspaces.preparation import Preparation
+from autograder.workspaces.program_plans import course_interfaces, plan_for
 from autograder.workspaces.running.boxed_jobs import BoxedJobs, BoxedProgram
 from autograder.workspaces.running.jobs import Built, ProgramJob
 
@@ -87,6 +91,45 @@ def test_it_is_built_in_a_box_and_run_in_another(
     )
     assert said(program) == "hello from the workspace\n"
     assert program.exit_code() == 0
+
+
+REMAP = """
+from pathlib import Path
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch.actions import IncludeLaunchDescription
+from launch.launch_description_sources import AnyLaunchDescriptionSource
+
+
+def generate_launch_description():
+    hello = Path(get_package_share_directory("tiny_pkg"), "launch", "hello.launch.xml")
+    return LaunchDescription([IncludeLaunchDescription(AnyLaunchDescriptionSource(str(hello)))])
+"""
+
+
+def test_a_launch_file_finds_the_files_of_its_package_beside_the_programs_that_are_lent_to_it(
+    builds: GradedBuilds, jobs: BoxedJobs, workspace: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shutil.copytree(workspace, tmp_path / "course")
+    monkeypatch.setattr(preparation, "reference_workspace", lambda: tmp_path / "course")
+    package = workspace / "src" / "tiny_pkg"
+    (package / "tiny_pkg" / "hello.py").unlink()
+    (package / "launch").mkdir()
+    (package / "launch" / "remap.launch.py").write_text(REMAP)
+    (package / "launch" / "hello.launch.xml").write_text(
+        '<launch><node pkg="tiny_pkg" exec="hello" output="screen"/></launch>'
+    )
+    setup = (package / "setup.py").read_text().replace("'hello = tiny_pkg.hello:main'", "")
+    files = "('share/tiny_pkg/launch', ['launch/remap.launch.py', 'launch/hello.launch.xml']),"
+    (package / "setup.py").write_text(setup.replace("data_files=[", f"data_files=[{files}"))
+    plan = plan_for(LaunchesFromPackage("tiny_pkg", "remap.launch"))
+    reports: list[str] = []
+    ready = Preparation(builds, reports.append).workspace(plan, workspace)
+    assert ready is not None, reports
+    (tmp_path / "tree").mkdir()
+    entries = {name: build.install.parent for name, build in ready.builds.items() if build.install}
+    job = ProgramJob(ready.command, ready.environment, tmp_path / "tree", entries, hidden=())
+    assert "hello from the workspace" in said(jobs.start(job))
 
 
 def test_a_program_sees_nothing_that_the_notebook_has_written(supervisors: str, tmp_path: Path) -> None:
