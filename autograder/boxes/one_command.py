@@ -1,28 +1,23 @@
-"""Boxes for one command: for a program that a user runs by hand, and for a program that reads a single file."""
+"""Boxes for one command: for a program that a user runs by hand."""
 
 from __future__ import annotations
 
 import os
-import signal
-import subprocess
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.boxes import syscalls
-from autograder.boxes.channel import close_all
 from autograder.boxes.enter_box import take_limits
 from autograder.boxes.environment import box_environment
 from autograder.boxes.guards import BoxGuard
 from autograder.boxes.limits import Limits
-from autograder.boxes.mounts import SYSTEM, USER_ID, Bind, box_arguments, installation, system
+from autograder.boxes.mounts import SYSTEM, Bind, box_arguments, installation
 from autograder.boxes.sandbox import SCRATCH_BYTES, SCRATCH_INODES
 from autograder.boxes.supervisor import bubblewrap, furnish
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-PLACE = Path("/file")
-"""The path of the file in the box of a program that reads a single file."""
 _OF_PYTHON = ("PYTHONUNBUFFERED", "PYTHONFAULTHANDLER")
 
 
@@ -92,33 +87,3 @@ class OneCommandBox:
     def close(self) -> None:
         """Remove everything that was made. Call this after every command has ended."""
         self._guard.close()
-
-
-def run_alone(command: Sequence[str], file: Bind, output: int, limits: Limits) -> int:
-    """Run a program in a box that has no network and cannot write anywhere. Return the exit code.
-
-    If a limit was reached, this is the negative number of a signal, or an exit code that the program chose.
-
-    Args:
-        command: A program of the system, of Python or of this package, with its arguments.
-        file: The only file of the user that the program sees.
-        output: The descriptor of a file for standard output.
-        limits: The limits on the program's memory, processes, output and time.
-    """
-    guard = BoxGuard(limits)
-    words = ["--unshare-all", "--uid", str(USER_ID), "--gid", str(USER_ID), "--cap-drop", "ALL"]
-    words += ["--die-with-parent", "--new-session", "--clearenv", *system()]
-    words += ["--ro-bind-try", "/etc/ld.so.cache", "/etc/ld.so.cache"]
-    words += [word for bind in (*map(Bind, installation()), file) for word in bind.arguments()]
-    begin, kept = bubblewrap([*words, "--chdir", "/", "--remount-ro", "/"], hidden_memory=guard.hidden_memory)
-    try:
-        return subprocess.run(
-            [*begin, *command], stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.DEVNULL, check=False,
-            timeout=limits.longest, pass_fds=kept,
-            preexec_fn=lambda: take_limits(guard.cgroups, guard.rlimits),
-        ).returncode  # fmt: skip
-    except subprocess.TimeoutExpired:
-        return -signal.SIGKILL
-    finally:
-        close_all(kept)
-        guard.close()

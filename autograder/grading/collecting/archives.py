@@ -1,8 +1,7 @@
-"""The files in zips and folders. An archive is unpacked in a box with limits; this module reads only the box's output.
+"""The files of zips and folders. A desk unpacks archives within limits; here only what comes out of it is read.
 
-In the box, :mod:`autograder.grading.collecting.unpack` writes all files of an archive into one file on the disk.
-Here, a name is only text, bytes are read up to the size limit of a notebook, and each file that cannot be taken gets
-a reason.
+At the desk, :mod:`autograder.grading.collecting.unpack` writes all files of an archive into one file on the disk.
+Here a name is only text, bytes are read up to the limit of a notebook, and whatever cannot be taken has a reason.
 """
 
 from __future__ import annotations
@@ -19,16 +18,12 @@ from typing import IO, TYPE_CHECKING, Self
 
 import msgspec
 
-from autograder.boxes.limits import Limits
-from autograder.boxes.mounts import Bind
-from autograder.boxes.one_command import PLACE, run_alone
-from autograder.boxes.sandbox import why_impossible
-from autograder.grading.collecting import unpack
+from autograder.grading.collecting.desk import unpack
 from autograder.grading.collecting.unpack import LONGEST_LINE, LONGEST_NAME, is_left_by_a_program
+from autograder.grading.rebuilding.desk import in_memory
 from autograder.grading.rebuilding.submission import MAX_BYTES, UnreadableSubmission, read_bytes
-from autograder.regular_files import name_as_text
-from autograder.temporary_folders import HeldFolder, unnamed_file
-from environment.python_child import python_child
+from autograder.regular_files import name_as_text, opened
+from autograder.temporary_folders import unnamed_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -40,11 +35,7 @@ whole repository does not affect other students.
 _DEEPEST = 3
 """The maximum nesting of archives: an archive that a student handed in, one inside it, and so on."""
 _DEEPEST_FOLDER = 100
-"""The maximum nesting of folders. Python can follow no more than some hundreds."""
-_LIMITS = Limits(processes=20, scratch_bytes=1 << 40)
-"""The limits of the box that unpacks one archive. The program in the box sets itself stricter limits before it reads a
-byte.
-"""
+"""Folders in each other; Python looks into no more than some hundreds."""
 _LEADS_OUT = "its name leads out of the archive"
 _TOO_LONG = f"its name has more than {LONGEST_NAME} characters"
 
@@ -98,19 +89,15 @@ class _Unpacked:
     reason: str = ""
 
 
-class Boxes:
-    """Boxes that unpack archives. They are set up for the first archive; what they wrote is kept until the end.
+class Archives:
+    """Opens archives. What was unpacked is there until the end.
 
     Args:
-        disk: A folder on a disk with enough space for what is unpacked.
-
-    Attributes:
-        has_unpacked: True if there was an archive to unpack.
+        disk: A folder on the disk that has room for what is unpacked.
     """
 
     def __init__(self, disk: Path) -> None:
         self._disk = disk
-        self.has_unpacked = False
         self._stack = contextlib.ExitStack()
 
     def __enter__(self) -> Self:
@@ -119,21 +106,16 @@ class Boxes:
     def __exit__(self, *_: object) -> None:
         self._stack.close()
 
-    @functools.cached_property
-    def _folder(self) -> Path:
-        return self._stack.enter_context(HeldFolder("autograder-unpack-")).path
-
-    def files_of(self, source: Path, *, opened: bool = True) -> Iterator[File]:
-        """Yield the files in an archive or folder, or the file itself. An unreadable file raises only when it is read.
+    def files_of(self, source: Path, *, is_opened: bool = True) -> Iterator[File]:
+        """The files of an archive, of a folder, or the file itself; one that cannot be read says so when it is read.
 
         Args:
-            source: A file or folder that the instructor named. It may itself be a link, but links below it are not
-                followed.
-            opened: True to open an archive here; False to treat it as a file, as inside a download.
+            source: A file or folder that the instructor named. It may be a link; nothing below it may.
+            is_opened: Whether an archive is opened here; otherwise it is a file, as in a download.
         """
         counts: Counter[tuple[str, ...]] = Counter()
         levels = 2 + _has_one_folder_around_all(source)
-        for file in self._of_source(source.absolute(), opened=opened):
+        for file in self._of_source(source.absolute(), is_opened=is_opened):
             folder = file.parts[:levels]
             counts[folder] += 1
             if counts[folder] <= MOST_FILES:
@@ -142,13 +124,18 @@ class Boxes:
                 reason = f"it has more than {MOST_FILES} files; the others in it were not looked at"
                 yield File(file.source, folder, _refusing(reason))
 
-    def _of_source(self, source: Path, *, opened: bool) -> Iterator[File]:
+    def _of_source(self, source: Path, *, is_opened: bool) -> Iterator[File]:
         if source.is_dir():
             yield from _of_folder(source)
-        elif source.suffix.lower() == ".zip" and opened:
+        elif source.suffix.lower() == ".zip" and is_opened:
             room = Room(2_000_000, 50_000_000_000)
             out = self._stack.enter_context(unnamed_file(self._disk))
-            for names, read in self._unpack(source, room, 1, out):
+            try:
+                archive = self._stack.enter_context(opened(source.resolve()))
+            except OSError as error:
+                yield File(source, (), _refusing(f"it cannot be read: {error.strerror}"))
+                return
+            for names, read in _unpacked(archive.fileno(), room, 1, out):
                 parts, read = _path(names[-1], read) if names else ((), read)
                 yield File(source, parts, read)
         else:
@@ -162,47 +149,31 @@ class Boxes:
             data: The bytes of the archive.
             room: What is left of the limits for this student's archives. It is reduced.
         """
-        path = self._folder / "archive"
-        path.write_bytes(data)
-        with unnamed_file(self._disk) as out:
-            for names, read in self._unpack(path, room, _DEEPEST, out):
+        with in_memory(data) as archive, unnamed_file(self._disk) as out:
+            for names, read in _unpacked(archive, room, _DEEPEST, out):
                 inner: tuple[str, ...] = ()
                 for name in names:
                     parts, read = _path(name, read)
                     inner += parts
                 yield File(file.source, file.parts, read, inner)
 
-    def _unpack(
-        self, path: Path, room: Room, depth: int, out: IO[bytes]
-    ) -> Iterator[tuple[tuple[str, ...], Callable[[], bytes]]]:
-        """Unpack an archive. Yield, for each file, the names that lead to it and a function that reads it."""
-        words = [*map(str, (depth, room.files, room.unpacked, MAX_BYTES))]
-        try:
-            code = self._run(path.resolve(), words, out)
-        except OSError as error:
-            yield (), _refusing(f"it cannot be read: {error.strerror}")
-            return
-        if code in (errno.ENOSPC, errno.EDQUOT):
-            raise OSError(code, os.strerror(code))
-        if code:
-            yield (), _refusing("it met a limit of what may be unpacked: unpack it, and collect the folder")
-            return
-        for line, begin in itertools.islice(_lines(out), room.files + 1):
-            room.files -= not line.reason
-            room.unpacked -= line.size
-            read = functools.partial(os.pread, out.fileno(), line.size, begin)
-            yield line.names, _refusing(line.reason) if line.reason else read
 
-    def _run(self, path: Path, words: list[str], out: IO[bytes]) -> int:
-        """Unpack an archive into a file, in a box. Return the exit code, negative if a limit ended the program."""
-        path.open("rb").close()
-        program = ("-I", "-S", str(Path(unpack.__file__)))
-        self.has_unpacked = True
-        if not why_impossible():
-            child = python_child(*program, str(PLACE), *words)
-            return run_alone(child.command, Bind(path, PLACE), out.fileno(), _LIMITS)
-        with python_child(*program, str(path), *words).start(stdout=out) as process:
-            return process.wait()
+def _unpacked(
+    archive: int, room: Room, depth: int, out: IO[bytes]
+) -> Iterator[tuple[tuple[str, ...], Callable[[], bytes]]]:
+    """Unpack an archive; the names that lead to each file, and what reads it."""
+    most = max(room.unpacked, 0) + max(room.files + 1, 1) * LONGEST_LINE
+    code = unpack(archive, out.fileno(), (depth, room.files, room.unpacked, MAX_BYTES), most)
+    if code in (errno.ENOSPC, errno.EDQUOT):
+        raise OSError(code, os.strerror(code))
+    if code:
+        yield (), _refusing("it met a limit of what may be unpacked: unpack it, and collect the folder")
+        return
+    for line, begin in itertools.islice(_lines(out), room.files + 1):
+        room.files -= not line.reason
+        room.unpacked -= line.size
+        read = functools.partial(os.pread, out.fileno(), line.size, begin)
+        yield line.names, _refusing(line.reason) if line.reason else read
 
 
 def _lines(out: IO[bytes]) -> Iterator[tuple[_Unpacked, int]]:

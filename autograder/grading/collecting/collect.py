@@ -6,15 +6,14 @@ from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from autograder.boxes.sandbox import why_impossible
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.apply import Submitted
-from autograder.grading.collecting.archives import Boxes, File, NotTaken, Room
+from autograder.grading.collecting.archives import Archives, File, NotTaken, Room
 from autograder.grading.collecting.assignment_of import AssignmentOf
 from autograder.grading.collecting.decide import Decision, decide
+from autograder.grading.collecting.desk import read_list, without_sandbox
 from autograder.grading.collecting.handed_out import HandedOut
 from autograder.grading.collecting.inbox import Arrival, Delivery, Inbox
-from autograder.grading.collecting.lists import Entry, read_list
 from autograder.grading.collecting.named_sources import Source, note_on, own_of, source_of
 from autograder.grading.collecting.names_option import check_names
 from autograder.grading.collecting.outcomes import CollectReport, Outcome, State
@@ -35,6 +34,7 @@ if TYPE_CHECKING:
 
     from autograder.grading.collecting.decide import Place
     from autograder.grading.collecting.inbox import Receiving
+    from autograder.grading.collecting.lists import Entry
     from autograder.grading.collecting.proposals import Line
 
 _MOST_NAMED = 5
@@ -131,23 +131,25 @@ class _Collecting:
     def _receive(self, paths: Sequence[Path]) -> Delivery:
         """Take the named files into the inbox."""
         options = self._options
-        with self._inbox.receiving() as receiving, Boxes(self._directory.state) as boxes:
+        with self._inbox.receiving() as receiving, Archives(self._directory.state) as archives:
             student_of = self._knowing([])
             own = own_of(paths, student_of)
             tables = [path for path in paths if path.suffix.lower() == ".csv" and path.is_file()]
             # In Google's names, nothing distinguishes an instructor's list from a student's file.
             lists = [path for path in tables if path not in own and options.form != "google"]
-            arrivals = [self._list(file, receiving) for path in lists for file in boxes.files_of(path)]
+            arrivals = [self._list(file, receiving) for path in lists for file in archives.files_of(path)]
             others = [path for path in paths if path not in lists]
             own = {*own_of(others, self._knowing(self._entries)), *tables}
-            sources = [source_of(path, boxes, is_own=path in own) for path in others]
+            sources = [source_of(path, archives, is_own=path in own) for path in others]
             student_of = self._knowing(self._entries)
             for source in sources:
-                arrivals += self._source(source, student_of, receiving, boxes)
+                arrivals += self._source(source, student_of, receiving, archives)
                 note = note_on(source, student_of, options.form or options.names)
                 self._notes += [note] if note else []
-            if boxes.has_unpacked and (why := why_impossible()):
-                self._notes.append(f"archives were unpacked without a sandbox, with limits alone: {why}")
+            if why := without_sandbox():
+                self._notes.append(
+                    f"archives and lists were read without a sandbox, with limits alone: {why}"
+                )
             unique = {(one.label, one.key): one for one in arrivals}
             ordered = tuple(one for _, one in sorted(unique.items()))
             receiving.delivery = replace(options, arrivals=ordered)
@@ -169,7 +171,7 @@ class _Collecting:
         return arrival
 
     def _source(
-        self, source: Source, student_of: StudentOf, receiving: Receiving, boxes: Boxes
+        self, source: Source, student_of: StudentOf, receiving: Receiving, archives: Archives
     ) -> Iterator[Arrival]:
         for file in source.files:
             if source.is_list(file, self._options.form):
@@ -184,7 +186,7 @@ class _Collecting:
             yield replace(arrival, is_archive=True)
             owners = student_of.owners(file.parts, source.levels, is_alone=source.is_own)
             whose = tuple(one.id for members in owners.members for one in members) or file.parts[:2]
-            for inner in boxes.within(file, data, self._rooms[source.download, whose]):
+            for inner in archives.within(file, data, self._rooms[source.download, whose]):
                 yield _taken(replace(arrival, inner=inner.inner, content=""), inner, receiving)[0]
 
     @property

@@ -2,28 +2,23 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
-from datetime import UTC
+from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
 import re2
 import yaml
 
+from autograder.grading.collecting.list_forms import FORMS, ListForm
 from autograder.grading.collecting.lms_file_names import read_time
-from autograder.grading.reporting.spreadsheet import csv_rows
+from autograder.grading.reporting.spreadsheet import csv_rows, original
 from autograder.grading.table.roster import Identity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
-    from datetime import datetime
 
 GRADESCOPE = "submission_metadata.yml"
-"""The name of the list that Gradescope puts into its export."""
-LARGEST_OF_GRADESCOPE = 4_000_000
-"""The maximum size of Gradescope's list in bytes: two thousand for each of two thousand students. Each byte takes a
-hundred bytes of memory when parsed.
-"""
+"""The list that Gradescope puts into its export."""
 _NUMBER = re2.compile(r"(\d+)(?:\.\w+)?$")
 
 
@@ -44,107 +39,29 @@ class Entry:
     when: datetime | None = None
 
 
-@dataclass(frozen=True)
-class _Form:
-    """A kind of list, described by the names of its columns in lower case.
-
-    Attributes:
-        lms: The system that writes the list.
-        has: The columns by which the list is recognized.
-        number: The column that contains :attr:`Entry.number`.
-        logins: The columns with user names and addresses.
-        names: The columns that together contain the name.
-        time: The column that contains the time.
-    """
-
-    lms: str
-    has: tuple[str, ...]
-    number: str = ""
-    logins: tuple[str, ...] = ()
-    names: tuple[str, ...] = ()
-    time: str = ""
-
-
-_FORMS = (
-    # Moodle's grading worksheet. Its identifiers are "Participant 12345", with other words in other languages.
-    _Form(
-        "moodle",
-        ("identifier", "grade"),
-        "identifier",
-        ("id number", "username", "email address"),
-        ("full name",),
-        "last modified (submission)",
-    ),
-    _Form(
-        "moodle",
-        ("id", "vollständiger name", "bewertung"),
-        "id",
-        ("matrikelnummer", "id-nummer", "anmeldename", "e-mail-adresse"),
-        ("vollständiger name",),
-        "zuletzt geändert (abgabe)",
-    ),
-    _Form(
-        "moodle",
-        ("identifiant", "nom complet"),
-        "identifiant",
-        ("numéro d'identification", "nom d'utilisateur", "adresse de courriel"),
-        ("nom complet",),
-        "dernière modification (travail remis)",
-    ),
-    _Form("canvas", ("student", "id", "section"), "id", ("sis user id", "sis login id"), ("student",)),
-    # Canvas's submissions, with the column names of its programming interface.
-    _Form(
-        "canvas",
-        ("user_id", "submitted_at"),
-        "user_id",
-        ("login_id", "sis_user_id"),
-        ("name",),
-        "submitted_at",
-    ),
-    _Form(
-        "github",
-        ("github_username", "roster_identifier"),
-        "github_username",
-        ("roster_identifier",),
-        ("roster_identifier",),
-        "submission_timestamp",
-    ),
-    # The scores of an assignment in Gradescope.
-    _Form(
-        "gradescope",
-        ("sid", "submission time"),
-        "submission id",
-        ("sid", "email"),
-        ("first name", "last name"),
-        "submission time",
-    ),
-)
-
-
-def read_list(name: str, data: bytes) -> list[Entry] | None:
-    """Return the entries of a list; None if the kind of list is unknown.
+def parse_list(name: str, data: bytes) -> list[Entry] | None:
+    """Parse a list, which only a desk does; return None if its form is unknown.
 
     Args:
         name: The name of the file.
         data: The bytes of the file.
     """
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return None
     if name == GRADESCOPE:
-        return _of_gradescope(text)
-    try:
-        header, *rows = csv_rows(text) or [[]]
-    except csv.Error:
-        return None
-    columns = [column.strip().lower() for column in header]
-    records = [dict(zip(columns, (cell.strip() for cell in row), strict=False)) for row in rows]
-    form = next((form for form in _FORMS if set(form.has) <= set(columns)), None)
+        return _of_gradescope(data)
+    header, *rows = csv_rows(data)[0] or [[]]
+    columns = {column.strip().lower() for column in header}
+    form = next((one for one in FORMS if (one.number or one.time) and set(one.has) <= columns), None)
+    records = [
+        dict(zip((one.strip().lower() for one in header), map(_cell, row), strict=False)) for row in rows
+    ]
     return None if form is None else list(_entries(form, records))
 
 
-def _entries(form: _Form, records: list[dict[str, str]]) -> Iterator[Entry]:
+def _cell(cell: str) -> str:
+    return original(cell.strip())
+
+
+def _entries(form: ListForm, records: list[dict[str, str]]) -> Iterator[Entry]:
     for record in records:
         number = record.get(form.number, "")
         if form.lms in ("moodle", "canvas", "gradescope"):
@@ -157,11 +74,11 @@ def _entries(form: _Form, records: list[dict[str, str]]) -> Iterator[Entry]:
             yield Entry(form.lms, number, (tuple(names),), read_time(record.get(form.time, "")))
 
 
-def _of_gradescope(text: str) -> list[Entry] | None:
-    """Read ``submission_metadata.yml``, which contains the student and the time for the folder of each submission."""
+def _of_gradescope(data: bytes) -> list[Entry] | None:
+    """Read ``submission_metadata.yml``, which has for each submission's folder the student and the time."""
     try:
-        # Every value stays text, so that no number loses its zeros, and no text becomes longer than it was typed.
-        found = yaml.load(text, Loader=getattr(yaml, "CBaseLoader", yaml.BaseLoader))
+        # Every value stays text: no number loses its zeros, and no text gets longer than it was typed.
+        found = yaml.load(data, Loader=getattr(yaml, "CBaseLoader", yaml.BaseLoader))
     except (yaml.YAMLError, ValueError, RecursionError):
         return None
     if not isinstance(found, dict):

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from autograder.grading.collecting.archives import Boxes, File
+    from autograder.grading.collecting.archives import Archives, File
     from autograder.grading.collecting.student_of import StudentOf
 
 _EXPORT = re2.compile(r"^assignment_\d+_export(?: ?\(\d+\)|-\d+)?$")
@@ -87,9 +87,9 @@ def own_of(paths: Sequence[Path], student_of: StudentOf) -> set[Path]:
     return (by_system - downloads) | {path for path in paths if beside[path] in chosen}
 
 
-def source_of(path: Path, boxes: Boxes, *, is_own: bool) -> Source:
-    """Return a file or folder as a source, with all its files."""
-    return Source(path, tuple(boxes.files_of(path, opened=not is_own)), is_own)
+def source_of(path: Path, archives: Archives, *, is_own: bool) -> Source:
+    """A file or folder with all its files."""
+    return Source(path, tuple(archives.files_of(path, is_opened=not is_own)), is_own)
 
 
 def note_on(source: Source, student_of: StudentOf, form: str) -> str:

@@ -11,8 +11,9 @@ from zoneinfo import ZoneInfo
 
 from autograder.grading.classes.class_directory import SUFFIX, reason_against_name
 from autograder.grading.collecting.assignment_of import AssignmentOf, NoTarget, is_notebook, stem_of
+from autograder.grading.collecting.desk import read_list
 from autograder.grading.collecting.inbox import BY_HAND
-from autograder.grading.collecting.lists import GRADESCOPE, LARGEST_OF_GRADESCOPE, Entry, read_list
+from autograder.grading.collecting.lists import GRADESCOPE, Entry
 from autograder.grading.collecting.records import repository_in
 from autograder.grading.collecting.student_of import Owners, StudentOf
 from autograder.grading.table.roster import Identity, Roster, Student
@@ -402,12 +403,10 @@ def _merged(several: Iterable[Line]) -> Line:
 
 def list_trouble(name: str, data: bytes) -> str:
     """Return why a list cannot be used; empty if it can."""
-    if name == GRADESCOPE and len(data) > LARGEST_OF_GRADESCOPE:
-        return f"Gradescope's list may have {LARGEST_OF_GRADESCOPE / 1e6:.0f} MB"
     if read_list(name, data) is None:
         return (
-            "it is none of the lists that are known: Moodle's grading worksheet, Canvas's gradebook or its "
-            "submissions, GitHub Classroom's grades or Gradescope's scores. Times belong into the column handed_in of "
-            "collected.csv, a list of your students into students.csv of the class"
+            "it is none of the lists that are known, or too large for one: Moodle's grading worksheet, Canvas's "
+            "gradebook or its submissions, GitHub Classroom's grades or Gradescope's scores. Times belong into the "
+            "column handed_in of collected.csv, a list of your students into students.csv of the class"
         )
     return ""

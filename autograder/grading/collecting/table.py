@@ -21,7 +21,7 @@ from autograder.grading.collecting.inbox import FOLDER
 from autograder.grading.collecting.lms_file_names import read_time
 from autograder.grading.collecting.outcomes import State
 from autograder.grading.collecting.proposals import Edit, in_utc
-from autograder.grading.reporting.spreadsheet import defused, original
+from autograder.grading.reporting.spreadsheet import csv_rows, defused, original
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
@@ -297,11 +297,8 @@ def _rows(data: bytes, *, whole: bool = False) -> tuple[list[dict[str, str]] | N
     ``file`` contains only the key of the line, unless ``whole`` is true. The lines are None if no line names the
     columns.
     """
-    text = _text_of(data)
-    first = text.partition("\n")[0]
-    delimiter = max(",;\t", key=first.count)
-    header, *lines = list(csv.reader(io.StringIO(text), delimiter=delimiter)) or [[]]
-    stamp = _STAMP.search(first)
+    header, *lines = csv_rows(data)[0] or [[]]
+    stamp = _STAMP.search(" ".join(header))
     columns = [name.partition(" (")[0].strip().lower() for name in header]
     if not {"use", "file"} <= set(columns):
         return None, 0
@@ -315,16 +312,6 @@ def _rows(data: bytes, *, whole: bool = False) -> tuple[list[dict[str, str]] | N
         row = {**dict.fromkeys(COLUMNS, ""), **row}
         rows.append(row if whole else {**row, "file": key[0] if key else row["file"]})
     return rows, int(stamp[1]) if stamp else 0
-
-
-def _text_of(data: bytes) -> str:
-    """Return the text of a file that Excel or LibreOffice may have saved in the system's own encoding."""
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        return data.decode("utf-16", "replace")
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return data.decode("cp1252", "replace")
 
 
 def _guarded(cell: str) -> str:

@@ -163,16 +163,15 @@ def _filled(
         data = read_bytes(into)
     except UnreadableSubmission as error:
         raise GradingError(f"{into} cannot be read: {error}") from error
-    filled, strangers, doubtful, kind = lms_gradebooks.filled_in(data, to, table, assignments, columns)
+    filled, strangers, doubtful, sure = lms_gradebooks.filled_in(data, to, table, assignments, columns)
     if strangers:
         notices.append(
             f"no student in the class is called {', '.join(strangers)}: their lines stay as they were"
         )
     if doubtful:
-        sure = " or ".join(kind.sure)
         notices.append(
             f"{', '.join(doubtful)}: another line may be the same student's, so these stay as they were. Write what "
-            f"the list has under {sure} for each into the column {to} of students.csv"
+            f"the list has under {' or '.join(sure)} for each into the column {to} of students.csv"
         )
     yield (
         into.name,

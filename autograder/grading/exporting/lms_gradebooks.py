@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import re2
 from rapidfuzz import fuzz
 
+from autograder.grading.collecting.list_forms import EACH, FORMS, ListForm
 from autograder.grading.errors import GradingError
 from autograder.grading.exporting.layouts import LAYOUTS, known_there
-from autograder.grading.reporting.spreadsheet import blank, csv_text, original
+from autograder.grading.reporting.spreadsheet import blank, csv_rows, csv_text, original
 from autograder.grading.table.roster import Identity
 
 if TYPE_CHECKING:
@@ -60,56 +61,10 @@ def moodle_worksheet(table: ClassTable, records: CollectedRecords, assignment: s
     return ("" if is_empty else csv_text(rows)), unknown
 
 
-class List(NamedTuple):
-    """A kind of list, exported by an LMS, that can be filled in.
-
-    Attributes:
-        lms: The system that exports the list.
-        has: The columns by which the list is recognized.
-        sure: The columns that identify a student, the most certain first.
-        called: The columns with names that users can choose themselves.
-        numbered: True if the first column in ``sure`` contains numbers that only the LMS knows.
-        points: The column for the points, if the list is about one assignment; empty if each assignment has its own
-            column.
-    """
-
-    lms: str
-    has: frozenset[str]
-    sure: tuple[str, ...]
-    called: tuple[str, ...] = ()
-    numbered: bool = False
-    points: str = ""
-
-
-_LISTS = (
-    List(
-        "moodle",
-        frozenset({"Identifier", "Grade"}),
-        ("Email address", "ID number"),
-        ("Full name",),
-        points="Grade",
-    ),
-    List(
-        "moodle",
-        frozenset({"ID", "Vollständiger Name", "Bewertung"}),
-        ("E-Mail-Adresse", "Matrikelnummer"),
-        ("Vollständiger Name",),
-        points="Bewertung",
-    ),
-    List(
-        "canvas", frozenset({"Student", "ID", "Section"}), ("ID", "SIS Login ID"), ("Student",), numbered=True
-    ),
-    List("gradescope", frozenset({"SID", "Email"}), ("SID", "Email")),
-    List("brightspace", frozenset({"OrgDefinedId", "End-of-Line Indicator"}), ("Username", "OrgDefinedId")),
-    List("blackboard", frozenset({"Username", "Last Name"}), ("Username",)),
-    List("sakai", frozenset({"Student ID", "Student Name"}), ("Student ID",), ("Student Name",)),
-)
-
-
 def filled_in(
     data: bytes, lms: str, table: ClassTable, assignments: Sequence[str], columns: Mapping[str, str]
-) -> tuple[bytes, list[str], list[str], List]:
-    """Fill points into a list that an LMS exported, and leave everything else in the list unchanged.
+) -> tuple[bytes, list[str], list[str], list[str]]:
+    """Fill the points into a list from the LMS, and leave everything else in it unchanged.
 
     Points that are already in the list stay if the class has none for the student.
 
@@ -121,40 +76,35 @@ def filled_in(
         columns: For assignments whose column in the list has another name, that name.
 
     Returns:
-        Four results: the list; the lines that match no student of the class; the lines that may mean a student for
-        whom another line matches at least as well (in an LMS, users choose their own names); and the kind of list.
+        The list; the lines that match no student of the class; the lines that may mean a student for whom another
+        line is at least as good (in an LMS, users name themselves); and the columns that identify a student.
 
     Raises:
         GradingError: The list cannot be read, is of an unknown kind or from another system, or has no column that
             takes points for an assignment.
     """
-    try:
-        text = data.decode("utf-8-sig")
-        first = text.partition("\n")[0]
-        delimiter = max(",;\t", key=first.count)
-        rows = list(csv.reader(io.StringIO(text), delimiter=delimiter))
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise GradingError(
-            f"The list is not CSV in UTF-8 ({error}). Download it from the LMS again and do not change it."
-        ) from error
+    rows, delimiter = csv_rows(data)
     header = [name.strip() for name in rows[0]] if rows else []
-    kind = next((one for one in _LISTS if one.has <= set(header)), None)
+    lower = [name.lower() for name in header]
+    kinds = [one for one in FORMS if one.points]
+    kind = next((one for one in kinds if set(one.has) <= set(lower)), None)
     if kind is None:
+        gradebooks = ", ".join(one.lms.capitalize() for one in kinds if one.points == EACH)
         raise GradingError(
-            "The list is neither Moodle's grading worksheet nor a gradebook that "
-            f"{', '.join(one.lms.capitalize() for one in _LISTS if not one.points)} has exported."
+            f"The list is neither Moodle's grading worksheet nor a gradebook that {gradebooks} has exported. Download "
+            "it from the LMS again."
         )
     if kind.lms != lms:
         raise GradingError(
             f"The list is {kind.lms.capitalize()}'s, and not for --to {lms}: type --to {kind.lms}"
         )
-    if kind.points:
-        places = {name: header.index(kind.points) for name in assignments}
+    if kind.points != EACH:
+        places = {name: lower.index(kind.points) for name in assignments}
     else:
         open_columns = _open_columns(header, rows[1:], kind)
         places = {name: _column(header, open_columns, name, columns.get(name, name)) for name in assignments}
         _check_one_each(places, header)
-    names = (*kind.sure, *kind.called)
+    names = (*kind.sure, *kind.names)
     strangers = []
     meant: dict[str, list[_Meant]] = {}
     for row in rows[1:]:
@@ -163,7 +113,7 @@ def filled_in(
         # Some spreadsheet programs omit empty cells at the end of a line.
         row += [""] * (len(header) - len(row))
         values = [
-            original(row[header.index(name)].strip()).removeprefix("#") for name in names if name in header
+            original(row[lower.index(name)].strip()).removeprefix("#") for name in names if name in lower
         ]
         called = values[-1] if values else row[0]
         if (found := _who(table, kind, values)) is None:
@@ -178,10 +128,11 @@ def filled_in(
                 row[place] = LAYOUTS[lms].excused
             elif (score := table.score(student_id, name)) is not None:
                 row[place] = f"{score:g}".replace(".", "," if delimiter == ";" else ".")
+    sure = [name for name in header if name.lower() in kind.sure]
     out = io.StringIO(newline="")
     csv.writer(out, delimiter=delimiter, lineterminator="\n").writerows(rows)
     mark = "\ufeff" if data.startswith("\ufeff".encode()) else ""
-    return f"{mark}{out.getvalue()}".encode(), strangers, doubtful, kind
+    return f"{mark}{out.getvalue()}".encode(), strangers, doubtful, sure
 
 
 class _Meant(NamedTuple):
@@ -210,18 +161,21 @@ _KINDS = ("number", "login", "name")
 """The kinds of values that may identify a student, the most certain first."""
 
 
-def _open_columns(header: Sequence[str], rows: Sequence[Sequence[str]], kind: List) -> list[int]:
-    """Return the indexes of the columns that can take the points of an assignment.
+def _open_columns(header: Sequence[str], rows: Sequence[Sequence[str]], kind: ListForm) -> list[int]:
+    """Return the indexes of the columns that take points for an assignment.
 
     The other columns are recognized as follows. In the line *Points Possible*, Canvas writes ``(read only)`` into
     each column that it computes itself. Gradescope writes a column ``… - Max Points`` for each assignment.
     """
-    known = {*kind.has, *kind.sure, *kind.called, *LAYOUTS[kind.lms].columns, "First Name"}
+    ours = map(str.lower, LAYOUTS[kind.lms].columns)
+    known = {*kind.has, *kind.logins, *kind.names, *ours, "first name"}
     possible: Sequence[str] = next((row for row in rows if row and row[0].strip() == "Points Possible"), ())
     computed = {
         index for index, cell in enumerate(possible) if cell.strip() and not any(map(str.isdigit, cell))
     }
-    found = [index for index, name in enumerate(header) if name not in known and index not in computed]
+    found = [
+        index for index, name in enumerate(header) if name.lower() not in known and index not in computed
+    ]
     scored = [index for index in found if f"{header[index]} - Max Points" in header]
     return scored or found
 
@@ -276,11 +230,11 @@ def _check_one_each(places: Mapping[str, int], header: Sequence[str]) -> None:
             )
 
 
-def _who(table: ClassTable, kind: List, values: Sequence[str]) -> tuple[Student, int] | None:
-    """Return the student of a line, and the rank of the matching value; a lower rank is a more certain match."""
+def _who(table: ClassTable, kind: ListForm, values: Sequence[str]) -> tuple[Student, int] | None:
+    """Return the student of a line, and the rank of the value that matched; a low rank is a strong match."""
     columns: list[tuple[str, tuple[str, ...]]] = [(value, _KINDS) for value in values]
-    if kind.numbered:
-        # A number that only the LMS knows may equal another student's id, so it is compared with ids last.
+    if kind.is_numbered:
+        # A number of the LMS may be another student's id in the class, so it is compared with ids last.
         columns = [(values[0], _KINDS[:1]), *columns[1:], (values[0], _KINDS[1:])]
     for place, (value, kinds) in enumerate(columns):
         for way in kinds if value else ():

@@ -18,7 +18,7 @@ import os
 import shutil
 import signal
 import threading
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from autograder.boxes.boxed_processes import ForkedProcess
 from autograder.boxes.channel import ChannelClosed
@@ -32,7 +32,7 @@ from autograder.grading.running.admission import LARGEST_DOCUMENT, Forged, admit
 from autograder.temporary_folders import HeldFolder
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     from autograder.boxes.box import Box
@@ -88,24 +88,47 @@ class Desk:
             UnreadableSubmission: The desk process failed because of the file.
             ChannelClosed: No answer came, for a reason other than the file.
         """
-        with contextlib.ExitStack() as stack:
-            source, answer = (os.memfd_create(name) for name in ("handed-in", "answer"))
-            stack.callback(os.close, source)
-            stack.callback(os.close, answer)
-            if os.pwrite(source, data, 0) < len(data):
-                raise ChannelClosed("the file does not fit into memory")
-            place = [self._box.pidfd] if self._box else []
-            process = ForkedProcess(self._address, self._entrance(), [*place, source, answer])
-            stack.callback(process.end)
+        with in_memory(data) as source, in_memory() as answer:
+            code = self.ask(source, answer, LARGEST_DOCUMENT + 1)
+            if code:
+                raise UnreadableSubmission(_TOO_LONG if code == -signal.SIGXCPU else _NOT_READ)
+            return os.pread(answer, min(os.fstat(answer).st_size, LARGEST_DOCUMENT + 1), 0)
+
+    def ask(
+        self, source: int, answer: int, most: int, seconds: int = 0, call: Mapping[str, Any] | None = None
+    ) -> int:
+        """Let a new desk read one file and write into another, and return its exit code.
+
+        Args:
+            source: The descriptor of the file.
+            answer: The descriptor of an empty file.
+            most: The limit in bytes of the answer.
+            seconds: The limit in seconds of the processor time; that of a notebook by default.
+            call: What the program of the desk is told.
+
+        Raises:
+            ChannelClosed: The desk was lost or killed, and the file is not the reason.
+        """
+        entrance = Entrance(
+            cwd="/",
+            environment=base_environment(),
+            boxed=self.is_boxed,
+            rlimits={"RLIMIT_AS": MEMORY_BYTES, "RLIMIT_FSIZE": most, "RLIMIT_CORE": 1},
+            call=call or {},
+            reader_seconds=seconds or CPU_SECONDS,
+        )
+        place = [self._box.pidfd] if self._box else []
+        process = ForkedProcess(self._address, entrance, [*place, source, answer])
+        try:
             if not process.wait(_WALL_SECONDS) or process.status is None:
                 raise ChannelClosed("the process that reads files was lost")
             code = os.waitstatus_to_exitcode(process.status)
             if code == -signal.SIGKILL:
                 # A desk cannot kill itself, so the system has killed it, usually because memory is short.
                 raise ChannelClosed("the process that reads files was killed")
-            if code:
-                raise UnreadableSubmission(_TOO_LONG if code == -signal.SIGXCPU else _NOT_READ)
-            return os.pread(answer, min(os.fstat(answer).st_size, LARGEST_DOCUMENT + 1), 0)
+            return code
+        finally:
+            process.end()
 
     def close(self) -> None:
         """End all desk processes. This may be called twice."""
@@ -122,14 +145,21 @@ class Desk:
             )
         return None
 
-    def _entrance(self) -> Entrance:
-        return Entrance(
-            cwd="/",
-            environment=base_environment(),
-            boxed=self.is_boxed,
-            rlimits={"RLIMIT_AS": MEMORY_BYTES, "RLIMIT_FSIZE": LARGEST_DOCUMENT + 1, "RLIMIT_CORE": 1},
-            reader_seconds=CPU_SECONDS,
-        )
+
+@contextlib.contextmanager
+def in_memory(data: bytes = b"") -> Iterator[int]:
+    """Give the descriptor of a file in memory with these bytes.
+
+    Raises:
+        ChannelClosed: They do not fit into memory.
+    """
+    descriptor = os.memfd_create("desk")
+    try:
+        if os.pwrite(descriptor, data, 0) < len(data):
+            raise ChannelClosed("the file does not fit into memory")
+        yield descriptor
+    finally:
+        os.close(descriptor)
 
 
 _changing = threading.Lock()

@@ -13,8 +13,8 @@ import re2
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-# The limit on the length of a cell is raised, because texts in a list from an LMS, typed by students, may be long.
-csv.field_size_limit(50_000_000)
+# A list from an LMS contains texts that students have typed, which may be as long as the list.
+csv.field_size_limit(2**31 - 1)
 _FORMULA = frozenset("=+-@\N{MINUS SIGN}")
 # A spreadsheet may be set to split a line at these characters, so a formula could begin after them.
 _SEPARATOR = re2.compile(r"([;|])")
@@ -37,11 +37,22 @@ def blank(score: float | None) -> float | str:
     return "" if score is None else score
 
 
-def csv_rows(text: str) -> list[list[str]]:
-    """Return the rows of a CSV file with commas or semicolons, each cell as it was before :func:`defused`."""
+def csv_rows(data: bytes) -> tuple[list[list[str]], str]:
+    """Return the rows of a table as a system or a spreadsheet has saved it, and the separator of its cells.
+
+    Commas, semicolons and tabs separate cells; the text is in UTF-8, in UTF-16 or, from Excel, in the encoding of
+    Western European systems. The cells are as they stand there; :func:`original` is their text.
+    """
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        text = data.decode("utf-16", "replace")
+    else:
+        try:
+            text = data.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            text = data.decode("cp1252", "replace")
     first = text.partition("\n")[0]
-    rows = csv.reader(io.StringIO(text), delimiter=";" if first.count(";") > first.count(",") else ",")
-    return [[original(cell) for cell in row] for row in rows]
+    separator = max(",;\t", key=first.count)
+    return list(csv.reader(io.StringIO(text, newline=""), delimiter=separator)), separator
 
 
 def original(cell: str) -> str:

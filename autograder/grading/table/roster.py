@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import itertools
 import unicodedata
 from dataclasses import dataclass, field, replace
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING
 from autograder.grading.classes.class_directory import ClassDirectory, reason_against_name
 from autograder.grading.errors import GradingError
 from autograder.grading.gradebooks.gradebook_reading import has_tables, opened, sql
-from autograder.grading.reporting.spreadsheet import csv_rows
+from autograder.grading.reporting.spreadsheet import csv_rows, original
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -226,18 +225,18 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
     """
     path = directory.path / NAME
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        header, *rows = csv_rows(path.read_bytes())[0] or [[]]
     except FileNotFoundError:
         return []
-    except (OSError, UnicodeDecodeError) as error:
-        raise RosterError(f"{path} cannot be read: {error}. Save it as CSV in UTF-8.") from error
-    try:
-        header, *rows = csv_rows(text) or [[]]
-    except csv.Error as error:
-        raise RosterError(f"{path} cannot be read: {error}. Save it as CSV in UTF-8.") from error
+    except OSError as error:
+        raise RosterError(f"{path} cannot be read: {error}.") from error
     columns = [name.strip().lower() for name in header]
     lines = [
-        dict(itertools.zip_longest(columns, (cell.strip() for cell in row[: len(columns)]), fillvalue=""))
+        dict(
+            itertools.zip_longest(
+                columns, (original(cell).strip() for cell in row[: len(columns)]), fillvalue=""
+            )
+        )
         for row in rows
     ]
     form = next((form for has, form in _EXPORTED if set(has) <= set(columns)), None)

@@ -2,27 +2,31 @@
 
 from __future__ import annotations
 
+import functools
 import io
+import shutil
 import tarfile
 import zipfile
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from downloads import zipped
 
-from autograder.boxes import one_command
-from autograder.boxes.sandbox import why_impossible
-from autograder.grading.collecting import archives
-from autograder.grading.collecting.archives import Boxes, File, NotTaken, Room
+from autograder.grading.collecting import desk
+from autograder.grading.collecting.archives import Archives, File, NotTaken, Room
+from autograder.grading.collecting.desk import read_list
+from autograder.grading.rebuilding.desk import Desk
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
-    from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
 
 
 @pytest.fixture
-def boxes(tmp_path: Path) -> Iterator[Boxes]:
-    with Boxes(tmp_path) as made:
+def archives(tmp_path: Path) -> Iterator[Archives]:
+    with Archives(tmp_path) as made:
         yield made
 
 
@@ -45,57 +49,57 @@ def held(file: File) -> bytes | str:
         return str(error)
 
 
-def within(boxes: Boxes, folder: Path, data: bytes, room: Room | None = None) -> dict[str, bytes | str]:
+def within(archives: Archives, folder: Path, data: bytes, room: Room | None = None) -> dict[str, bytes | str]:
     """The files of an archive that a student handed in, by their paths."""
     path = folder / "x.zip"
     path.write_bytes(data)
-    (file,) = boxes.files_of(path, opened=False)
-    return {"/".join(one.inner): held(one) for one in boxes.within(file, data, room or Room())}
+    (file,) = archives.files_of(path, is_opened=False)
+    return {"/".join(one.inner): held(one) for one in archives.within(file, data, room or Room())}
 
 
-def refusals(boxes: Boxes, folder: Path, several: Iterable[bytes]) -> list[str]:
+def refusals(archives: Archives, folder: Path, several: Iterable[bytes]) -> list[str]:
     """Why archives of one student, in this order, were not taken; empty for each that was."""
     room, reasons = Room(), []
     for data in several:
-        found = within(boxes, folder, data, room)
+        found = within(archives, folder, data, room)
         reasons.append(next((one for one in found.values() if isinstance(one, str)), ""))
     return reasons
 
 
-def test_the_files_of_a_students_archives_count_together(boxes: Boxes, tmp_path: Path) -> None:
+def test_the_files_of_a_students_archives_count_together(archives: Archives, tmp_path: Path) -> None:
     one = archive(f"{number}.txt" for number in range(2_600))
-    first, second = refusals(boxes, tmp_path, [one, one])
+    first, second = refusals(archives, tmp_path, [one, one])
     assert first == ""
     assert "2600 files" in second
     assert "and 2400 files of" in second
 
 
-def test_the_bytes_of_a_students_archives_count_together(boxes: Boxes, tmp_path: Path) -> None:
+def test_the_bytes_of_a_students_archives_count_together(archives: Archives, tmp_path: Path) -> None:
     (reason,) = refusals(
-        boxes, tmp_path, [archive([f"{number}.txt" for number in range(23)], said=45_000_000)]
+        archives, tmp_path, [archive([f"{number}.txt" for number in range(23)], said=45_000_000)]
     )
     assert "23 files that unpack to 1035 MB" in reason
     room = Room(unpacked=1_500_000)
     half = zipped({"a.txt": bytes(1_000_000)})
-    assert within(boxes, tmp_path, half, room) == {"a.txt": bytes(1_000_000)}
-    assert "of 0 MB may still be unpacked" in str(within(boxes, tmp_path, half, room)[""])
+    assert within(archives, tmp_path, half, room) == {"a.txt": bytes(1_000_000)}
+    assert "of 0 MB may still be unpacked" in str(within(archives, tmp_path, half, room)[""])
 
 
-def test_a_file_that_says_it_is_too_large_is_not_unpacked(boxes: Boxes, tmp_path: Path) -> None:
-    assert "unpacks to 60 MB" in refusals(boxes, tmp_path, [archive(["a.ipynb"], said=60_000_000)])[0]
+def test_a_file_that_says_it_is_too_large_is_not_unpacked(archives: Archives, tmp_path: Path) -> None:
+    assert "unpacks to 60 MB" in refusals(archives, tmp_path, [archive(["a.ipynb"], said=60_000_000)])[0]
 
 
-def test_archives_in_each_other_are_opened_three_deep(boxes: Boxes, tmp_path: Path) -> None:
+def test_archives_in_each_other_are_opened_three_deep(archives: Archives, tmp_path: Path) -> None:
     data = archive(["lab.ipynb"])
     for _ in range(3):
         outer = io.BytesIO()
         with zipfile.ZipFile(outer, "w") as made:
             made.writestr("in.zip", data)
         data = outer.getvalue()
-    assert list(within(boxes, tmp_path, data)) == ["in.zip/in.zip/in.zip"]
+    assert list(within(archives, tmp_path, data)) == ["in.zip/in.zip/in.zip"]
 
 
-def test_the_memory_of_a_box_has_a_limit(boxes: Boxes, tmp_path: Path) -> None:
+def test_the_memory_of_a_box_has_a_limit(archives: Archives, tmp_path: Path) -> None:
     """A few hundred bytes unpack in one step to more than the archive says and than there is room for."""
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w", zipfile.ZIP_BZIP2) as made:
@@ -104,13 +108,13 @@ def test_the_memory_of_a_box_has_a_limit(boxes: Boxes, tmp_path: Path) -> None:
                 bomb.write(bytes(1_000_000))
         made.filelist[0].file_size = 10
         made.writestr("lab.ipynb", "{}")
-    found = within(boxes, tmp_path, data.getvalue())
+    found = within(archives, tmp_path, data.getvalue())
     assert found["lab.ipynb"] == b"{}"
     assert found["bomb.ipynb"] == "it cannot be unpacked: Unable to allocate output buffer."
 
 
 @pytest.mark.parametrize("form", ["gz", "bz2", "xz", ""])
-def test_a_tar_is_unpacked_without_its_links(boxes: Boxes, tmp_path: Path, form: str) -> None:
+def test_a_tar_is_unpacked_without_its_links(archives: Archives, tmp_path: Path, form: str) -> None:
     data = io.BytesIO()
     with tarfile.open(fileobj=data, mode=f"w:{form}") as made:  # type: ignore[call-overload]
         for name, kind in (
@@ -121,7 +125,7 @@ def test_a_tar_is_unpacked_without_its_links(boxes: Boxes, tmp_path: Path, form:
             entry = tarfile.TarInfo(name)
             entry.type, entry.linkname, entry.size = kind, "/etc/passwd", 2 if kind == tarfile.REGTYPE else 0
             made.addfile(entry, io.BytesIO(b"{}"))
-    found = within(boxes, tmp_path, data.getvalue())
+    found = within(archives, tmp_path, data.getvalue())
     assert found == {
         "a/lab.ipynb": b"{}",
         "link": "it is a link, or not an ordinary file",
@@ -129,62 +133,74 @@ def test_a_tar_is_unpacked_without_its_links(boxes: Boxes, tmp_path: Path, form:
     }
 
 
-def test_a_folder_of_a_download_has_so_many_files(boxes: Boxes, tmp_path: Path) -> None:
+def test_a_folder_of_a_download_has_so_many_files(archives: Archives, tmp_path: Path) -> None:
     path = tmp_path / "download.zip"
     with zipfile.ZipFile(path, "w") as made:
         for number in range(20_005):
             made.writestr(zipfile.ZipInfo(f"ada/repository/{number}"), b"")
         made.writestr("ben/lab_1_2.ipynb", "{}")
-    found = list(boxes.files_of(path))
+    found = list(archives.files_of(path))
     assert len(found) == 20_002, (
         "those of ada's that are looked at, one that stands for the others, and ben's"
     )
 
 
-SPY = """
-import json, os, sys
-def can_write(name):
-    try:
-        return bool(open(name, "wb"))
-    except OSError:
-        return False
-seen = [name for name in (sys.argv[1], "/etc/passwd", "/home") if os.path.exists(name)]
-written = [name for name in ("/x", "/tmp/x", "/dev/shm/x", "/file") if can_write(name)]
-print(json.dumps({"names": ["seen"], "size": 0, "reason": str(seen + written)}))
-"""
+@pytest.fixture
+def taken_over(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """The program of the desk is one that an archive has taken over."""
+    hostile = Desk("tests.grading.collecting.hostile_desk_program", {"PYTHONPATH": str(ROOT)})
+    monkeypatch.setattr(desk, "_desk", functools.cache(lambda: hostile))
+    yield
+    hostile.close()
 
 
-def test_an_archive_that_took_over_the_program_would_see_and_write_nothing(
-    boxes: Boxes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.usefixtures("taken_over")
+def test_an_archive_that_took_over_the_program_reaches_nothing(archives: Archives, tmp_path: Path) -> None:
+    assert within(archives, tmp_path, b"reach") == {"reached": b""}
+
+
+@pytest.mark.usefixtures("taken_over")
+@pytest.mark.parametrize("text", [b"no line\n", b'{"names": 3}\n', b'{"names": [], "size": -5}\n', b"\n" * 5])
+def test_what_a_desk_writes_is_not_believed(archives: Archives, tmp_path: Path, text: bytes) -> None:
+    assert not [one for one in within(archives, tmp_path, text).values() if isinstance(one, bytes) and one]
+    assert read_list("list.csv", text) is None
+
+
+@pytest.mark.usefixtures("taken_over")
+@pytest.mark.parametrize("act", [b"too much", b"no memory", b"end", b"endless"])
+def test_a_limit_that_is_met_is_a_reason(
+    archives: Archives, tmp_path: Path, act: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    if reason := why_impossible():
-        pytest.skip(reason)
-    run = one_command.run_alone
-
-    def spied(command: list[str], *others: Any) -> int:
-        return run([command[0], "-I", "-S", "-c", SPY, str(tmp_path)], *others)
-
-    monkeypatch.setattr(archives, "run_alone", spied)
-    assert within(boxes, tmp_path, archive(["a.ipynb"])) == {"seen": "[]"}
+    monkeypatch.setattr(desk, "_CPU_SECONDS", 1)
+    assert "it met a limit of what may be unpacked" in str(within(archives, tmp_path, act)[""])
+    assert read_list("list.csv", act) is None
+    assert within(archives, tmp_path, b"reach") == {"reached": b""}, "the next archive needs no new desk"
 
 
-@pytest.mark.parametrize("text", ["no line\n", '{"names": 3}\n', '{"names": [], "size": -5}\n', "\n" * 5])
-def test_what_a_box_writes_is_not_believed(
-    boxes: Boxes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str
+def test_many_archives_need_one_box(
+    archives: Archives, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def wrote(self: Boxes, path: Path, words: list[str], out: io.BufferedWriter) -> int:
-        out.write(text.encode())
-        out.flush()
-        return 0
+    made: list[Desk] = []
 
-    monkeypatch.setattr(Boxes, "_run", wrote)
-    assert not [one for one in within(boxes, tmp_path, b"").values() if isinstance(one, bytes) and one]
+    class Counted(Desk):
+        def __init__(self, module: str) -> None:
+            super().__init__(module)
+            made.append(self)
+
+    monkeypatch.setattr(desk, "Desk", Counted)
+    desk._desk.cache_clear()
+    for _ in range(3):
+        assert within(archives, tmp_path, archive(["a.ipynb"])) == {"a.ipynb": b"x"}
+    assert len(made) == 1
 
 
 def test_without_a_sandbox_the_same_limits_hold(
-    boxes: Boxes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    archives: Archives, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(archives, "why_impossible", lambda: "bubblewrap is not installed")
-    monkeypatch.setattr(archives, "run_alone", None)
-    assert within(boxes, tmp_path, archive(["a.ipynb"])) == {"a.ipynb": b"x"}
-    assert "unpacks to 60 MB" in refusals(boxes, tmp_path, [archive(["a.ipynb"], said=60_000_000)])[0]
+    which = shutil.which
+    monkeypatch.setattr(shutil, "which", lambda name: None if name == "bwrap" else which(name))
+    monkeypatch.setattr(desk, "_desk", functools.cache(lambda: Desk(desk.PROGRAM)))
+    assert within(archives, tmp_path, archive(["a.ipynb"])) == {"a.ipynb": b"x"}
+    assert "unpacks to 60 MB" in refusals(archives, tmp_path, [archive(["a.ipynb"], said=60_000_000)])[0]
+    assert "bubblewrap is not installed" in desk.without_sandbox()
+    desk._desk().close()

@@ -15,7 +15,7 @@ from nbgrader.api import Gradebook
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.exporting.export_files import export
 from autograder.grading.reporting.rows import Row, write_csv
-from autograder.grading.reporting.spreadsheet import csv_rows, csv_text, defused
+from autograder.grading.reporting.spreadsheet import csv_rows, csv_text, defused, original
 from autograder.grading.table.roster import read_students_csv
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ def test_an_id_that_looks_like_a_formula_goes_out_defused_and_comes_back_as_it_i
         cells = [cell for row in csv.reader(io.StringIO(text)) for cell in row]
         assert f"'{student}" in cells, path
         assert student not in cells, path
-        assert any(student in row for row in csv_rows(text)), path
+        assert any(student in map(original, row) for row in csv_rows(text.encode())[0]), path
     # A table that this program wrote is a list of students again.
     (tiny.path / "students.csv").write_text(f"id,first_name\n{defused(student)},Ada\n")
     assert [one.id for one in read_students_csv(ClassDirectory(tiny.path))] == [student]
@@ -121,3 +121,20 @@ def exported(tiny: TinyClass) -> list[Path]:
     """What each export that is CSV writes."""
     files = [file for to in ("csv", "canvas", "moodle") for file, _ in export(tiny.path, to).files]
     return [file for file in files if file.suffix == ".csv" and file.name != "moodle-lab_1_2.csv"]
+
+
+@pytest.mark.parametrize(
+    ("text", "encoding", "separator"),
+    [
+        ("id;first_name\r\nbär;Jörg\r\n", "cp1252", ";"),
+        ("id\tfirst_name\nbär\tJörg\n", "utf-16", "\t"),
+        ("id,first_name\rbär,Jörg\r", "utf-8-sig", ","),
+    ],
+)
+def test_a_table_is_read_as_excel_in_germany_or_an_old_mac_saves_it(
+    tiny: TinyClass, text: str, encoding: str, separator: str
+) -> None:
+    data = text.encode(encoding)
+    assert csv_rows(data) == ([["id", "first_name"], ["bär", "Jörg"]], separator)
+    (tiny.path / "students.csv").write_bytes(data)
+    assert [(one.id, one.name) for one in read_students_csv(ClassDirectory(tiny.path))] == [("bär", "Jörg")]

@@ -1,0 +1,74 @@
+"""Lets a desk in a box read an archive or a list: no byte of them is parsed in this process."""
+
+from __future__ import annotations
+
+import atexit
+import functools
+import os
+import signal
+
+import msgspec
+
+from autograder.boxes.channel import ChannelClosed
+from autograder.boxes.sandbox import why_impossible
+from autograder.grading.collecting.lists import Entry
+from autograder.grading.rebuilding.desk import Desk, in_memory
+
+PROGRAM = "autograder.grading.collecting.desk_program"
+_CPU_SECONDS = 200
+"""The limit in seconds of the processor time for one archive, or one list."""
+_LARGEST_LIST = 50_000_000
+"""The limit in bytes of the answer about a list."""
+
+
+@functools.cache
+def _desk() -> Desk:
+    desk = Desk(PROGRAM)
+    atexit.register(desk.close)
+    return desk
+
+
+def without_sandbox() -> str:
+    """Return why archives or lists were read without a sandbox; empty if there is one, or if there were none."""
+    return why_impossible() if _desk.cache_info().currsize and not _desk().is_boxed else ""
+
+
+def unpack(source: int, answer: int, limits: tuple[int, int, int, int], most: int) -> int:
+    """Unpack an archive; see :class:`autograder.grading.collecting.unpack.Unpacking`.
+
+    Args:
+        source: The descriptor of the archive.
+        answer: The descriptor of an empty file.
+        limits: The limits of :class:`autograder.grading.collecting.unpack.Unpacking`.
+        most: The limit in bytes of the answer.
+
+    Returns:
+        The exit code: the number of the error if the answer could not be written; negative or 1 if a limit was met.
+    """
+    return _ask(source, answer, most, limits=limits)
+
+
+@functools.lru_cache(maxsize=16)  # a list is asked for again for every delivery
+def read_list(name: str, data: bytes) -> list[Entry] | None:
+    """Return the entries of a list; None if its form is unknown, or if a limit was met.
+
+    Args:
+        name: The file's name.
+        data: The bytes of the file.
+    """
+    with in_memory(data) as source, in_memory() as answer:
+        if _ask(source, answer, _LARGEST_LIST, name=name):
+            return None
+        document = os.pread(answer, os.fstat(answer).st_size, 0)
+    try:
+        return msgspec.json.decode(document, type=list[Entry] | None)
+    except msgspec.MsgspecError:
+        return None
+
+
+def _ask(source: int, answer: int, most: int, **call: object) -> int:
+    try:
+        return _desk().ask(source, answer, most, _CPU_SECONDS, call)
+    except ChannelClosed:  # the system has killed it, usually because memory is short
+        _desk.cache_clear()
+        return -signal.SIGKILL

@@ -1,0 +1,67 @@
+"""The desk of ``collect``: a process in a box that reads one archive, or one list of a system, and nothing else.
+
+It is a fork like that of :mod:`autograder.grading.rebuilding.desk_process`, with the same filter of system calls.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from autograder.grading.collecting.lists import GRADESCOPE, parse_list
+from autograder.grading.collecting.unpack import Unpacking, write
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+_SAMPLES = {
+    "a.csv": b"identifier,grade,full name,last modified (submission)\nParticipant 1,,Ada,3 October 2025\n",
+    GRADESCOPE: b"submission_1:\n  :created_at: 2025-10-03\n  :submitters:\n  - :name: Ada\n",
+}
+"""Lists with everything that a desk loads at its first use."""
+
+
+def prepare() -> None:
+    """Load what a desk needs: it can open no file itself."""
+    for name, data in _SAMPLES.items():
+        msgspec.json.encode(parse_list(name, data))
+    "".encode("cp437")
+
+
+def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
+    """Read one file and write the answer.
+
+    Args:
+        call: ``limits`` of an archive, or the ``name`` of a list.
+        descriptors: The file, and an empty file for the answer.
+    """
+    source, answer = descriptors
+    file = io.BufferedReader(_Source(source))
+    if "limits" in call:
+        Unpacking(answer, *call["limits"]).unpack([], file)
+    else:
+        write(answer, msgspec.json.encode(parse_list(call["name"], file.read())))
+
+
+class _Source(io.RawIOBase):
+    """A file of which only the descriptor is needed: Python's own class makes system calls that a desk cannot."""
+
+    def __init__(self, descriptor: int) -> None:
+        self._descriptor = descriptor
+
+    def readable(self) -> bool:
+        return True
+
+    def seekable(self) -> bool:
+        return True
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        return os.lseek(self._descriptor, offset, whence)
+
+    def readinto(self, buffer: Any) -> int:
+        data = os.read(self._descriptor, len(buffer))
+        buffer[: len(data)] = data
+        return len(data)
