@@ -86,26 +86,21 @@ class Submitted:
         Raises:
             OSError: A file could not be written.
         """
-        before: dict[Place, list[Line]] = defaultdict(list)
         refused: dict[Place, set[str]] = defaultdict(set)
         for one in decisions:
-            place = (one.student, one.line.assignment, one.line.notebook)
-            if one.state == State.EARLIER and one.line.notebook:
-                before[place].append(one.line)
-            elif one.state == State.LEFT_OUT:
-                refused[place].add(one.line.content)
+            if one.state == State.LEFT_OUT:
+                refused[one.student, one.line.assignment, one.line.notebook].add(one.line.content)
         wanted: dict[tuple[str, str], dict[str, Line]] = defaultdict(dict)
         for (student, assignment, notebook), line in counts.items():
             wanted[student, assignment][notebook] = line
         for key in sorted({*wanted, *self._records.all(), *(place[:2] for place in refused if all(place))}):
-            yield from self._bring(*key, wanted[key], before, refused)
+            yield from self._bring(*key, wanted[key], refused)
 
     def _bring(
         self,
         student: str,
         assignment: str,
         wanted: Mapping[str, Line],
-        before: Mapping[Place, list[Line]],
         refused: Mapping[Place, set[str]],
     ) -> Iterator[tuple[Place, State, str]]:
         old = self._records.get(assignment, student) or History({})
@@ -134,14 +129,8 @@ class Submitted:
                 yield place, State.UNCHANGED, ""
             else:
                 changes.append((place, line, content))
-        earlier = tuple(
-            _record(line)
-            for notebook in now
-            for line in before[student, assignment, notebook]
-            if line.content != now[notebook].content
-        )
-        history = History(now, earlier)
-        # The record is written first. If this is interrupted, `collect` still recognizes the files as its own.
+        history = History(now)
+        # The record is written first: if this is interrupted, `collect` still recognizes the files as its own.
         passing = {place[2]: content for place, _, content in changes if content}
         if changes:
             self._records.put(assignment, student, replace(history, replaced=passing))

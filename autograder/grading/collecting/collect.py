@@ -16,6 +16,7 @@ from autograder.grading.collecting.handed_out import HandedOut
 from autograder.grading.collecting.inbox import Arrival, Delivery, Inbox
 from autograder.grading.collecting.named_sources import Source, note_on, own_of, source_of
 from autograder.grading.collecting.names_option import check_names
+from autograder.grading.collecting.older_class import take_over
 from autograder.grading.collecting.outcomes import CollectReport, Outcome, State
 from autograder.grading.collecting.proposals import Edit, Proposals, entries_of, in_utc, list_trouble
 from autograder.grading.collecting.student_of import StudentOf
@@ -98,6 +99,7 @@ class _Collecting:
     def run(self, sources: Sequence[Path]) -> CollectReport:
         """Take all files in, decide, and write down the decisions."""
         edits, notes = self._table.read()
+        self._notes += take_over(self._directory, self._inbox, edits)
         self._table.put_edits(edits)
         self._submitted.take_in()
         delivery = self._receive(sources)

@@ -63,13 +63,11 @@ class History:
     """The files that were collected from one student for one assignment.
 
     Attributes:
-        now: The files that are in ``submitted`` now, by notebook.
-        before: The attempts that do not count.
-        replaced: While a command is at work, the hashes of the files that it replaces, by notebook.
+        now: The content of ``submitted``, by notebook.
+        replaced: The hashes of files that are being replaced, by notebook, while a command is at work.
     """
 
     now: dict[str, Collected]
-    before: tuple[Collected, ...] = ()
     replaced: dict[str, str] = field(default_factory=dict)
 
     @property

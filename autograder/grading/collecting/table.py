@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections import defaultdict
+from collections import Counter, defaultdict
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -281,6 +281,15 @@ class Table:
     def lines(self) -> list[dict[str, str]]:
         """Return the lines that ``collect`` wrote last, each by column."""
         return _rows(self._read_copy(self._newest), whole=True)[0] or []
+
+    def earlier(self) -> Counter[tuple[str, str]]:
+        """Return the number of files before the one that counts, by student and assignment."""
+        return Counter(
+            (student, row["assignment"])
+            for row in self.lines()
+            if row["counts"] == _WORDS[State.EARLIER]
+            for student in row["student"].split("; ")
+        )
 
     def waiting(self) -> list[Waiting]:
         """Return the waiting lines that ``collect`` wrote last."""

@@ -11,7 +11,7 @@ from autograder.cards.page_templates import page_templates
 from autograder.cards.readable import one_line, printable
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.collecting.records import CollectedRecords
+from autograder.grading.collecting.table import Table
 from autograder.grading.errors import GradingError, clear_disk_errors, clear_place_errors
 from autograder.grading.report_page import statistics as figures
 from autograder.grading.reporting.rows import DROPPED, EXCUSED, columns, remarks_on
@@ -145,15 +145,14 @@ def _progress(store: ClassStore, table: ClassTable) -> list[figures.AttemptProgr
 
 
 def _times(directory: ClassDirectory, table: ClassTable) -> list[dict[str, object]]:
-    """Return the times of handing in, relative to the due date, with the points."""
-    records = CollectedRecords(directory.state)
+    """Return the times of handing in relative to the due date, with the points."""
+    earlier = Table(directory).earlier()
     found: list[dict[str, object]] = []
     for (student, assignment), entry in sorted(
         table.entries.items(), key=lambda item: str(item[1].handed_in)
     ):
         if entry.handed_in is None or student not in table.students:
             continue
-        history = records.get(assignment, student)
         before = None if entry.due is None else (entry.due - entry.handed_in).total_seconds() / 3600
         found.append(
             {
@@ -161,7 +160,7 @@ def _times(directory: ClassDirectory, table: ClassTable) -> list[dict[str, objec
                 "assignment": assignment,
                 "at": f"{entry.handed_in:%Y-%m-%d %H:%M}",
                 "before": before,
-                "attempts": 1 + len(history.before) if history else 1,
+                "attempts": 1 + earlier[student, assignment],
                 "score": table.score(student, assignment) or 0.0,
                 "max": table.max_score(assignment),
             }

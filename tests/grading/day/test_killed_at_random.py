@@ -79,13 +79,10 @@ def collected(klass: Path) -> tuple[object, ...]:
     for student in STUDENTS:
         history = records.get("lab_1_2", student)
         assert history is not None
-        histories[student] = (
-            [(one.content, one.when) for one in history.now.values()],
-            [(one.content, one.when) for one in history.before],
-        )
+        histories[student] = [(one.content, one.when) for one in history.now.values()]
     kept = sorted(Inbox(directory.state).deliveries)
     waiting = sorted(one.label for one in Table(directory).waiting())
-    return files_below(klass / "submitted"), histories, kept, waiting
+    return files_below(klass / "submitted"), histories, kept, waiting, Table(directory).earlier()
 
 
 @dataclass(frozen=True)
