@@ -108,7 +108,8 @@ class NewClass:
                 f"{self.path} is a class with these assignments: {', '.join(self.assignments)}.",
                 f"Due dates in formgrader are times in {self.timezone}: see {CONFIG_NAME}.",
                 f"Hand out       what {COMMAND} hand-out FOLDER makes: the notebooks with all that they need",
-                f"Put work into  {self.path / 'submitted'}/<student>/<assignment>/<assignment>.ipynb",
+                f"Collect work   {course_command('collect', self.path)} DOWNLOAD, as your learning system gives it",
+                f"or put it into {self.path / 'submitted'}/<student>/<assignment>/<assignment>.ipynb",
                 f"Then           {course_command('grade', self.path)}",
             )
         )

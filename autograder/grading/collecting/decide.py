@@ -6,6 +6,8 @@ from collections import defaultdict
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol
 
+import re2
+
 from autograder.grading.collecting.outcomes import State
 
 if TYPE_CHECKING:
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
 Place = tuple[str, str, str]
 """The place of a notebook: student, assignment and notebook."""
 _Why = tuple["Line", State, str]
+_CELL = re2.compile(r"(?:under|the cell) (use|student|assignment|notebook|handed_in)\b")
 
 
 class Looks(Protocol):
@@ -64,7 +67,7 @@ def decide(lines: Iterable[Line], looks: Looks) -> tuple[list[Decision], dict[Pl
         elif line.is_soft:
             soft.append(line)
         elif line.reason:
-            decisions.append(Decision(line, student, State.NOT_PLACED, line.reason))
+            decisions.append(Decision(line, student, State.NOT_PLACED, _with_cell(line.reason)))
         else:
             for one in line.students:
                 groups[one, line.assignment, line.notebook].append(line)
@@ -94,7 +97,18 @@ def _beside(line: Line, came: set[tuple[str, str]]) -> Decision:
     if line.lms == "list" or (student and (student, line.assignment) in came):
         return Decision(line, student, State.BESIDE, line.reason)
     reason = f"{line.reason}: {line.what_to_do}" if line.what_to_do else line.reason
-    return Decision(line, student, State.NOT_PLACED, reason)
+    return Decision(line, student, State.NOT_PLACED, _with_cell(reason))
+
+
+def _with_cell(reason: str) -> str:
+    """Return a reason that names the cell to edit."""
+    return reason if cell_in(reason) else f"{reason.rstrip('.')}; to leave it out, write no under use"
+
+
+def cell_in(reason: str) -> str:
+    """Return the first column of the table that a reason names; empty if it names none."""
+    found = _CELL.search(reason)
+    return found[1] if found else ""
 
 
 def _of_group(place: Place, group: list[Line], looks: Looks) -> Iterator[_Why]:
@@ -160,7 +174,9 @@ def _unreadable(place: Place, pool: Sequence[Line], looks: Looks) -> list[tuple[
     if len({one.content for one in pool}) < 2:
         return []
     reasons = [(one, reason) for one in pool if (reason := looks.why_unreadable(one))]
-    what_to_do = f"Other work of {place[0]} counts: ask for this file again if it is newer."
+    what_to_do = (
+        f"Other work of {place[0]} counts: ask for this file again if it is newer, or write no under use"
+    )
     return [(one, f"{reason} {what_to_do}") for one, reason in reasons] if len(reasons) < len(pool) else []
 
 
@@ -184,10 +200,12 @@ def _newest(place: Place, pool: list[Line], looks: Looks) -> tuple[Line | None, 
         whys += others
         firsts += [first] if first else []
     alike = len({one.readings[:1] for one in firsts}) == 1
+    is_ordered = len({one.lms for one in firsts}) == 1  # the numbers of two systems have nothing in common
     timed = [one for one in firsts if one.when is not None]
 
     def later(one: Line) -> tuple[float, ...]:
-        return *(_time(one) if timed else (work[one.key],)), one.order, one.number_of_copy if alike else 0
+        order = one.order if is_ordered else 0
+        return *(_time(one) if timed else (work[one.key],)), order, one.number_of_copy if alike else 0
 
     best, others = _best(timed or firsts, later, place, looks, work)
     whys += others

@@ -1,6 +1,6 @@
 """The desk of ``collect``: a process in a box that reads one archive, or one list of a system, and nothing else.
 
-It is a fork like that of :mod:`autograder.grading.rebuilding.desk_process`, with the same filter of system calls.
+The process is a fork like that of :mod:`autograder.grading.rebuilding.desk_process`, with the same filter.
 """
 
 from __future__ import annotations

@@ -66,8 +66,11 @@ def read_names(pattern: str) -> Callable[[Sequence[str]], Found | None]:
                     else []
                 )
                 if ways:
-                    # ben_b_7 may belong to ben or to ben_b. Either only one of them is in the class, or it is
-                    # unclear.
+                    # In 2025-10-03_140506_lab, the day alone is a time, too: the longest time is meant.
+                    ways.sort(
+                        key=lambda way: -len(way.get("time", "")) if read_time(way.get("time", "")) else 0
+                    )
+                    # ben_b_7 may belong to ben or to ben_b: either the class has only one of them, or it is unclear.
                     found = [_found(way, parts[-1]) for way in ways]
                     return replace(found[0], readings=tuple(dict.fromkeys(one.identity for one in found)))
         return None

@@ -348,7 +348,7 @@ class _Reading:
         if name.lower().endswith(_OTHER_ARCHIVES):
             what = "it is an archive that is not opened here: unpack it into a folder named"
             return replace(line, reason=f"{what} {student}, and collect that")
-        what_to_do = f"ask for the notebook, or put it into submitted/{student}/{named or 'ASSIGNMENT'}"
+        what_to_do = "ask for the notebook, or write no under use"
         return replace(line, reason="it is not a notebook", what_to_do=what_to_do, is_soft=True)
 
     def _in_utc(self, when: datetime | None) -> datetime | None:

@@ -17,6 +17,7 @@ import msgspec
 import re2
 from babel.core import Locale, UnknownLocaleError, get_global
 
+from autograder.grading.collecting.decide import cell_in
 from autograder.grading.collecting.inbox import FOLDER
 from autograder.grading.collecting.lms_file_names import read_time
 from autograder.grading.collecting.outcomes import State
@@ -76,9 +77,8 @@ class Waiting:
 
     @property
     def cell(self) -> str:
-        """Return which cell a person has to edit; empty if the table has no such line."""
-        column = "student" if not self.student else "assignment" if not self.assignment else "use"
-        return f" ({NAME}, line {self.line}, cell {column})" if self.line else ""
+        """The cell that a person edits; empty if the table has no such line."""
+        return f" ({NAME}, line {self.line}, cell {cell_in(self.reason) or 'use'})" if self.line else ""
 
     @property
     def sentence(self) -> str:

@@ -88,6 +88,13 @@ def test_a_pattern_may_name_a_column_of_the_list_of_students(klass: TinyClass, t
         gathered(klass, tmp_path, files, names="{martikel}-{last}")
 
 
+def test_of_a_time_in_a_pattern_the_day_alone_is_not_meant(klass: TinyClass, tmp_path: Path) -> None:
+    """Both halves of the text before lab_1_2 can be read as a time; a time at midnight would make work late."""
+    name = "lovelace_ada_b0012/2025-10-03_140506_lab_1_2.ipynb"
+    gathered(klass, tmp_path, of(klass, name), names="{last}_{first}_{any}/{time}_{assignment}")
+    assert stamp(klass, "ada") == "2025-10-03 14:05:06.000000 UTC"
+
+
 @pytest.mark.parametrize("assignment", ["..", ".", "Lab 1.2", "lab_9"])
 def test_what_a_name_says_of_no_assignment_of_the_class_leads_nowhere(
     klass: TinyClass, tmp_path: Path, assignment: str

@@ -84,3 +84,38 @@ def test_two_files_of_one_name_are_two_lines(klass: TinyClass, tmp_path: Path) -
     for text in ("Rar! one", "Rar! two"):
         week(klass, tmp_path, text, "ada/lab_1_2.rar")
     assert len(waiting(klass)) == 2
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "column"),
+    [
+        ("group-7/lab_1_2.ipynb", "", "student"),
+        ("ada/homework.ipynb", "nameless", "assignment"),
+        ("ada/photo.jpg", "jpg", "use"),
+        ("guest/photo.jpg", "jpg", "use"),
+        ("ada/lab_1_2.rar", "Rar!", "use"),
+        ("ada/lab_1_2.zip", "no zip", "use"),
+    ],
+)
+def test_every_line_that_waits_says_which_cell_to_edit(
+    klass: TinyClass, tmp_path: Path, name: str, text: str, column: str
+) -> None:
+    texts = {"": work(klass), "nameless": nameless(klass, 1)}
+    report = week(klass, tmp_path, texts.get(text, text), name)
+    (line,) = waiting(klass)
+    assert line.cell == f" (collected.csv, line 2, cell {column})"
+    assert f"under {column}" in report.having(State.NOT_PLACED)[0].reason
+
+
+def test_the_order_of_one_system_says_nothing_of_a_file_from_elsewhere(
+    klass: TinyClass, tmp_path: Path
+) -> None:
+    """Canvas numbers its files; that a file from elsewhere has no such number does not make it older."""
+    canvas = write_zip(tmp_path / "canvas.zip", {"lovelaceada_101_9001_lab_1_2.ipynb": work(klass, 1)})
+    collect(klass.path, [canvas])
+    report = week(klass, tmp_path, work(klass, 2), "ada/lab_1_2.ipynb")
+    (line,) = waiting(klass)
+    assert (
+        "nothing says whether it is newer than canvas.zip/lovelaceada_101_9001_lab_1_2.ipynb" in line.reason
+    )
+    assert not report.having(State.EARLIER)

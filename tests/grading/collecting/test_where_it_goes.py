@@ -95,7 +95,7 @@ def test_who_fills_an_archive_harms_nobody_else(klass: TinyClass, tmp_path: Path
         ("lab_1_2.rar", "unpack it into a folder named ada"),
         ("lab_1_2.tar.gz", "it is not an archive that can be read"),
         ("lab_1_2.7z", "unpack it into a folder named ada"),
-        ("lab_1_2.py", "submitted/ada/lab_1_2"),
+        ("lab_1_2.py", "write no under use"),
         ("answer.docx", "it is not a notebook: ask for the notebook"),
     ],
 )
