@@ -182,6 +182,14 @@ def _moodle(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
     return readings[0], readings
 
 
+def _plainly(lms: str) -> _Who:
+    """Return a reader for names in which each group is what it is called."""
+    return lambda found: (
+        Identity(lms, **{one: found.get(one) or "" for one in ("number", "login", "name")}),
+        (),
+    )
+
+
 def _at_its_end(lms: str) -> _Who:
     """Return a reader for names that end with a user name. The user name may itself contain the mark before it."""
 
@@ -196,10 +204,6 @@ def _at_its_end(lms: str) -> _Who:
     return who
 
 
-def _sakai(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
-    return Identity("sakai", login=found["login"], name=found["name"]), ()
-
-
 def _brightspace(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
     number, name = found["number"], found["name"]
     whole = Identity("brightspace", number, name=name)
@@ -208,10 +212,6 @@ def _brightspace(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ..
         return whole, (whole,)
     own = Identity("brightspace", login=own_number)
     return whole, (whole, own, Identity("brightspace", number, name=behind))
-
-
-def _canvas(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
-    return Identity("canvas", found["number"], login=found["login"]), ()
 
 
 def numbers_in(name: str) -> list[str]:
@@ -223,11 +223,6 @@ def numbers_in(name: str) -> list[str]:
 def _google(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
     bare = found["name"].removeprefix(_COPY_OF)
     return Identity("google", login=bare if "@" in bare else "", name=bare), ()
-
-
-def _gradescope(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
-    """Return the number as the student's name. Only the list in the export says whose number it is."""
-    return Identity("gradescope", found["number"]), ()
 
 
 def _in_one_part(pattern: str, who: _Who, *, says_file: bool = False) -> _Reader:
@@ -314,25 +309,27 @@ _READERS = {
         # a date.
         _in_one_part(
             r"^(?P<login>[\pN_]*?)_(?:(?P<late>LATE)_)?(?P<number>\d{3,})_(?P<order>\d{3,})_(?P<file>.+)$",
-            _canvas,
+            _plainly("canvas"),
         ),
         _in_one_part(
             r"^(?P<login>[\pL\pM\pN_-]*?[\pL\pM-][\pL\pM\pN_-]*?)_(?i:(?P<late>LATE)_)?"
             r"(?P<number>\d+)_(?P<order>\d+)_(?P<file>.+)$",
-            _canvas,
+            _plainly("canvas"),
         ),
     ),
     # Ada Lovelace - lab_1_2.ipynb
     "google": _in_one_part(r"^(?P<name>[^/]*?\S) - (?P<file>.+)$", _google),
     "github": _github,
     # Lab 1.2/Lovelace, Ada(ada)/Submission attachment(s)/lab_1_2.ipynb
-    "sakai": _in_one_part(r"^(?P<name>[^,()]+, [^()]*)\((?P<login>[^()]+)\)$", _sakai, says_file=True),
+    "sakai": _in_one_part(
+        r"^(?P<name>[^,()]+, [^()]*)\((?P<login>[^()]+)\)$", _plainly("sakai"), says_file=True
+    ),
     # Lab 1.2/Lovelace_Ada_ada_12345/lab_1_2.ipynb (from memory)
     "ilias": _in_one_part(
         r"^(?P<item>[^_]+_.+?)_(?P<login>[^_]+)_\d+$", _at_its_end("ilias"), says_file=True
     ),
     # assignment_123_export/submission_456/lab_1_2.ipynb
-    "gradescope": _in_one_part(r"^submission_(?P<number>\d+)$", _gradescope, says_file=True),
+    "gradescope": _in_one_part(r"^submission_(?P<number>\d+)$", _plainly("gradescope"), says_file=True),
 }
 FORMS = tuple(_READERS)
 TOLD_APART = tuple(form for form in FORMS if form not in ("google", "ilias"))
