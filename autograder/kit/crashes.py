@@ -181,22 +181,6 @@ def _never_awaited(evidence: Evidence) -> Advice | None:
     )
 
 
-_GENERATOR = re2.compile(r"^<generator object (?P<name>\S+) at ")
-
-
-def _never_iterated(evidence: Evidence) -> Advice | None:
-    """Return advice if a notebook's function contains ``yield``, so that calling it runs none of its code."""
-    found = next(filter(None, (_GENERATOR.match(part.returned or "") for part in evidence)), None)
-    if found is None:
-        return None
-    name = found["name"].rpartition(".")[2]
-    return Advice(
-        f"{name} has a `yield`: calling it only makes a generator, and nothing inside it runs before something asks "
-        "that for a value.",
-        "Write return instead of yield.",
-    )
-
-
 _NO_FILE = re2.compile(r"^\S*python[\d.]*: can't (?:open file|find '__main__' module in) '(?P<file>[^'\n]*)'")
 
 
@@ -246,7 +230,6 @@ CRASHES: tuple[Mistake, ...] = (
     *map(_recogniser, code_of_elsewhere.ROWS),
     *map(_recogniser, KNOWN),
     Mistake(code_of_elsewhere.KEY, _never_awaited, certain=True),
-    Mistake("not_returned", _never_iterated, certain=True),
     Mistake("cut_off", _cut_off, certain=True),
     Mistake("module_not_found", _file_not_found, certain=True),
     Mistake("module_not_found", _package_not_found, certain=True),

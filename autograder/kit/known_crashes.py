@@ -51,12 +51,6 @@ type's module there.
 
 KNOWN = (
     Crash(
-        "launch_error",
-        r"RCLError: .*Couldn't parse remap rule: '(?:-r |--remap )?(?P<rule>[^']*)'",
-        "ROS cannot read the remapping rule {rule}, so the program that was given it ended at once.",
-        "A rule is made of two names. A name has letters, digits, underscores and slashes, and no slash at its end.",
-    ),
-    Crash(
         "syntax_error",
         r"^\s*(?:SyntaxError|IndentationError|TabError): (?P<what>.*?)[.?]*$",
         "Python could not read the program: {what}. {why}",
@@ -175,12 +169,6 @@ KNOWN = (
         "A bare value was sent, or the type itself, instead of a {type:message, request or goal}.",
         "Make the object first, with parentheses, fill its field, and send that: message = String(), request = "
         "AddTwoInts.Request(), goal = Fibonacci.Goal() or feedback = Fibonacci.Feedback().",
-    ),
-    Crash(
-        "result_missing",
-        r"The 'result' field must be a sub message of type '\w+_Result'",
-        "The execute callback of an action server returned no result.",
-        "End it with `return result`, a Fibonacci.Result() with its field filled, even if the goal is canceled.",
     ),
     Crash(
         "field_type",

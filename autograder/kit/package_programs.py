@@ -63,64 +63,45 @@ def package_of(report: WorkspaceReport | None, name: str) -> PackageReport | Non
 
 
 def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
-    """Return advice if setup.py does not declare the task's program, or names a function that does not exist."""
-    report = report_of(evidence.main)
+    """The package exists, but its setup.py does not name the program, or names something that does not exist."""
+    report, again = report_of(evidence.main), _again(evidence)
     if report is not None and report.built and report.missing == entry.program:
         own = package_of(report, entry.package)
-        if own and any(line.partition("=")[0].strip() == entry.program for line in own.programs):
-            return Advice(
-                f"The package is built, and setup.py names the program {entry.program}, but it is not installed where "
-                f"`ros2 run` looks: in lib/{entry.package}.",
-                "setup.cfg, beside setup.py, says where programs go. It needs the lines [develop], "
-                f"script_dir=$base/lib/{entry.package}, [install] and install_scripts=$base/lib/{entry.package}. "
-                f"{_again(evidence)}",
-            )
         named = ", ".join(own.programs) if own else ""
         # Without any entry point so far, the advice shows only the format, because the line itself would be the
         # answer.
         return Advice(
-            f"The package is built, but it has no program {entry.program}: "
-            + (
-                f"setup.py names only {named}."
-                if named
-                else "setup.py names no entry point of the right form."
-            ),
-            f"In setup.py, the list 'console_scripts' has to contain {entry.line if named else FORM}. "
-            f"{_again(evidence)}",
+            f"The package is built, but it has no program {entry.program}: setup.py names "
+            f"{named or 'no entry point of the right form'}.",
+            f"In setup.py, the list 'console_scripts' has to contain {entry.line if named else FORM}. setup.cfg "
+            f"beside it has to put programs into $base/lib/{entry.package}. {again}",
         )
-    for part in evidence:
-        if _NO_FUNCTION.search(part.traceback):
-            return Advice(
-                "The entry point in setup.py names a module, and no function in it.",
-                f"Write {entry.line}: behind the module a colon, and the function. {_again(evidence)}",
-                part.traceback,
-            )
-    # A traceback that shows only Python's own code below the start of a program: it failed before it imported any
-    # file of the student's.
-    started = (part.traceback for part in evidence if _LOADS in part.traceback)
-    tracebacks = "\n".join(text for text in started if not own_line(text))
-    found = re2.search(
-        rf"No module named '{entry.package}\.(?P<module>\w+)'"
-        rf"|module '{entry.package}\.\w+' has no attribute '(?P<name>\w+)'",
-        tracebacks,
+    # Everything below the start of a program is Python's own code: no file of the student has imported anything yet.
+    started = (part.traceback for part in evidence if _STARTS.search(part.traceback))
+    tracebacks = "\n".join(text for text in started if _STARTS.search(own_line(text) or text))
+    found = _LED_NOWHERE.search(tracebacks)
+    if found is None or found["module"] == entry.package:
+        return None
+    what = (
+        f"the module {found['module']}"
+        if found["module"]
+        else f"the function {found['name'] or 'of no name'}"
     )
-    if found is None:
-        return _unknown_module(tracebacks, entry, _again(evidence))
-    what = f"the module {found['module']}" if found["module"] else f"the function {found['name']}"
     return Advice(
         f"The entry point in setup.py leads to {what}, which is not there.",
-        f"Write {entry.line}, with a comma after it: the file without .py, a colon, and the function. "
-        f"{_again(evidence)}",
+        f"Write {entry.line}, with a comma after it: package, dot, the file without .py, a colon, and the function. "
+        f"{again}",
         tracebacks,
     )
 
 
-_LOADS = "next(matches).load()"
-"""The line that imports the program's module, in the script that a build makes for an entry point."""
-_NO_FUNCTION = re2.compile(
-    r"load_entry_point\(.*\)\(\)\)\n(?:[ ~^]*\n)?TypeError: 'module' object is not callable"
+_STARTS = re2.compile(r"next\(matches\)\.load\(\)|load_entry_point\(")
+"""The lines that import the module and call the function, in the file that a build makes for an entry point."""
+_LED_NOWHERE = re2.compile(
+    r"(?m)^ModuleNotFoundError: No module named '(?P<module>[\w.]+)'"
+    r"|module '[\w.]+' has no attribute '(?P<name>\w+)'"
+    r"|load_entry_point\(.*\)\(\)\)\n(?:[ ~^]*\n)?TypeError: 'module' object is not callable"
 )
-_LED_NOWHERE = re2.compile(r"(?m)^ModuleNotFoundError: No module named '(?P<module>[\w.]+)'")
 
 
 def _again(evidence: Evidence) -> str:
@@ -129,19 +110,6 @@ def _again(evidence: Evidence) -> str:
         "Then build and check again."
         if report_of(evidence.main) is None
         else "Then check again: the judge builds."
-    )
-
-
-def _unknown_module(tracebacks: str, entry: Entry, again: str) -> Advice | None:
-    """Return advice if the entry point names its module without the package's name in front."""
-    found = _LED_NOWHERE.search(tracebacks)
-    if found is None or found["module"] == entry.package:
-        return None
-    return Advice(
-        f"The entry point in setup.py names the module {found['module']}, which is not there. The name of a module "
-        "begins with its package.",
-        f"Write package, dot, file, without .py: {entry.line}. {again}",
-        tracebacks,
     )
 
 

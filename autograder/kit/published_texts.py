@@ -107,11 +107,6 @@ class Publisher:
         return self.templates[:1] == ["#"]
 
     @property
-    def begun(self) -> int:
-        """The number of publishers that were heard from their first message on, known from DDS's message numbers."""
-        return sum(message.data.get("number") == 1 for message in self.messages)
-
-    @property
     def went_on(self) -> bool:
         """True if it published long enough that hearing it does not depend on chance."""
         if not self.messages:

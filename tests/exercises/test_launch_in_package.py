@@ -47,8 +47,8 @@ def test_a_launch_file_of_each_language_is_installed_in_the_folder_launch(name: 
 @pytest.mark.parametrize(
     ("found", "built", "key", "words"),
     [
-        ([], [], "launch_not_installed", "There is no launch file"),
-        (["launch/remap.launch.py"], [], "launch_not_installed", "does not install it"),
+        ([], [], "launch_not_installed", "does not install remap.launch.py"),
+        (["launch/remap.launch.py"], [], "launch_not_installed", "does not install remap.launch.py"),
         (
             ["launch/remap.launch.py"],
             ["share/my_robot_pkg/remap.launch.py"],
@@ -66,7 +66,7 @@ def test_a_launch_file_of_each_language_is_installed_in_the_folder_launch(name: 
             ["launch/a.launch.py", "launch/remap.launch.xml"],
             [],
             "launch_not_installed",
-            "launch/remap.launch.xml is in",
+            "does not install",
         ),
     ],
 )

@@ -28,7 +28,7 @@ from autograder.kit.service_calls import (
     gives_up_in_time,
     reports,
 )
-from autograder.kit.service_client_mistakes import NOT_RETURNED, SILENT_END
+from autograder.kit.service_client_mistakes import NOT_RETURNED
 from autograder.kit.texts_said import mentions
 
 SEEDS = range(60)
@@ -176,16 +176,6 @@ def test_a_function_that_returns_something_returns_the_sum_whatever_it_logs(
     said = ("output", "notebook log", {"text": "1 + 2 = -4321"})
     part = seen_of(LATE, answered(-4321), said, ("subject", "returned", {"value": value, "traceback": ""}))
     assert reports(part) is right
-
-
-def test_a_client_that_adds_up_by_itself_without_a_service_is_told_so_although_it_says_not_available() -> (
-    None
-):
-    said = ("output", "stdout", {"text": "not available, so 1001 + 1002 = 2003"})
-    alone = seen_of(ABSENT, said, ("subject", "exited", {"code": 0}))
-    advice = SILENT_END.recognise(Evidence([_reported(RETURNED), alone], REFERENCE))
-    assert advice is not None
-    assert "the sum 2003, which no service gave" in advice.text
 
 
 @pytest.mark.parametrize("value", ["'1 + 2 = -4321'", "AddTwoInts_Response(sum=-4321)"])

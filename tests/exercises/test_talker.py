@@ -292,11 +292,6 @@ def test_a_slip_is_shown_where_it_is() -> None:
     )
 
 
-def test_a_publisher_for_each_message_is_named() -> None:
-    each = [replace(e, data={**e.data, "number": 1}) for e in _messages([1, 2, 4, 5, 8, 9], 0.5)]
-    assert "makes a new publisher again and again" in _step(each)
-
-
 @pytest.mark.parametrize(("text", "is_number"), [("0", True), ("10", True), ("00", False), ("007", False)])
 def test_a_number_has_no_zeros_in_front(text: str, is_number: bool) -> None:
     assert (template(f"Hello, world! {text}") == "Hello, world! #") is is_number

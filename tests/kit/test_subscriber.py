@@ -28,10 +28,9 @@ def told(key: str, evidence: Evidence) -> str:
 
 
 @pytest.mark.parametrize(
-    ("times", "words"),
-    [((2, 2, 2), "says each string 2 times"), ((2, 1, 2), "says some strings 2 times"), ((1, 1, 1), "")],
+    ("times", "words"), [((2, 2, 2), "2 times for one message"), ((2, 1, 2), "2 times"), ((1, 1, 1), "")]
 )
-def test_what_is_said_again_is_each_string_only_if_all_are(times: tuple[int, ...], words: str) -> None:
+def test_what_is_said_again_is_told_with_its_count(times: tuple[int, ...], words: str) -> None:
     lines = ((text, [f"heard {text}"] * often) for text, often in zip(TEXTS, times, strict=True))
     card = told("everything_twice", seen(*lines))
     assert (words in card) if words else not card

@@ -19,10 +19,7 @@ from autograder.kit.published_texts import counters, template
 if TYPE_CHECKING:
     from autograder.kit.published_texts import Publisher
 
-MANY = 3
-"""A run with this many publishers, one after the other, has more than two nodes or two timers would make."""
 _UNFILLED = re2.compile(r"\{[^{}]*\}|%[ds]|\(?\bself\.\w+\)?")
-_FRACTION = re2.compile(r"\d[.,]\d")
 
 
 def says_text(seen: Publisher, expected: Publisher) -> Finding:
@@ -93,13 +90,6 @@ class Counting:
                 "Put an f in front of the opening quotation mark, and braces around what Python is to fill in, as in "
                 f"f'{form.replace('#', f'{{{self.variable}}}')}'.",
             )
-        if _FRACTION.search(odd) and expected.step:
-            first = expected.counters[0]
-            return Advice(
-                f"Your talker says “{odd}”: its number is not a whole number; the task asks for {asked}",
-                f"Begin with a whole number, as in {self.variable} = {first} (not {first}.0), and "
-                f"{self._changes(expected)}; or write int(...) around it.",
-            )
         return Advice(
             f"Your talker says “{odd}”; the task asks for {asked}",
             f"{first_difference(template(odd), form)} (N is the number.) Every letter counts, because "
@@ -151,20 +141,6 @@ class Counting:
         if len(numbers) < 3 or not place:
             return None
         came = f"After {numbers[place - 1]} comes {numbers[place]} ({_around(numbers, place)})."
-        if seen.begun >= MANY:
-            return Advice(
-                f"{came} Your node makes a new publisher again and again, and a new one has no subscriber yet.",
-                "Call create_publisher once, in __init__, keep what it returns (self.publisher = …) and publish with "
-                "that.",
-            )
-        kind = seen.endpoints.get(seen.part.real_name(seen.topic))
-        others = sorted(name for name, other in seen.endpoints.items() if other == kind)
-        if len(others) > 1:
-            things = "numbers" if expected.has_numbers_alone else "strings"
-            return Advice(
-                f"{came} Your node publishes {things} on {' and '.join(others)}. What goes elsewhere is missing here.",
-                "One publisher is enough: let it publish every message.",
-            )
         way, by = ("up", expected.step) if expected.step > 0 else ("down", -expected.step)
         return Advice(
             f"{came} The numbers must go {way} by {'one' if by == 1 else by} with each message.",

@@ -135,13 +135,6 @@ class ServiceType(SeenAsItIs):
             number = len(fields(text))
             if number == 2:
                 continue
-            crowded = next(filter(_nearly_dashes, text.splitlines()), None)
-            if crowded is not None:
-                return Advice(
-                    f"In {file}, the line “{crowded}” has more in it than three dashes, so ROS does not take it "
-                    "for the line between request and response.",
-                    "Leave nothing in it but ---: no blank, no comment, and no fourth dash.",
-                )
             return Advice(
                 f"{file} has {number - 1} lines of three dashes; a service has exactly one, between request "
                 "and response.",
@@ -186,16 +179,9 @@ class ServiceType(SeenAsItIs):
             return None
         if any(GROUP in p.dependencies for p, _ in holders):
             return None
-        hidden = next((p for p, _ in holders if GROUP in p.commented), None)
-        if hidden is not None:
-            return Advice(
-                f"package.xml of {hidden.name} has the line <member_of_group>{GROUP}</member_of_group>, but inside a "
-                "comment (<!-- … -->), where it does not count.",
-                "Move it below the -->, with all other tags that you wrote in that comment. Then check again.",
-            )
         return Advice(
             f"package.xml of {holders[0][0].name} does not say that it is an interface package.",
-            f"Add <member_of_group>{GROUP}</member_of_group> to package.xml, above <export>.",
+            f"Add <member_of_group>{GROUP}</member_of_group> to package.xml, above <export> and outside of comments.",
         )
 
     def _interface_not_listed(self, evidence: Evidence) -> Advice | None:
@@ -220,16 +206,10 @@ class ServiceType(SeenAsItIs):
             return None
         name = undeclared[0]
         tag, reason = NEEDED[name]
-        line = f"<{tag}>{name}</{tag}>"
-        if name in holder.commented:
-            return Advice(
-                f"package.xml of {holder.name} has {name} only inside a comment (<!-- … -->), where it does not count.",
-                f"Write {line} below the -->.",
-            )
         return Advice(
             f"package.xml of {holder.name} does not name {name}. It works here, because this computer has it; "
             "on another computer it would not be installed.",
-            f"Add {line} above <export>: {reason}.",
+            f"Add <{tag}>{name}</{tag}> above <export>, outside of comments: {reason}.",
         )
 
     @property
@@ -265,10 +245,6 @@ def fields(text: str) -> list[Fields]:
         elif bare and "=" not in bare:
             sections[-1].append((bare, ""))
     return sections
-
-
-def _nearly_dashes(line: str) -> bool:
-    return line != "---" and re2.fullmatch(r"\s*-{3,}\s*(?:#.*)?", line) is not None
 
 
 def _undeclared(package: PackageReport) -> list[str]:

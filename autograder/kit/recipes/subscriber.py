@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from itertools import pairwise
 from typing import TYPE_CHECKING
-
-import re2
 
 from autograder.kit import common_mistakes as common
 from autograder.kit.draft import OWN, OWN_LATE
@@ -298,27 +295,11 @@ def _said_again(evidence: Evidence) -> Advice | None:
     if not again:
         return None
     text, times = _most_often(again)
-    if len(again) > 2 and all(b > a for a, b in pairwise(again.values())):
-        return Advice(
-            f"Your program says each new string more often than the one before, “{text}” {times} times for one "
-            "message: with each message there is one more subscription.",
-            "Call create_subscription once, in __init__, and not in a callback.",
-        )
-    if len(again) > 1 and min(again.values()) == times:
-        which = "each string" if again.keys() == set(sent) else "some strings"
-        return Advice(
-            f"Your program says {which} {times} times for one message, such as “{text}”.",
-            "One subscription is enough: is create_subscription called twice, or is there a second node, or a second "
-            "log line? In a notebook, an earlier run of the cell may have left a node of its own.",
-        )
     return Advice(
-        f"Your program says “{text}” {times} times for one message: it repeats the string without a new message.",
-        "Log in the subscription's callback, once for each message; a timer cannot know whether a message came.",
+        f"Your program says “{text}” {times} times for one message.",
+        "Call create_subscription once, in __init__, and log in its callback, once for each message: a timer cannot "
+        "know whether a message came. In a notebook, an earlier run of the cell may have left a node of its own.",
     )
-
-
-_LOG_EACH = "Log every message that the callback is given, without `once`, throttling or a condition."
-_BRACES = re2.compile(r"\{[^{}]*\}?")
 
 
 def _changed_text(evidence: Evidence) -> Advice | None:
@@ -363,53 +344,23 @@ def _not_logged(evidence: Evidence) -> Advice | None:
             f"Your node said “{bytes_said}”: these are the bytes of the message as they travel, not its string.",
             "Leave raw=True out of create_subscription: the callback then gets a message with a string in it.",
         )
-    if is_said(_text(silent), part):
+    if any(is_said(_text(event), part) for event in sent):
         return Advice(
-            f"“{_text(silent)}” was sent twice, one after the other, and your node said it once.",
-            "Log every message that the callback is given, also one with the same string as the one before.",
+            f"Your node said some of the strings, but not “{_text(silent)}” when that was sent.",
+            "Log the string of every message that the callback is given: without `once`, throttling or a condition, "
+            "and not one that you kept before.",
         )
-    first_words = list(filter(str.strip, part.said(after=sent[0])))
-    if silent is not sent[0] and len(first_words) == len(words):
-        return Advice(
-            f"When “{_text(silent)}” was sent, your node said “{words[0]}”: it says each string only when the next "
-            "one arrives.",
-            "Log the string of the message that the callback was just given, not one that you kept before.",
-        )
-    if silent is not sent[0]:
-        return Advice(
-            f"Your node said the first strings, but not “{_text(silent)}”.",
-            _LOG_EACH,
-        )
-    if not first_words:
+    if not words:
         return Advice(
             f"Your node is subscribed to {topic}, but when a string arrives it says nothing.",
             "In the callback, log the field data of the message that it is given, as in "
             "self.get_logger().info(f'I heard: \"{message.data}\"'). If you print it, leave out end=...: a line counts "
             "when it has ended.",
         )
-    later = next((event for event in sent[1:] if is_said(_text(event), part)), None)
-    if later is not None:
-        return Advice(
-            f"Your node said “{_text(later)}”, but not “{_text(sent[0])}”, which was sent before it.",
-            _LOG_EACH,
-        )
     return Advice(
-        f"When “{_text(sent[0])}” was sent, your node said “{first_words[0]}”: the string that arrived is not in it.",
-        _put_it_there(first_words[0]),
+        f"When “{_text(silent)}” was sent, your node said “{words[0]}”: the string that arrived is not in it.",
+        "Put the field data of the message into the line that you log, in braces, with an f before the string.",
     )
-
-
-def _put_it_there(line: str) -> str:
-    """Return the next step after a line without the string, which may contain braces that Python did not fill in."""
-    return _write_f(line) or "Put the field data of the message into the line that you log."
-
-
-def _write_f(line: str) -> str:
-    """Return the advice to write an f, if a line of output has a name in braces; else empty."""
-    braces = re2.search(r"\{[\w.]+\}", line)
-    if braces is None:
-        return ""
-    return f"Write an f before the opening quotation mark: Python then puts the string in the place of {braces[0]}."
 
 
 def _invented_text(evidence: Evidence) -> Advice | None:
@@ -419,6 +370,5 @@ def _invented_text(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         f"Your node said “{made_up[0]}”, but no node sent that.",
-        _write_f(made_up[0])
-        or "Log only in the subscription's callback: the field data of the message that it was given, unchanged.",
+        "Log only in the subscription's callback: the field data of the message that it was given, unchanged.",
     )

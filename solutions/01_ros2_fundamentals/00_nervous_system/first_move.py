@@ -93,19 +93,10 @@ def wrong_movement(seen: Publisher, expected: Publisher) -> Advice | None:
     if odd is None:
         return None
     return Advice(
-        f"Your command says {words(odd)}; the task asks for {words(wanted)}.", _what_to_do(odd, wanted)
+        f"Your command says {words(odd)}; the task asks for {words(wanted)}.",
+        "linear.x points ahead, in metres per second, and angular turns the robot: set linear.x in every command, and "
+        "leave the other five numbers alone.",
     )
-
-
-def _what_to_do(odd: dict[str, float], wanted: dict[str, float]) -> str:
-    forward = wanted["linear.x"]
-    if odd["angular.x"] or odd["angular.y"] or odd["angular.z"]:
-        return "angular is for turning. Straight ahead means: set linear.x only, and leave angular alone."
-    if odd["linear.y"] or odd["linear.z"]:
-        return "linear.x points ahead, linear.y to the left, linear.z up; this robot rolls along x only."
-    if odd["linear.x"] < 0:
-        return f"A negative linear.x drives backwards: write {forward:g} without a minus."
-    return f"linear.x is in metres per second: set it to {forward:g} in every command."
 
 
 EXERCISE = first_move.exercise(

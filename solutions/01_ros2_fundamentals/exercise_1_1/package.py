@@ -6,7 +6,6 @@ from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
-import re2
 from exercise_1_1 import remap
 
 from autograder.kit import workspace_mistakes as workspace
@@ -91,32 +90,12 @@ def launch_file_name(found: Sequence[str], _: Sequence[str]) -> Advice | None:
     )
 
 
-def launch_not_installed(found: Sequence[str], _: Sequence[str]) -> Advice:
-    """The launch file is in the package and is not installed; or it is not even there."""
-    if files := _named(found):
-        return Advice(
-            f"{files[0]} is in the package, but setup.py does not install it: `ros2 launch` finds only what the build "
-            f"has put into share/{PACKAGE}.",
-            f"The list data_files in setup.py needs one more pair: the folder {FOLDER}, and a list with the path of "
-            "the file as it is seen from the folder of the package.",
-        )
+def launch_not_installed(*_: Sequence[str]) -> Advice:
+    """The build has not installed the launch file, or there is none in the package."""
     return Advice(
-        f"There is no launch file in the package {PACKAGE}.",
-        f"Make the folder ros2_ws/src/{PACKAGE}/launch, and copy {SHOWN} into it. Then name the file in data_files of "
-        "setup.py, so that the build installs it.",
-    )
-
-
-def data_file_missing(evidence: Evidence) -> Advice | None:
-    """setup.py installs a file that is not in the package."""
-    report = report_of(evidence.main)
-    missing = re2.search(r"can't copy '([^']*)'", report.line) if report else None
-    if missing is None:
-        return None
-    return Advice(
-        f"colcon build fails in {PACKAGE}: data_files in setup.py names the file {missing[1]}, which is not there.",
-        "The path begins in the folder of the package, next to setup.py. Compare it with the files there, letter by "
-        "letter.",
+        f"The build does not install {SHOWN}: `ros2 launch` finds only what the build has put into share/{PACKAGE}.",
+        f"Copy the file into the folder ros2_ws/src/{PACKAGE}/launch. The list data_files in setup.py needs one more "
+        f"pair: the folder {FOLDER}, and a list with the path of the file, seen from the folder of the package.",
     )
 
 
@@ -132,7 +111,6 @@ EXERCISE = replace(
     mistakes=(
         Mistake("package_name", lambda evidence: package_name(evidence, PACKAGE), certain=True),
         *map(_about_the_file, (launch_elsewhere, launch_file_name, launch_not_installed)),
-        Mistake("data_file_missing", data_file_missing, certain=True),
         *remap.EXERCISE.mistakes,
     ),
     runner=LaunchesFromPackage(PACKAGE, FILE),

@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from autograder.kit.draft import Draft
 from autograder.kit.model import Advice, Finding
 from autograder.kit.recipes.launch_file import Launched, LaunchFile
 from autograder.kit.runners import Launches
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
 
 OLD_NAME = "chatter"
 """The topic's name in the code of the programs."""
@@ -81,19 +76,6 @@ def by_the_launch(seen: Launched, _: Launched) -> Finding:
     )
 
 
-RELATIVE = "the target of your rule is relative, so the namespace came in front of it."
-
-
-def in_a_namespace(seen: Launched, topics: Iterable[str]) -> str:
-    """Return the first of the topics that is the new one with a namespace in front of it; empty if there is none."""
-    return next((name for name in sorted(topics) if name.endswith(seen.topic)), "")
-
-
-def slash_first(seen: Launched) -> str:
-    """Return the next step for a target that is relative."""
-    return f"Write the target with a slash at its front: {seen.topic}."
-
-
 @remap.mistake("only_one_remapped", certain=lambda seen: seen.all_are_there)
 def only_one_remapped(seen: Launched, _: Launched) -> Advice | None:
     """One end was moved, the other stayed behind."""
@@ -102,10 +84,6 @@ def only_one_remapped(seen: Launched, _: Launched) -> Advice | None:
         return None
     moved, left = ("talker", "listener") if talks else ("listener", "talker")
     others = seen.subscriptions if talks else seen.publishers
-    if near := in_a_namespace(seen, others):
-        return Advice(
-            f"The {moved} is on {seen.topic}, but the {left} is on {near}: {RELATIVE}", slash_first(seen)
-        )
     return Advice(
         f"The {moved} is on {seen.topic}, but the {left} is still on {names(others)}: the two do not meet.",
         f"Give the {left}'s node in the launch file the same remapping. A rule holds only for the node that it is "
@@ -119,16 +97,7 @@ def not_remapped(seen: Launched, _: Launched) -> Advice | None:
     there = seen.publishers | seen.subscriptions
     if not (seen.publishers and seen.subscriptions) or seen.topic in there:
         return None
-    if near := in_a_namespace(seen, seen.elsewhere):
-        return Advice(f"Your nodes are on {near}: {RELATIVE}", slash_first(seen))
     why = f"Your nodes use {names(there)}; the task asks for {seen.topic}."
-    lost = [old for old in seen.rules if any(name != old and name.endswith(old) for name in there)]
-    if lost and lost[0].startswith("/"):
-        return Advice(
-            f"{why} The rule is for {lost[0]}: the slash at its front makes this the whole name, and your nodes have a "
-            "namespace before theirs.",
-            f"Write the name as it is in the code, without a slash: remappings=[('chatter', '{seen.topic}')].",
-        )
     how = (
         f"In Python: remappings=[('chatter', '{seen.topic}')]. In XML, inside <node>: <remap from=\"chatter\" "
         f'to="{seen.topic}"/>. The name in the code comes first.'
@@ -139,15 +108,6 @@ def not_remapped(seen: Launched, _: Launched) -> Advice | None:
         f"{why} The launch file gives your programs no remapping rule.",
         f"{how} A SetRemap holds only for the nodes below it in its own group.",
     )
-
-
-remap.knows(
-    "started_twice",
-    lambda seen, _: seen.talkers > 1,
-    "There are {seen.talkers} talkers on {seen.topic}: the launch file starts that program more than once.",
-    "Start the talker once. A listener hears every talker of its topic, and cannot tell them apart.",
-    certain=True,
-)
 
 
 remap.knows(
@@ -168,18 +128,6 @@ remap.knows(
     "was changed in the code.",
     "Leave the programs as they are, with chatter in them, and remap the topic for each node in the launch file.",
     certain=True,
-)
-
-
-remap.knows(
-    "not_remapped",
-    lambda seen, expected: (
-        seen.heard
-        and seen.says_what_it_hears
-        and not (by_the_launch(seen, expected).passed or _missing(seen))
-    ),
-    "Both nodes are on {seen.topic}, but the launch file does not give each of them a remapping of chatter to it.",
-    "Leave the programs as they are, with chatter in them, and remap the topic for each node in the launch file.",
 )
 
 

@@ -23,7 +23,7 @@ from exercise_1_3._cancel_evidence import (
 
 from autograder.kit import goal_mistakes
 from autograder.kit.common_mistakes import AWAITS_IN_VAIN, only_if_ended, went_deaf
-from autograder.kit.crashes import LEFT_LYING, meant, raised_line, what_and_where
+from autograder.kit.crashes import meant
 from autograder.kit.hangs import HANGS
 from autograder.kit.in_words import counted
 from autograder.kit.model import Advice, Mistake
@@ -80,14 +80,6 @@ def ended_on_the_way(evidence: Evidence) -> Advice | None:
         missing = "its result was there"
     else:
         return None
-    if part.traceback:
-        raised = what_and_where(part.traceback)
-        return Advice(
-            f"Your client sent its goal, and ended before {missing}, because it raised {raised}.",
-            "Look at the condition above that line, and give the wait before it some seconds (timeout_sec=5.0). "
-            "Raise only where the goal is not accepted (`accepted` of its handle is False), or "
-            "where that time is over.",
-        )
     return Advice(
         f"Your client sent its goal, and ended before {missing}.",
         "Keep it alive until the result is there: rclpy.spin(your_node), or "
@@ -171,14 +163,6 @@ def status_not_reported(evidence: Evidence) -> Advice | None:
             "Your client asked to cancel, but it never asked for the result, so it cannot know how the goal ended.",
             "Call get_result_async() of the goal handle once the goal is accepted, and read the status of its result() "
             "when that future is done. Leave out an rclpy.spin(...) before that: it does not come back.",
-        )
-    result, ending = part.first("result"), part.ending
-    was_there = result is not None and ending is not None and result.t + LEFT_LYING < ending.t
-    if was_there and raised_line(part.traceback).startswith("TimeoutError"):
-        return Advice(
-            f"The server sent the result, and your client ended without it: {raised_line(part.traceback)}.",
-            "Where on_feedback, or another callback, waits or spins, leave that out: it takes the node away from the "
-            "spin that waits for the result. Go on in a function that you give to the future's add_done_callback(...).",
         )
     return outcome.advice(
         where,

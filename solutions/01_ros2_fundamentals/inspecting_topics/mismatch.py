@@ -32,6 +32,7 @@ MAX_QUOTED = 200
 ANSWERING = {Pace.FAST: 8.0, Pace.REAL_TIME: 15.0}
 """Seconds of wall time for an answer; discovery takes up to three in a process that has just started."""
 
+_EVERYWHERE = ("/rosout", "/parameter_events", "/clock")
 _GAVE_UP = re2.compile(r"(?m)^TimeoutError(?:: .*)?$")
 _EARLY = ("battery", "beacon", "camera", "compass", "gripper", "lamp", "lidar")
 _LATE = ("servo", "sonar", "tracker", "valve", "wheel")
@@ -322,16 +323,11 @@ def wrong_node(seen: Evidence, _: Evidence) -> Advice | None:
     """A topic that every node has, or that another node has, is given as the answer."""
     for part, answered in _wrong(seen):
         given = {str(value) for value in (answered or {}).values()}
-        if given & {"/rosout", "/parameter_events", "/clock"}:
+        if named := sorted(given & {*_EVERYWHERE, *part.inputs.get("beside", ())}):
             return Advice(
-                "Your answer names /rosout or /parameter_events: every node has these, for its log and its parameters.",
-                "Leave them out, and take the topic that is left.",
-            )
-        if given & set(part.inputs.get("beside", ())):
-            named = " and ".join(sorted(given & set(part.inputs["beside"])))
-            return Advice(
-                f"Your answer names {named}, of a third node that has nothing to do with it.",
-                "Ask for the topics of the two nodes you were given, not for all that there are.",
+                f"Your answer names {' and '.join(named)}: every node has /rosout and /parameter_events, and a third "
+                "node that has nothing to do with it has others.",
+                "Ask for the topics of the two nodes you were given, and leave out those two.",
             )
     return None
 

@@ -23,14 +23,12 @@ from lab_1_4._goals import (
     GOALS,
     LAST_ORDER,
     LONG_ALONE,
-    LONG_BEGINNING,
     NEXT,
     OLDER,
     ROUNDS_LEFT,
     TWINS,
     YOUNGER,
     all_goals,
-    canceled_later,
     ended_by_a_younger,
     expected_sequence,
     feedback_objection,
@@ -40,7 +38,6 @@ from lab_1_4._goals import (
     objection,
     paced_goals,
     takes_no_time,
-    tells_at_the_end,
     to_be_canceled,
 )
 from lab_1_4._server_run import scenario
@@ -146,12 +143,6 @@ def goals_mixed_up(seen: Evidence, _: Evidence) -> Advice | None:
     # If the numbers of two goals get into one list, they grow too large, and that is an exception, too.
     if not (wrong or astray or unasked) or (traceback_of(seen) and not (slips or astray or unasked)):
         return None
-    if far := next((one for one in ended if one.partials and len(one.partials[0]) > LONG_BEGINNING), None):
-        return Advice(
-            f"A goal of order {far.order} begins with {far.partials[0]}: it goes on where an earlier goal ended.",
-            "Make the list anew in each call of the execute callback, with [0, 1] in it. What is stored in self lives "
-            "on after each goal.",
-        )
     only_beside = [one for one, _ in wrong] == [beside] and again in ended
     if only_beside and not (astray or unasked) and beside.status == SUCCEEDED and beside.grows:
         return None  # two at once are right, and large numbers are not
@@ -173,40 +164,17 @@ def goals_mixed_up(seen: Evidence, _: Evidence) -> Advice | None:
     )
 
 
-server.knows(
-    "cancel_not_accepted",
-    lambda seen, _: next(
-        (
-            one
-            for one in canceled_later(seen.part(GOALS))
-            if one.cancel_accepted is False and not one.cancelled_too_late and one.status is None
-        ),
-        None,
-    ),
-    "Your server agreed to cancel one goal, and refused to cancel a later one, of order {.order}.",
-    "Let the cancel_callback return CancelResponse.ACCEPT each time that it is called, whatever happened before.",
-    certain=True,
-)
-
-
 @server.mistake("wrong_sequence", certain=True, before="cancel_not_accepted")
 def wrong_sequence(seen: Evidence, _: Evidence) -> Advice | None:
     """A goal succeeds with other numbers than the reference's."""
     wrong = [one for one in good_goals(seen) if one.status == SUCCEEDED and objection(seen, one)]
     if not wrong:
         return None
-    wanted, given = expected_sequence(seen, int(wrong[0].order or 0)), wrong[0].sequence
-    if len(given) == len(wanted):
-        place = next(i for i, (one, other) in enumerate(zip(given, wanted, strict=True)) if one != other)
-        return Advice(
-            f"For order {wrong[0].order}, number {place} of the result (counted from 0) is {given[place]}; it should "
-            f"be {wanted[place]}.",
-            "Begin with [0, 1] in each goal, and append the sum of the last two numbers, whatever its size.",
-        )
+    wanted = expected_sequence(seen, int(wrong[0].order or 0))
     return Advice(
-        f"For order {wrong[0].order} the result is {wrong[0].sequence}; it should be {wanted}: one number more than "
-        "the order says.",
-        "Begin with [0, 1] in each goal, and append the sum of the last two numbers until there are order + 1.",
+        f"For order {wrong[0].order} the result is {wrong[0].sequence}; it should be {wanted}.",
+        "Begin with [0, 1] in each goal, and append the sum of the last two numbers, whatever its size, until there "
+        "are order + 1.",
     )
 
 
@@ -216,26 +184,13 @@ def wrong_feedback(seen: Evidence, _: Evidence) -> Advice | None:
     told = [one for one in paced_goals(seen) if one.was_computed]
     if not any(one.feedback for one in told):
         return None
-    if tells_at_the_end(seen.part(GOALS)):
-        return Advice(
-            "All feedback of a goal came at once, when its work was done: the client could not follow the work.",
-            "Call publish_feedback(...) of the goal handle inside the loop, in each turn, right after you have "
-            "appended the number and before you sleep.",
-        )
     wrong = [(one, text) for one in told if (text := feedback_objection(seen, one))]
     if not wrong:
         return None
-    one, text = wrong[0]
-    longest, order = max(map(len, one.partials), default=0), int(one.order or 0)
-    if longest > max(2, order + 1):
-        return Advice(
-            f"The feedback for order {order} goes up to {longest} numbers; the sequence of this order has {order + 1}.",
-            "The list begins with two numbers, so the loop has fewer turns than the order says: "
-            "`while len(numbers) <= goal_handle.request.order:` ends it in time.",
-        )
     return Advice(
-        f"The feedback does not grow by one number each time ({text}).",
-        "Publish once for each number that you append, with all numbers found so far in partial_sequence.",
+        f"The feedback does not grow by one number each time ({wrong[0][1]}).",
+        "Publish in each turn of the loop, right after you have appended a number: all numbers found so far, in "
+        "partial_sequence.",
     )
 
 
