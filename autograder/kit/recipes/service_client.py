@@ -13,14 +13,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import re2
 
 from autograder.kit import common_mistakes as common
 from autograder.kit import giving_up, service_client_mistakes
 from autograder.kit.crashes import OTHER_SLIPS
-from autograder.kit.draft import OWN, OWN_LATE, Judge, Told
+from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.giving_up import drawn_patience
 from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import (
@@ -31,7 +31,7 @@ from autograder.kit.lateness import (
     meets_present,
     was_patient_with_an_answer,
 )
-from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
+from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace, mistake
 from autograder.kit.service_calls import (
     ABSENT,
     HANGS_AFTER,
@@ -50,7 +50,7 @@ from autograder.kit.service_calls import (
 from autograder.kit.texts_said import mentions
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from random import Random
 
     from autograder.kit.evidence import Evidence, Part
@@ -206,16 +206,10 @@ def _as_int64(number: int) -> int:
     return (number + 2**63) % 2**64 - 2**63
 
 
-class AnotherSum(NamedTuple):
-    """A client's number in the place of an answer.
-
-    Attributes:
-        answer: The right number.
-        line: The last line with another number.
-    """
-
-    answer: int
-    line: str
+_SUM_NOT_SAID = Advice(
+    "The calls are right, but the sum is never said.",
+    "Log or print the field sum of the last answer that the service gave. In a notebook, return it, too.",
+)
 
 
 class Calls:
@@ -225,7 +219,7 @@ class Calls:
         calls: The number of calls of a client that has finished its work.
         runs: Draws the runs with a service: the late one, the one with hidden changes, the one with large numbers.
         kinds: Each draws numbers of one kind; the run without a service uses one of these kinds, too.
-        too_many: What a student is told whose client calls ``{count}`` times, and the advice.
+        wanted: The right calls, in words.
         right: Returns the numbers of each right call, for a run with the right number of calls.
     """
 
@@ -237,11 +231,11 @@ class Calls:
         runs: Callable[[Random], Sequence[Run]],
         kinds: Sequence[Callable[[Random], Sequence[int]]],
         *,
-        too_many: tuple[str, str],
+        wanted: str,
         right: Callable[[Part], Sequence[Sequence[int]]] = lambda part: [part.inputs["numbers"]],
     ) -> None:
-        self._calls, self._runs, self._kinds, self._many = calls, runs, kinds, too_many
-        self._right = right
+        self._calls, self._runs, self._kinds = calls, runs, kinds
+        self._wanted, self._right = wanted, right
 
     def scenario(self, bench: Bench) -> None:
         """Four runs: a late service, one with hidden changes, large numbers, and no service."""
@@ -262,28 +256,18 @@ class Calls:
         made = requests(part)
         return len(made) == self._calls and list(map(pair, made)) == list(map(sorted, self._right(part)))
 
-    def right_calls(self, wanted: str, *, given: str = " and ", asked: str = ", ") -> Judge[Client]:
-        """Return a criterion: each run has the right calls.
-
-        Args:
-            wanted: What is expected, in words.
-            given: The separator of the numbers that a run was given.
-            asked: The separator of two calls.
-        """
-
-        def judge(seen: Client, _: Client) -> Finding:
-            wrong = next((part for part in seen.served if not self.is_right(part)), None)
-            if wrong is None:
-                return Finding(True, wanted, wanted)
-            if not wrong.events and (hung := cut_short(seen)):
-                return Finding(False, wanted, hung)
-            made = [f"{e.data['fields']['a']} + {e.data['fields']['b']}" for e in requests(wrong)[:3]]
-            numbers = given.join(map(str, wrong.inputs.get("numbers", ())))
-            return Finding(
-                False, wanted, (f"for {numbers}: " if numbers else "") + (asked.join(made) or "no call")
-            )
-
-        return judge
+    def calls_right(self, evidence: Evidence) -> Finding:
+        """Each run has the right calls."""
+        seen, wanted = self.seen(evidence), self._wanted
+        wrong = next((part for part in seen.served if not self.is_right(part)), None)
+        if wrong is None:
+            return Finding(True, wanted, wanted)
+        if not wrong.events and (hung := cut_short(seen)):
+            return Finding(False, wanted, hung)
+        made = [f"{e.data['fields']['a']} + {e.data['fields']['b']}" for e in requests(wrong)[:3]]
+        numbers = ", ".join(map(str, wrong.inputs.get("numbers", ())))
+        given = f"for {numbers}: " if numbers else ""
+        return Finding(False, wanted, given + (", then ".join(made) or "no call"))
 
     def waits(self, evidence: Evidence) -> Finding:
         """If the service comes late, the client calls anyway; another criterion judges the result."""
@@ -291,36 +275,52 @@ class Calls:
         called = bool(requests(late))
         return Finding(called, "waits, then calls", "it did" if called else how_it_went(late))
 
-    def unreported(self, says: str, next_step: str) -> Told[Client]:
-        """Return a mistake: the calls are right, and the last answer is not said, or a string has its braces left."""
+    def _too_many_calls(self, evidence: Evidence) -> int:
+        """Return the number of calls of a run with more than the reference solution makes."""
+        counts = (len(requests(part)) for part in self.seen(evidence).served)
+        return next((count for count in counts if count > self.expected(evidence).calls), 0)
 
-        def told(seen: Client, _: Client) -> Advice | None:
-            part = self._unreported(seen)
-            return (braces_left(part) or Advice(says, next_step)) if part else None
+    def _wrong_numbers(self, evidence: Evidence) -> str:
+        """Return the calls, as many as the reference's, whose numbers are wrong."""
+        found = self.calls_right(evidence)
+        as_many = self.seen(evidence).called(self.expected(evidence).calls)
+        return found.seen if as_many and not found.passed else ""
 
-        return told
+    def _no_call(self, evidence: Evidence) -> bool:
+        """True if it ends by itself, with a client but without a call."""
+        seen = self.seen(evidence)
+        return seen.had_client and any(part.ending and not requests(part) for part in seen.served)
 
-    def _unreported(self, seen: Client) -> Part | None:
-        answered = (part for part in seen.served if part.of("response"))
+    def _unreported(self, evidence: Evidence) -> Part | None:
+        """Return a run with the right calls, whose last answer is not reported."""
+        answered = (part for part in self.seen(evidence).served if part.of("response"))
         return next((part for part in answered if self.is_right(part) and not reports(part)), None)
 
-    def another_sum(self, seen: Client) -> AnotherSum | None:
-        """What is said in place of the last answer of a run with the right calls."""
-        part = self._unreported(seen)
+    def _another_sum(self, evidence: Evidence) -> tuple[int, str] | None:
+        """Return the last answer of that run, and the last line with another number."""
+        part = self._unreported(evidence)
         if part is None:
             return None
         answer = answers(part)[-1]
         said = reversed(part.said(after=part.of("response")[-1]))
         line = next((line for line in said if re2.search(r"\d", line) and not mentions([line], answer)), None)
-        return None if line is None else AnotherSum(answer, line)
+        return None if line is None else (answer, line)
 
-    def _too_many_calls(self, evidence: Evidence) -> Advice | None:
-        """The client makes more calls than the reference solution."""
-        wanted = self.expected(evidence).calls
-        counts = (len(requests(part)) for part in self.seen(evidence).served)
-        many = next((count for count in counts if count > wanted), None)
-        says, next_step = self._many
-        return None if many is None else Advice(says.format(count=many), next_step)
+    def _sum_not_said(self, evidence: Evidence) -> Advice | None:
+        part = self._unreported(evidence)
+        return (braces_left(part) or _SUM_NOT_SAID) if part else None
+
+    def _about_the_sum(self) -> Iterator[Mistake]:
+        """Yield the mistakes of a client whose calls are right."""
+        another = mistake(
+            "wrong_sum_reported",
+            self._another_sum,
+            "The service's last answer was {0[0]}, but your program said “{0[1]}”.",
+            "Report the field sum of the last answer as it is: all its digits, and no sum of your own.",
+        )
+        for one in (another, Mistake("sum_not_reported", self._sum_not_said)):
+            yield common.only_if_ended(one)
+            yield one
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:
@@ -338,13 +338,35 @@ class Calls:
             service_client_mistakes.WAITS_FOREVER,
             *(replace(hang, certain=True) for hang in (*HANGS, common.AWAITS_IN_VAIN)),
             service_client_mistakes.FIELDS_NEVER_FILLED,
-            Mistake("too_many_calls", self._too_many_calls, certain=True),
+            mistake(
+                "too_many_calls",
+                self._too_many_calls,
+                "Your client called the service {} times, which is more than the task asks for.",
+                "Call once for each sum that you need, and wait for its answer.",
+                certain=True,
+            ),
             OWN,
+            mistake(
+                "wrong_arguments",
+                self._wrong_numbers,
+                f"The numbers of a call are wrong ({{}}); the task asks for {self._wanted}.",
+                "Use the numbers that your code was given, with their minus signs, and none of your own: on a command "
+                "line, sys.argv[0] is the program itself. If you use one request object twice, fill it anew.",
+                certain=True,
+            ),
             service_client_mistakes.ZERO_TAKEN_FOR_FAILURE,
             service_client_mistakes.NOT_RETURNED,
             service_client_mistakes.GAVE_UP_TOO_EARLY,
             service_client_mistakes.ANSWER_NOT_AWAITED,
             OWN_LATE,
+            mistake(
+                "no_call",
+                self._no_call,
+                "Your client never called the service.",
+                "Make a request, fill a and b, and send it with call_async. Lines below a raise or a return, and "
+                "indented like it, are never reached. What you add up yourself is not the answer of the server.",
+            ),
+            *self._about_the_sum(),
             service_client_mistakes.SILENT_END,
             service_client_mistakes.PATIENCE_NOT_KEPT,
             *common.OTHER_CRASHES,

@@ -71,10 +71,7 @@ recipe = Calls(
     runs,
     # Not of the everyday kind: the sum of a number and zeros is that number, and a client may say what it will ask.
     (negative, extreme),
-    too_many=(
-        "Your client called the service {count} times; two calls are enough.",
-        "Call once with a and b, once with the first answer and c, and no more.",
-    ),
+    wanted="first a + b, then that answer + c",
     right=chained,
 )
 adder = Draft(
@@ -93,9 +90,7 @@ def calls(seen: Client, expected: Client) -> Finding:
     return Finding(seen.called(expected.calls), f"{expected.calls} calls in each run", found)
 
 
-chain = adder.criterion("chain", 3, "Builds the second call on the first answer")(
-    recipe.right_calls("first a + b, then that answer + c", given=", ", asked=", then ")
-)
+adder.asks("chain", 3, "Builds the second call on the first answer", recipe.calls_right)
 adder.asks("sum", 3, "Reports the final sum", service_calls.reports_the_sum)
 adder.asks("late", 1, "Waits for a service that comes late", recipe.waits)
 adder.asks("limit", 1, "Ends clearly when there is no service", service_calls.gives_up_in_time)
@@ -120,18 +115,6 @@ def first_answer_ignored(seen: Client, _: Client) -> Advice | None:
     )
 
 
-adder.knows(
-    "wrong_arguments",
-    lambda seen, expected: (
-        seen.called(expected.calls) and not (found := chain(seen, expected)).passed and found.seen
-    ),
-    "The calls carry the wrong numbers ({}).",
-    "The first call adds a and b, the second adds the first answer and c: the numbers that your code was given, with "
-    "their minus signs, and no numbers of your own. If you use one request object twice, fill it anew.",
-    certain=True,
-)
-
-
 @adder.mistake("one_call_only", late=True, certain=Client.called_each_time)
 def one_call_only(seen: Client, expected: Client) -> Advice | None:
     """The client ends by itself after one call or none."""
@@ -144,22 +127,6 @@ def one_call_only(seen: Client, expected: Client) -> Advice | None:
         "Call once with a and b, then again with the first answer and c. Lines below a raise or a return, and indented "
         "like it, are never reached.",
     )
-
-
-adder.knows(
-    "wrong_sum_reported",
-    lambda seen, _: recipe.another_sum(seen),
-    "The service's last answer was {0.answer}, but your program said “{0.line}”.",
-    "Report the sum of the second answer, not the first one and not one of your own.",
-    late=True,
-    certain=Client.ended_each_time,
-)
-adder.mistake("sum_not_reported", late=True, certain=Client.ended_each_time)(
-    recipe.unreported(
-        "Both calls are right, but the final sum is never said.",
-        "Log or print the sum of the second answer. In a notebook, return it, too.",
-    )
-)
 
 
 EXERCISE = adder.exercise(

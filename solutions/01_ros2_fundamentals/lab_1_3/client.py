@@ -14,8 +14,6 @@ from autograder.kit.service_calls import (
     BIASED,
     EXTREME,
     LATE,
-    Client,
-    requests,
 )
 
 if TYPE_CHECKING:
@@ -54,10 +52,7 @@ recipe = Calls(
     runs,
     # Not of the everyday kind: with a zero the sum is one of the numbers, and a client may say what it will ask.
     (negative, extreme),
-    too_many=(
-        "Your client called the service {count} times for one sum.",
-        "Call once, and wait for that answer.",
-    ),
+    wanted="one call with the two numbers, in each run",
 )
 client = Draft(
     "lab_1_3.client",
@@ -67,55 +62,10 @@ client = Draft(
 )
 
 
-call = client.criterion("call", 4, "Calls once, with the two numbers")(
-    recipe.right_calls("one call with the two numbers, in each run")
-)
+client.asks("call", 4, "Calls once, with the two numbers", recipe.calls_right)
 client.asks("sum", 4, "Reports the sum that the service answered", service_calls.reports_the_sum)
 client.asks("late", 1, "Waits for a service that comes late", recipe.waits)
 client.asks("limit", 1, "Ends clearly when there is no service", service_calls.gives_up_in_time)
-
-
-client.knows(
-    "wrong_arguments",
-    lambda seen, expected: (
-        seen.called(expected.calls) and not (found := call(seen, expected)).passed and found.seen
-    ),
-    "The call carries the wrong numbers ({}).",
-    "The request's a is the first number, its b the second. On a command line, sys.argv[0] is the program itself.",
-    certain=True,
-)
-
-
-def no_call(seen: Client, _: Client) -> bool:
-    """The client ends by itself, with a client but without a call."""
-    return seen.had_client and any(part.ending and not requests(part) for part in seen.served)
-
-
-client.knows(
-    "no_call",
-    no_call,
-    "Your client never called the service.",
-    "Make a request, fill a and b, and send it with call_async. "
-    "Lines below a raise or a return, and indented like it, are never reached. "
-    "What you add up yourself is not the answer of the server.",
-    late=True,
-)
-
-
-client.knows(
-    "wrong_sum_reported",
-    lambda seen, _: recipe.another_sum(seen),
-    "The service answered {0.answer}, but your program said “{0.line}”.",
-    "Report the field sum of the answer as it is: all its digits, and no sum of your own.",
-    late=True,
-    certain=Client.ended_each_time,
-)
-client.mistake("sum_not_reported", late=True, certain=Client.ended_each_time)(
-    recipe.unreported(
-        "The call is right, but the sum is never said.",
-        "Log or print the field sum of the answer that the service gave. In a notebook, return it, too.",
-    )
-)
 
 
 EXERCISE = client.exercise(

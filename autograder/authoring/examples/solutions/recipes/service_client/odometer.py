@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from autograder.kit import service_calls
 from autograder.kit.draft import Draft
 from autograder.kit.recipes.service_client import Calls, Run, hidden
-from autograder.kit.service_calls import BIASED, EXTREME, LATE, Client
+from autograder.kit.service_calls import BIASED, EXTREME, LATE
 
 if TYPE_CHECKING:
     from random import Random
@@ -30,9 +30,7 @@ def far(random: Random) -> tuple[int, int]:
     return 2**63 - 1 - random.randint(5000, 9999), random.randint(1, 4999)
 
 
-recipe = Calls(
-    1, runs, (distances, far), too_many=("Your client called {count} times for one sum.", "Call once.")
-)
+recipe = Calls(1, runs, (distances, far), wanted="one call with the two distances, in each run")
 odometer = Draft(
     "service_client.odometer",
     "A service client · The odometer",
@@ -41,19 +39,9 @@ odometer = Draft(
 )
 
 
-odometer.criterion("call", 4, "Calls once, with the two distances")(
-    recipe.right_calls("one call with the two distances, in each run")
-)
+odometer.asks("call", 4, "Calls once, with the two distances", recipe.calls_right)
 odometer.asks("sum", 4, "Reports the sum that the service answered", service_calls.reports_the_sum)
 odometer.asks("limit", 2, "Ends clearly when there is no service", service_calls.gives_up_in_time)
-
-
-odometer.mistake("sum_not_reported", late=True, certain=Client.ended_each_time)(
-    recipe.unreported(
-        "The call is right, but the sum is never said.",
-        "Log or print the sum of the answer: future.result().sum. In a notebook, return it, too.",
-    )
-)
 
 
 EXERCISE = odometer.exercise(
