@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.model import Advice, Pace, mistake
+from autograder.kit.model import Advice, Pace
 from autograder.kit.outcomes import Outcome, all_lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from autograder.kit.evidence import Evidence, Part
-    from autograder.kit.model import Bench, Mistake
+    from autograder.kit.model import Bench
 
 PATIENCE = "patience_sec"
 """The name of the parameter that tells a notebook's function how long to wait. The same name is used in a part's
@@ -129,25 +129,6 @@ def waits_in_silence(part: Part) -> bool:
     return bool(part.events) and part.ending is None and not goes_on_waiting(part)
 
 
-def served_otherwise(
-    served: Sequence[Part], absent: Part, asked: Callable[[Part], bool], looks_elsewhere: bool
-) -> list[Part]:
-    """Return the runs in which the subject had its server, so that its words there cannot mean that one is missing.
-
-    In the first run the server comes late, so a client may report it missing there. That run is therefore left out,
-    unless the client never sends a request in it.
-
-    Args:
-        served: The runs with a server. In the first one the server comes late.
-        absent: The run without a server.
-        asked: Tells whether the subject sent the server a request in a run.
-        looks_elsewhere: True if the subject looks for a server with a name different from the task's.
-    """
-    late, *others = served
-    found = [part for part in others if asked(part)]
-    return [*found, late] if absent.events and not (asked(late) or looks_elsewhere) else found
-
-
 def objection(part: Part, others: Sequence[Part] = (), role: str = "") -> str:
     """Return in words what a client does wrong when it finds no server; empty if it behaves well.
 
@@ -217,42 +198,10 @@ def broken_patience(part: Part) -> str:
     return f"gave up after {waited(part):.1f} s, where {PATIENCE} was {limit:g}"
 
 
-def looks_elsewhere(evidence: Evidence, absent: Part, role: str) -> bool:
-    """Return True if a client that never called the server was seen to look for a server with another name.
-
-    If the client ended both with and without a server, it must have looked for another name. If it kept waiting, it
-    may have used the right name with another type.
-
-    Args:
-        evidence: All runs of the client.
-        absent: The run without a server.
-        role: ``client`` or ``action_client``.
-    """
-    name, kind = evidence.reference.only(role)
-    looked_for = [found for part in evidence for found in part.endpoints(role).items()]
-    waits_on = absent.ending is None
-    return any(other != name or (waits_on and its_type != kind) for other, its_type in looked_for)
-
-
 def ended_at_once(part: Part) -> bool:
     """Return True if a function that was told how long to wait ended far too early to have waited at all."""
     limit = patience(part)
     return limit is not None and part.ending is not None and waited(part) < limit * TOO_SHORT
-
-
-def patience_not_kept(absent: str) -> Mistake:
-    """Make the mistake of a function that, without a server, waits by a limit of its own.
-
-    In ``absent``, the name of the run without a server, its waiting time differs from the given patience.
-    """
-    return mistake(
-        "patience_not_kept",
-        lambda evidence: "" if _looked_for_nobody(evidence) else broken_patience(evidence.part(absent)),
-        "When there is no server, your function {}.",
-        f"Use {PATIENCE} as the limit, once: `if not your_client.wait_for_service(timeout_sec={PATIENCE}):` (or "
-        f"`wait_for_server`), and below it say so and end: `raise TimeoutError(...)`. Without `raise` or `return` it "
-        f"goes on to its next wait. A loop has to end {PATIENCE} seconds after it began.",
-    )
 
 
 def remark(absent: str) -> Callable[[Evidence], str]:
@@ -279,7 +228,7 @@ def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool])
         absent: The run without a server.
         asked: Tells whether the subject sent the server a request in a run.
     """
-    if _looked_for_nobody((absent, *served)):
+    if looked_for_nobody((absent, *served)):
         return False
     ended = [part for part in served if part.ending and not asked(part)]
     if served[0] in ended and any(asked(part) for part in served):
@@ -289,8 +238,8 @@ def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool])
     return bool(absent.ending and told and ended) and alike
 
 
-def _looked_for_nobody(parts: Iterable[Part]) -> bool:
-    """Return True if the subject ended well in each run, but was never seen to have a node or to wait.
+def looked_for_nobody(parts: Iterable[Part]) -> bool:
+    """True if the subject ended well in each run, and was never seen as a node or to wait.
 
     A notebook's function may end before the graph shows its node; then it is unknown whether it looked for a server.
     """
@@ -302,43 +251,3 @@ def _looked_for_nobody(parts: Iterable[Part]) -> bool:
 
 def _was_seen(part: Part) -> bool:
     return part.had_node or any(map(part.endpoints, _CLIENTS)) or any(map(part.of, _AT_WORK))
-
-
-def not_forgotten(
-    absent: str,
-    noun: str,
-    role: str,
-    served: Callable[[Evidence], Sequence[Part]],
-    asked: Callable[[Part], bool],
-) -> Mistake:
-    """Make the mistake of a client whose condition lacks a ``not``: it gives up if its server exists, else not.
-
-    Args:
-        absent: The name of the run without a server.
-        noun: The word for the thing the client waits for, ``"service"`` or ``"server"``, as in ``wait_for_service``.
-        role: The role of the client's endpoint, such as ``"client"``.
-        served: Returns the runs with a server.
-        asked: Tells whether the subject sent the server a request in a run.
-    """
-    wait = f"wait_for_{noun}"
-    return mistake(
-        "not_forgotten",
-        lambda evidence: _gives_up_where_served(served(evidence), evidence.part(absent), role, asked),
-        f"Your client says “{{}}” if the {noun} is there, and does not say it if there is none: the condition is "
-        "the wrong way round.",
-        f"{wait} returns True when the {noun} is there. Write `if not your_{role}.{wait}(timeout_sec=5.0):` above what "
-        f"your client does without a {noun}.",
-        certain=True,
-    )
-
-
-def _gives_up_where_served(
-    served: Sequence[Part], absent: Part, role: str, asked: Callable[[Part], bool]
-) -> str:
-    """Return the line that reports a missing server in a run with one; empty if the other run has the same line."""
-    if not (served and absent.events) or NOT_AVAILABLE.lines(absent):
-        return ""
-    if any(asked(part) or not (part.ending and part.endpoints(role)) for part in served):
-        return ""
-    told = [NOT_AVAILABLE.lines(part) for part in served]
-    return told[0][-1] if all(told) else ""

@@ -5,10 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from autograder.kit.crashes import meant, on_purpose, what_and_where
-from autograder.kit.giving_up import gave_up, not_forgotten, patience_not_kept, silent_end
 from autograder.kit.goal_reports import (
     ABORTED,
-    ABSENT,
     LATE,
     MANY_REQUESTS,
     NO_GOAL,
@@ -16,14 +14,11 @@ from autograder.kit.goal_reports import (
     NOT_ENDED,
     REFUSED,
     REJECTED,
-    SERVED,
     WAS_ABORTED,
     aborted_as_seen,
     all_but,
     asked_for,
-    given_up,
     goals_as_seen,
-    had_server,
     left_at_once,
     refused_as_seen,
     reports_result,
@@ -39,41 +34,6 @@ if TYPE_CHECKING:
 
 
 # --- the server, and the goal -------------------------------------------------------------------------------------
-
-WAITS_FOR_NOBODY = mistake(
-    "waits_forever",
-    lambda evidence: given_up(evidence) if given_up(evidence).startswith("still waiting") else "",
-    "When there is no action server, your client is {}.",
-    "Give the wait a limit of a few seconds: `if not your_action_client.wait_for_server(timeout_sec=5.0):` say so and "
-    "stop.",
-    certain=True,
-)
-WAITS_FOREVER = mistake(
-    "waits_forever",
-    lambda evidence: (
-        evidence.part(LATE).endpoints("action_client")
-        and evidence.part(LATE).ending is None
-        and not asked_for(evidence.part(LATE))
-    ),
-    "The server was there, but your client never sent a goal and never ended.",
-    "Wait with a limit, `your_action_client.wait_for_server(timeout_sec=5.0)`, and send the goal as soon as it is "
-    "True. A loop that waits begins with `while not`.",
-)
-WAITS_THE_WRONG_WAY_ROUND = not_forgotten(
-    ABSENT,
-    "server",
-    "action_client",
-    lambda evidence: [part for part in evidence if part.name != ABSENT],
-    lambda part: bool(asked_for(part)),
-)
-GAVE_UP_TOO_EARLY = mistake(
-    "gave_up_too_early",
-    lambda evidence: gave_up(
-        [evidence.part(name) for name in SERVED], evidence.part(ABSENT), lambda part: bool(asked_for(part))
-    ),
-    "The server was there, or started a moment late, and your client had already given up.",
-    "Wait for it with wait_for_server and a few seconds of patience before you send the goal.",
-)
 
 
 def _order_never_filled(evidence: Evidence) -> bool:
@@ -283,12 +243,3 @@ def _returns_another_value(evidence: Evidence) -> Advice | None:
 
 
 NOT_RETURNED = Mistake("not_returned", _returns_another_value)
-SILENT_END = Mistake(
-    "silent_end",
-    lambda evidence: (
-        silent_end(evidence.part(ABSENT), had_server(evidence), "server")
-        if asked_for(evidence.part(LATE)) and given_up(evidence)
-        else None
-    ),
-)
-PATIENCE_NOT_KEPT = patience_not_kept(ABSENT)

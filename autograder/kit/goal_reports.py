@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import re2
 
+from autograder.kit.client_waits import Wait
 from autograder.kit.evidence import INTERRUPTED
-from autograder.kit.giving_up import NOT_AVAILABLE, looks_elsewhere, objection, remark, served_otherwise
+from autograder.kit.giving_up import remark
 from autograder.kit.model import Finding
 from autograder.kit.outcomes import Outcome
 from autograder.kit.texts_said import mentions, said_first_after
@@ -26,6 +27,8 @@ ABSENT = "there is no server"
 SERVED = (LATE, REFUSED, ABORTED)
 """The names of the parts in which the client should send a goal."""
 
+WAIT = Wait("server", "action_client", "goal", ABSENT, SERVED)
+"""The wait of a client that sends goals."""
 FEEDBACKS = 14
 """The number of feedback messages for the goal that succeeds: enough to detect a client that stops receiving them."""
 SUCCEEDED, CANCELED, WAS_ABORTED = Outcome("succeeded"), Outcome("canceled", "cancelled"), Outcome("aborted")
@@ -214,19 +217,6 @@ def aborted_as_seen(evidence: Evidence) -> str:
     return WAS_ABORTED.missing(part, all_but(evidence, ABORTED))
 
 
-def given_up(evidence: Evidence) -> str:
-    """Return in words what is wrong with how the client gives up when there is no server."""
-    return objection(evidence.part(ABSENT), had_server(evidence), "action_client")
-
-
-def had_server(evidence: Evidence) -> list[Part]:
-    """Return the runs in which the client had its server."""
-    absent = evidence.part(ABSENT)
-    served = [evidence.part(name) for name in SERVED]
-    elsewhere = looks_elsewhere(evidence, absent, "action_client")
-    return served_otherwise(served, absent, lambda part: bool(asked_for(part)), elsewhere)
-
-
 # --- criteria -----------------------------------------------------------------------------------------------
 
 
@@ -305,11 +295,7 @@ def waits_for_the_server(evidence: Evidence) -> Finding:
     return Finding(not wrong, "waits, then sends its goal", wrong or "it did")
 
 
-def ends_without_a_server(evidence: Evidence) -> Finding:
-    """Decide whether, without a server, the client reports that and ends, or repeatedly says that it waits."""
-    wrong = given_up(evidence)
-    return Finding(not wrong, f"says {NOT_AVAILABLE} and ends by itself", wrong or "it says so")
-
-
+ends_without_a_server = WAIT.gives_up
+"""Without a server the client ends by itself and reports it, or says repeatedly that it waits."""
 may_wait_on = remark(ABSENT)
 """Returns the card's remark, about setting limits, on a client that keeps waiting."""

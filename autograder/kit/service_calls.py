@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit import giving_up
+from autograder.kit.client_waits import Wait
 from autograder.kit.evidence import Evidence
 from autograder.kit.in_words import counted
 from autograder.kit.model import Finding
@@ -173,15 +174,14 @@ def reports_the_sum(evidence: Evidence) -> Finding:
     return Finding(False, wanted, f"“{wrong[-1]}”" if wrong else "nothing was said")
 
 
+WAIT = Wait("service", "client", "request", ABSENT, CALLED)
+"""The wait of a client that calls a service."""
+
+
 def gives_up_in_time(evidence: Evidence) -> Finding:
-    """Decide whether the client, without a service, gives up or keeps waiting as the rule for all clients requires."""
-    part = evidence.part(ABSENT)
-    if own_sum(part) is not None:
-        wrong = "named a sum that no service gave"
-    else:
-        wrong = giving_up.objection(part, served_otherwise(evidence), "client")
-    seen = "says again and again that it waits" if giving_up.goes_on_waiting(part) else "it did"
-    return Finding(not wrong, f"says {giving_up.NOT_AVAILABLE} and ends by itself", wrong or seen)
+    """Without a service the client gives up, or goes on, as the one rule for all clients requires."""
+    alone = own_sum(evidence.part(ABSENT)) is not None
+    return WAIT.gives_up(evidence, "named a sum that no service gave" if alone else "")
 
 
 def own_sum(part: Part) -> int | None:
@@ -192,15 +192,6 @@ def own_sum(part: Part) -> int | None:
     numbers = part.inputs.get("numbers", ())
     total = sum(numbers)
     return total if numbers and total not in numbers and mentions(part.said(), total) else None
-
-
-def served_otherwise(evidence: Evidence) -> list[Part]:
-    """Return the runs in which the client had its service and could not mean a missing one."""
-    absent = evidence.part(ABSENT)
-    elsewhere = giving_up.looks_elsewhere(evidence, absent, "client")
-    return giving_up.served_otherwise(
-        Client(evidence).served, absent, lambda part: bool(requests(part)), elsewhere
-    )
 
 
 no_limit = giving_up.remark(ABSENT)

@@ -7,21 +7,16 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit import giving_up
-from autograder.kit.model import Advice, Mistake, mistake
+from autograder.kit.model import mistake
 from autograder.kit.service_calls import (
-    ABSENT,
-    LATE,
     Client,
     answers,
     ended_before_its_answer,
-    gives_up_in_time,
     new_words,
     pair,
     reports,
     requests,
     returns_another,
-    served_otherwise,
 )
 from autograder.kit.texts_said import mentions
 
@@ -131,47 +126,3 @@ FIELDS_NEVER_FILLED = mistake(
     "A request has the fields a and b. A misspelt keyword in AddTwoInts.Request(...) is ignored silently.",
     certain=True,
 )
-WAITS_FOR_NOBODY = mistake(
-    "waits_forever",
-    lambda evidence: giving_up.waits_in_silence(evidence.part(ABSENT)),
-    f"When the service is not there, your client is still waiting after {giving_up.GIVE_UP_LIMIT:g} s.",
-    "Give the wait a limit of a few seconds: `if not your_client.wait_for_service(timeout_sec=5.0):` say so and stop. "
-    "A while loop needs a count.",
-    certain=True,
-)
-WAITS_FOREVER = mistake(
-    "waits_forever",
-    lambda evidence: any(
-        part.endpoints("client") and part.ending is None and not requests(part)
-        for part in Client(evidence).served
-    ),
-    "The service was there, but no call of your client reached it, and your client waits on. A call that is made "
-    "before the service is there is lost.",
-    "Wait with a limit, and call as soon as the service is there: "
-    "`if not your_client.wait_for_service(timeout_sec=5.0):` say so and stop. It returns True as soon as the service "
-    "is there, so a loop that waits begins with `while not`.",
-)
-WAITS_THE_WRONG_WAY_ROUND = giving_up.not_forgotten(
-    ABSENT, "service", "client", lambda evidence: Client(evidence).served, lambda part: bool(requests(part))
-)
-GAVE_UP_TOO_EARLY = mistake(
-    "gave_up_too_early",
-    lambda evidence: giving_up.gave_up(
-        Client(evidence).served, evidence.part(ABSENT), lambda part: bool(requests(part))
-    ),
-    "The service was there, or started a moment late, and your client had already given up (or it called before it had "
-    "discovered the service).",
-    "Wait for the service before the first call, with a few seconds of patience: wait_for_service(timeout_sec=5.0). "
-    "Without its parentheses it waits for nothing.",
-)
-PATIENCE_NOT_KEPT = giving_up.patience_not_kept(ABSENT)
-
-
-def _silent_end(evidence: Evidence) -> Advice | None:
-    part = evidence.part(ABSENT)
-    if gives_up_in_time(evidence).passed or not requests(evidence.part(LATE)):
-        return None
-    return giving_up.silent_end(part, served_otherwise(evidence), "service")
-
-
-SILENT_END = Mistake("silent_end", _silent_end, certain=True)

@@ -21,7 +21,7 @@ from autograder.kit.giving_up import (
     await_it,
     drawn_patience,
 )
-from autograder.kit.goal_reports import ABORTED, ABSENT, FEEDBACKS, LATE, REFUSED, unshown_feedback
+from autograder.kit.goal_reports import ABORTED, ABSENT, FEEDBACKS, LATE, REFUSED, WAIT, unshown_feedback
 from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import (
     ANSWERS_SOON,
@@ -259,7 +259,7 @@ _WHAT_IS_SAID = (
     goals.RESULT_NOT_REPORTED,
     goals.REFUSAL_NOT_REPORTED,
     goals.ABORT_NOT_REPORTED,
-    goals.SILENT_END,
+    WAIT.silent_end(),
 )
 """Criteria about what a client requests and reports. They are certain if it ended by itself in every part."""
 
@@ -287,7 +287,7 @@ class ActionClient(SeenAsItIs):
     def __init__(self, scenario: Callable[[Bench], None], *ladder: Mistake) -> None:
         self.scenario = scenario
         self.ladder = (
-            goals.WAITS_THE_WRONG_WAY_ROUND,
+            WAIT.the_wrong_way_round(),
             *map(_not_by_refusal, common.CRASHES),
             called_too_early("sent its goal", "wait_for_server"),
             common.endpoint_name("action_client"),
@@ -307,12 +307,12 @@ def sends_goals() -> ActionClient:
         goals.WRONG_ORDER,
         common.NOT_BEGUN,
         common.USAGE_MESSAGE,
-        goals.GAVE_UP_TOO_EARLY,
+        WAIT.too_short(),
         goals.ENDED_TOO_EARLY,
         goals.RESULT_REPEATED,
-        goals.WAITS_FOR_NOBODY,
-        goals.PATIENCE_NOT_KEPT,
-        goals.WAITS_FOREVER,
+        WAIT.for_nobody(),
+        WAIT.patience_not_kept(),
+        WAIT.for_ever(),
         *(replace(hang, certain=True) for hang in HANGS),
         common.AWAITS_IN_VAIN,
         common.went_deaf("action_client"),

@@ -36,6 +36,7 @@ from autograder.kit.service_calls import (
     ABSENT,
     HANGS_AFTER,
     LATE,
+    WAIT,
     Client,
     answers,
     braces_left,
@@ -326,7 +327,7 @@ class Calls:
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most telling first."""
         return (
-            service_client_mistakes.WAITS_THE_WRONG_WAY_ROUND,
+            WAIT.the_wrong_way_round(),
             *common.CRASHES,
             called_too_early("called the service", "wait_for_service"),
             common.endpoint_name("client"),
@@ -334,8 +335,8 @@ class Calls:
             *OTHER_SLIPS,
             common.NOT_BEGUN,
             common.USAGE_MESSAGE,
-            service_client_mistakes.WAITS_FOR_NOBODY,
-            service_client_mistakes.WAITS_FOREVER,
+            WAIT.for_nobody(),
+            WAIT.for_ever(),
             *(replace(hang, certain=True) for hang in (*HANGS, common.AWAITS_IN_VAIN)),
             service_client_mistakes.FIELDS_NEVER_FILLED,
             mistake(
@@ -356,7 +357,7 @@ class Calls:
             ),
             service_client_mistakes.ZERO_TAKEN_FOR_FAILURE,
             service_client_mistakes.NOT_RETURNED,
-            service_client_mistakes.GAVE_UP_TOO_EARLY,
+            WAIT.too_short(),
             service_client_mistakes.ANSWER_NOT_AWAITED,
             OWN_LATE,
             mistake(
@@ -367,8 +368,8 @@ class Calls:
                 "indented like it, are never reached. What you add up yourself is not the answer of the server.",
             ),
             *self._about_the_sum(),
-            service_client_mistakes.SILENT_END,
-            service_client_mistakes.PATIENCE_NOT_KEPT,
+            WAIT.silent_end(certain=True),
+            WAIT.patience_not_kept(),
             *common.OTHER_CRASHES,
             *common.NOTHING_THERE,
         )
