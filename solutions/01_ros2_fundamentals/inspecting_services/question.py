@@ -7,7 +7,6 @@ some have a type of the same name in another package, and in one run no service 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import re2
@@ -22,7 +21,7 @@ from autograder.kit.model import Advice, Bench, Finding, Pace
 from autograder.kit.recipes.own_scenario import OwnLadder
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
     from random import Random
 
     from autograder.kit.evidence import Evidence, Part
@@ -66,7 +65,6 @@ PATIENCE_ELSEWHERE = {Pace.FAST: (0.4, 0.48), Pace.REAL_TIME: PATIENCES}
 No usual constant from 2 seconds on lies in one of these.
 """
 
-_TYPE_OR_NUMBER = re2.compile(r"[\pL_][\pL\pN_]*/srv/[\pL\pN_]+|\d+")
 _WORDS = ("kitchen", "garage", "tower", "harbour", "meadow", "attic", "bridge", "cellar", "garden", "forge")
 
 
@@ -88,12 +86,9 @@ def scenario(bench: Bench) -> None:
 
 
 def named_services(random: Random, another: str, *, hidden: bool) -> tuple[str, dict[str, str]]:
-    """A name for the service that is asked for, and others with their types: only its type tells it from them.
+    """Return a name for the service that is asked for, and others with their types: only its type tells it from them.
 
-    Args:
-        random: Draws them.
-        another: A type that is not asked for.
-        hidden: The right name ends as the notebook's own list leaves out, where only the type counts.
+    A ``hidden`` name ends as the notebook's own list leaves out, although only the type counts.
     """
     # The graph tells of services in the order of their names: the right one is neither the first nor the last.
     first, *between, last = sorted(_name(random) for _ in range(random.choice(NAMES)))
@@ -132,12 +127,9 @@ def served(bench: Bench, name: str, service: Mapping[str, str], others: Mapping[
 
 
 def looks_for(bench: Bench, patience: float, *, lateness: float) -> None:
-    """Start the subject and let it find the service.
+    """Start the subject, and let it find the service within its patience.
 
-    Args:
-        bench: The bench of the scenario.
-        patience: Seconds that a function is told to look.
-        lateness: Seconds after the subject's node at which those come that come late; 0 where none does.
+    Some services come so many seconds after the subject's node, if ``lateness`` is not 0.
     """
     inputs = bench.seen().inputs
     services = {**inputs["others"], inputs["right"]: inputs["type"]}
@@ -171,57 +163,23 @@ def _number(random: Random) -> str:
 # --- questions to the evidence -----------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class Naming:
-    """A line that names services.
-
-    Attributes:
-        line: The line.
-        names: These services.
-        shape: The line without names, types and numbers, so that it can be compared with other lines.
-    """
-
-    line: str
-    names: tuple[str, ...]
-    shape: str
-
-
-def namings(part: Part) -> list[Naming]:
-    """The lines that name any service of this run, in order."""
-    services = [name for name in (part.inputs.get("right"), *part.inputs.get("others", {})) if name]
-    found = ((line, tuple(name for name in services if _mentions(line, name))) for line in part.said())
-    return [Naming(line, names, _shape(line, names)) for line, names in found if names]
-
-
-def _shape(line: str, names: Sequence[str]) -> str:
-    for name in names:
-        line = line.replace(name.lstrip("/"), "#")
-    return " ".join(_TYPE_OR_NUMBER.sub("#", line).split())
-
-
-def answers(part: Part) -> list[Naming]:
-    """The lines that tell of one service. A line with several, or several lines in the same words, are a listing."""
-    single = {(naming.shape, naming.names) for naming in namings(part) if len(naming.names) == 1}
-    shapes = [shape for shape, _ in single]
-    return [n for n in namings(part) if (n.shape, n.names) in single and shapes.count(n.shape) == 1]
-
-
 def named(part: Part) -> list[str]:
-    """The services that it names as its answer: the last one that it tells of, or the end of what it lists."""
-    everything = namings(part)
-    told = answers(part) or [naming for naming in everything if len(naming.names) == 1] or everything
-    return list(told[-1].names) if told else []
+    """The services that it names as its answer: the last one that it names alone, or the end of what it lists."""
+    services = [name for name in (part.inputs.get("right"), *part.inputs.get("others", {})) if name]
+    found = [[name for name in services if _mentions(line, name)] for line in reversed(part.said())]
+    alone = [names for names in found if len(names) == 1]
+    return next(iter(alone or filter(None, found)), [])
 
 
 def named_for_none(evidence: Evidence) -> list[str]:
-    """The service that it names at the end where none has the type, in the words in which it names what it found.
+    """The service that it names at the end where none has the type.
 
     A subject that reports that there is none may name what exists instead.
     """
     part = evidence.part(ABSENT)
-    usual = {naming.shape for name in (LATE, OTHER) for naming in answers(evidence.part(name))[-1:]}
-    last = answers(part)[-1:]
-    return [n.names[0] for n in last if n.shape in usual and n.line == part.said()[-1]]
+    told = named(part)
+    is_last = len(told) == 1 and _mentions(part.said()[-1], told[0])
+    return told if is_last and not giving_up.NOT_AVAILABLE.lines(part) else []
 
 
 def _mentions(line: str, service: str) -> bool:
@@ -252,20 +210,14 @@ def gave_up_at_once(part: Part) -> bool:
     return seen is None or part.ending.t < seen.t + IMPATIENT
 
 
-def gave_up_with_nothing(part: Part) -> bool:
-    """True if the subject ended without any service named."""
-    return part.ending is not None and bool(part.events) and not named(part)
-
-
 def _found(part: Part) -> Finding:
     expected = "the one service of the type that was asked for"
-    if names_it(part):
-        return Finding(
-            returns_it(part),
-            expected,
-            part.inputs["right"] if returns_it(part) else "named it, and did not return it",
-        )
-    return Finding(False, expected, ", ".join(named(part)) or _how_it_went(part))
+    if not names_it(part):
+        return Finding(False, expected, ", ".join(named(part)) or _how_it_went(part))
+    returned = returns_it(part)
+    return Finding(
+        returned, expected, part.inputs["right"] if returned else "named it, and did not return it"
+    )
 
 
 def _how_it_went(part: Part) -> str:
@@ -367,7 +319,7 @@ def wrong_service(seen: Evidence, _: Evidence) -> Advice | None:
 question.knows(
     "name_filtered",
     lambda seen, _: (
-        names_it(seen.part(LATE)) and gave_up_with_nothing(other := seen.part(OTHER)) and other.inputs
+        names_it(seen.part(LATE)) and (other := seen.part(OTHER)).ending and not named(other) and other.inputs
     ),
     "Your code finds a service that comes late, but not {0[right]}, which is of the type {0[type]} and was there from "
     "the start.",
