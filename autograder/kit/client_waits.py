@@ -40,14 +40,14 @@ class Wait:
         return [evidence.part(name) for name in self.served]
 
     def asked(self, part: Part) -> bool:
-        """True if the client asked its server for something in a run."""
+        """Return True if the client asked its server for something in a run."""
         return part.first(self.asks) is not None
 
     def had_server(self, evidence: Evidence) -> list[Part]:
-        """Return the runs in which the client had its server, so that its words there do not report a missing one.
+        """Return the runs in which the client had its server, so that its words there cannot mean that one is missing.
 
-        In the first run the server comes late, so a client may once report it missing there, unless it never calls
-        there.
+        In the first run the server comes late, so a client may report it missing there. That run is therefore left
+        out, unless the client never sends a request in it.
         """
         late, *others = self.runs(evidence)
         found = [part for part in others if self.asked(part)]
@@ -57,10 +57,10 @@ class Wait:
         return [*found, late] if without else found
 
     def _looks_elsewhere(self, evidence: Evidence) -> bool:
-        """True if the client was seen to look for a server other than the task's.
+        """Return True if the client was seen to look for a server with another name than the task's.
 
-        A client that ends, with or without a server, must have looked for another name. One that keeps waiting may
-        have used the task's name with another type.
+        If the client ended both with and without a server, it must have looked for another name. If it kept waiting,
+        it may have used the right name with another type.
         """
         name, kind = evidence.reference.only(self.role)
         looked_for = [found for part in evidence for found in part.endpoints(self.role).items()]
@@ -72,7 +72,7 @@ class Wait:
         return giving_up.objection(evidence.part(self.absent), self.had_server(evidence), self.role)
 
     def gives_up(self, evidence: Evidence, wrong: str = "") -> Finding:
-        """Judge that without a server it ends by itself and reports that, or says repeatedly that it waits.
+        """Decide whether, without a server, it ends by itself and reports that, or says repeatedly that it waits.
 
         Args:
             evidence: All runs of the client.
@@ -90,7 +90,7 @@ class Wait:
         return f"`if not your_{self.role}.wait_for_{self.noun}(timeout_sec=5.0):`"
 
     def for_nobody(self) -> Mistake:
-        """Without a server, the client waits in silence for ever."""
+        """Make the mistake of a client that, without a server, waits in silence for ever."""
         return mistake(
             "waits_forever",
             lambda evidence: self.fault(evidence).startswith("still waiting"),
@@ -100,7 +100,7 @@ class Wait:
         )
 
     def for_ever(self) -> Mistake:
-        """With a server, the client waits for ever and asks for nothing."""
+        """Make the mistake of a client that, with a server, waits for ever and asks for nothing."""
         return mistake(
             "waits_forever",
             lambda evidence: any(
@@ -114,7 +114,7 @@ class Wait:
         )
 
     def the_wrong_way_round(self) -> Mistake:
-        """The client gives up if its server is available, and not if it is absent: its condition lacks a ``not``."""
+        """Make the mistake of a client whose condition lacks a ``not``: it gives up if its server exists, else not."""
         return mistake(
             "not_forgotten",
             self._gives_up_where_served,
@@ -126,7 +126,7 @@ class Wait:
         )
 
     def _gives_up_where_served(self, evidence: Evidence) -> str:
-        """Return the line that reports a missing server in a run with a server, if no run without one has it."""
+        """Return the line that reports a missing server in a run with one; empty if the other run has the same line."""
         absent, served = evidence.part(self.absent), self.runs(evidence)
         if not absent.events or NOT_AVAILABLE.lines(absent):
             return ""
@@ -136,7 +136,7 @@ class Wait:
         return told[0][-1] if all(told) else ""
 
     def too_short(self) -> Mistake:
-        """The client gives up before its server is there."""
+        """Make the mistake of a client that gives up before its server exists."""
         return mistake(
             "gave_up_too_early",
             lambda evidence: giving_up.gave_up(self.runs(evidence), evidence.part(self.absent), self.asked),
@@ -147,7 +147,7 @@ class Wait:
         )
 
     def patience_not_kept(self) -> Mistake:
-        """Without a server, a function waits by a limit of its own."""
+        """Make the mistake of a function that, without a server, waits by a limit of its own."""
         return mistake(
             "patience_not_kept",
             lambda evidence: (
@@ -162,7 +162,7 @@ class Wait:
         )
 
     def silent_end(self, *, certain: bool = False) -> Mistake:
-        """Without a server the client ends, and does not report that; with one it asks for something."""
+        """Make the mistake of a client that asks its server for something, and does not report a missing one."""
 
         def recognise(evidence: Evidence) -> Advice | None:
             if not self.asked(evidence.part(self.served[0])) or not self.fault(evidence):

@@ -239,7 +239,7 @@ def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool])
 
 
 def looked_for_nobody(parts: Iterable[Part]) -> bool:
-    """True if the subject ended well in each run, and was never seen as a node or to wait.
+    """Return True if the subject ended well in each run, but was never seen to have a node or to wait.
 
     A notebook's function may end before the graph shows its node; then it is unknown whether it looked for a server.
     """

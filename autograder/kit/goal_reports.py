@@ -296,6 +296,6 @@ def waits_for_the_server(evidence: Evidence) -> Finding:
 
 
 ends_without_a_server = WAIT.gives_up
-"""Without a server the client ends by itself and reports it, or says repeatedly that it waits."""
+"""Decide whether, without a server, the client reports that and ends, or repeatedly says that it waits."""
 may_wait_on = remark(ABSENT)
 """Returns the card's remark, about setting limits, on a client that keeps waiting."""

@@ -63,7 +63,7 @@ def package_of(report: WorkspaceReport | None, name: str) -> PackageReport | Non
 
 
 def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
-    """The package exists, but its setup.py does not name the program, or names something that does not exist."""
+    """Return advice if setup.py does not declare the task's program, or names a function that does not exist."""
     report, again = report_of(evidence.main), _again(evidence)
     if report is not None and report.built and report.missing == entry.program:
         own = package_of(report, entry.package)
@@ -76,19 +76,21 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
             f"In setup.py, the list 'console_scripts' has to contain {entry.line if named else FORM}. setup.cfg "
             f"beside it has to put programs into $base/lib/{entry.package}. {again}",
         )
-    # Everything below the start of a program is Python's own code: no file of the student has imported anything yet.
+    # A traceback that shows only Python's own code below the start of a program: it failed before it imported any
+    # file of the student's.
     started = (part.traceback for part in evidence if _STARTS.search(part.traceback))
     tracebacks = "\n".join(text for text in started if _STARTS.search(own_line(text) or text))
     found = _LED_NOWHERE.search(tracebacks)
     if found is None or found["module"] == entry.package:
         return None
+    name = found["module"] or found["name"]
     what = (
-        f"the module {found['module']}"
-        if found["module"]
-        else f"the function {found['name'] or 'of no name'}"
+        f"the {'module' if found['module'] else 'function'} {name}"
+        if name
+        else "a module, and to no function in it"
     )
     return Advice(
-        f"The entry point in setup.py leads to {what}, which is not there.",
+        f"The entry point in setup.py leads to {what}{', which is not there' * bool(name)}.",
         f"Write {entry.line}, with a comma after it: package, dot, the file without .py, a colon, and the function. "
         f"{again}",
         tracebacks,
@@ -96,7 +98,7 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
 
 
 _STARTS = re2.compile(r"next\(matches\)\.load\(\)|load_entry_point\(")
-"""The lines that import the module and call the function, in the file that a build makes for an entry point."""
+"""The lines that import the module and call the function, in the script that a build makes for an entry point."""
 _LED_NOWHERE = re2.compile(
     r"(?m)^ModuleNotFoundError: No module named '(?P<module>[\w.]+)'"
     r"|module '[\w.]+' has no attribute '(?P<name>\w+)'"

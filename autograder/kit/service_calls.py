@@ -179,7 +179,7 @@ WAIT = Wait("service", "client", "request", ABSENT, CALLED)
 
 
 def gives_up_in_time(evidence: Evidence) -> Finding:
-    """Without a service the client gives up, or goes on, as the one rule for all clients requires."""
+    """Decide whether the client, without a service, gives up or keeps waiting as the rule for all clients requires."""
     alone = own_sum(evidence.part(ABSENT)) is not None
     return WAIT.gives_up(evidence, "named a sum that no service gave" if alone else "")
 
