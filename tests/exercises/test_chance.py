@@ -17,6 +17,7 @@ from lab_1_4 import client as action_client
 
 from autograder.judge.verdicts import reference
 from autograder.kit import common_mistakes as common
+from autograder.kit import unfinished
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.goal_mistakes import ENDED_TOO_EARLY, RESULT_NOT_REQUESTED
 from autograder.kit.goal_reports import LATE, left_at_once
@@ -176,7 +177,7 @@ def _told(seen: list[Event]) -> str:
     """What is told of a program that has come to its end."""
     ended = Event(0.4, "subject", "exited", {"code": 0})
     evidence = Evidence([Part("serving", {}, [*seen, ended])], Reference("lab_1_3.server", {}))
-    return next(mistake.key for mistake in common.NOTHING_THERE if mistake.recognise(evidence))
+    return next(mistake.key for mistake in unfinished.NOTHING_THERE if mistake.recognise(evidence))
 
 
 @pytest.mark.parametrize("heard", [[], [_message(1)]])

@@ -6,8 +6,8 @@ import pytest
 
 from autograder import exercises
 from autograder.judge.verdicts import reference, trial
-from autograder.kit.common_mistakes import NOTHING_THERE
 from autograder.kit.evidence import Event, Evidence, Part
+from autograder.kit.unfinished import NOTHING_THERE
 from autograder.kit.workspace_report import WorkspaceReport, as_line
 
 

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.kit import common_mistakes as common
 from autograder.kit import goal_mistakes as goals
-from autograder.kit.crashes import OTHER_SLIPS
+from autograder.kit import unfinished
+from autograder.kit.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
 from autograder.kit.draft import SeenAsItIs
 from autograder.kit.giving_up import (
     PATIENCE,
@@ -288,15 +289,15 @@ class ActionClient(SeenAsItIs):
         self.scenario = scenario
         self.ladder = (
             WAIT.the_wrong_way_round(),
-            *map(_not_by_refusal, common.CRASHES),
+            *map(_not_by_refusal, CRASHES),
             called_too_early("sent its goal", "wait_for_server"),
             common.endpoint_name("action_client"),
             common.message_type("action_client"),
             *map(_not_by_refusal, OTHER_SLIPS),
             goals.ORDER_NEVER_FILLED,
             *ladder,
-            *common.OTHER_CRASHES,
-            *common.NOTHING_THERE,
+            *OTHER_CRASHES,
+            *unfinished.NOTHING_THERE,
         )
 
 
@@ -305,8 +306,8 @@ def sends_goals() -> ActionClient:
     return ActionClient(
         scenario,
         goals.WRONG_ORDER,
-        common.NOT_BEGUN,
-        common.USAGE_MESSAGE,
+        unfinished.NOT_BEGUN,
+        unfinished.USAGE_MESSAGE,
         WAIT.too_short(),
         goals.ENDED_TOO_EARLY,
         goals.RESULT_REPEATED,

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit import common_mistakes as common
-from autograder.kit.crashes import raised, traceback_of
+from autograder.kit import unfinished
+from autograder.kit.crashes import CRASHES, OTHER_CRASHES, raised, traceback_of
 from autograder.kit.draft import OWN, OWN_LATE, SeenAsItIs
 from autograder.kit.goals_seen import ABORTED, CANCELED, all_goals, status_text
-from autograder.kit.hangs import HANGS
 from autograder.kit.model import Advice, Mistake
 
 if TYPE_CHECKING:
@@ -60,21 +60,19 @@ class SendsGoals(SeenAsItIs):
             Mistake("result_missing", _result_missing, certain=True),
             # These are checked before all crashes, because a goal that should have been refused may cause a crash.
             OWN,
-            *common.CRASHES,
+            *CRASHES,
             common.endpoint_name("action_server"),
             common.message_type("action_server"),
             Mistake("exception_in_callback", _exception_in_execute, certain=True),
-            *common.OTHER_CRASHES,
+            *OTHER_CRASHES,
             Mistake("goal_not_succeeded", self._goal_not_succeeded, certain=True),
             Mistake("cancel_not_accepted", self._cancel_refused_on_its_way, certain=True),
             Mistake("cancel_not_accepted", self._cancel_refused),
             Mistake("cancel_not_accepted", self._cancel_not_read),
             Mistake("cancel_ignored", self._cancel_ignored),
             OWN_LATE,
-            *HANGS,
-            common.never_spun("action_server"),
-            common.went_deaf("action_server"),
-            *common.NOTHING_THERE,
+            *common.spinning("action_server"),
+            *unfinished.NOTHING_THERE,
         )
 
     def _goal_not_succeeded(self, evidence: Evidence) -> Advice | None:

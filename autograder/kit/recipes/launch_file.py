@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit import common_mistakes as common
 from autograder.kit import workspace_mistakes as workspace
+from autograder.kit.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.evidence import Evidence
 from autograder.kit.launch_report import Process, placed_remappings, processes, remappings
@@ -273,10 +273,10 @@ class LaunchFile:
         return (
             *workspace.BUILD,
             OWN,
-            *common.CRASHES,
+            *CRASHES,
             Mistake("syntax_error", _syntax_error, certain=True),
             Mistake("launch_error", self._launch_error, certain=True),
-            *common.OTHER_CRASHES,
+            *OTHER_CRASHES,
             OWN_LATE,
         )
 

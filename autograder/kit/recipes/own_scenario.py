@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from autograder.kit import common_mistakes as common
+from autograder.kit import unfinished
+from autograder.kit.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.draft import OWN, OWN_LATE, SeenAsItIs
 from autograder.kit.evidence import Event
 from autograder.kit.hangs import HANGS
@@ -121,19 +123,19 @@ class OwnScenario:
         """The common mistakes, most specific first."""
         on_topics = [role for role in self.roles if role in ("publisher", "subscription")]
         return (
-            *common.CRASHES,
-            common.NEVER_CONSTRUCTED,
+            *CRASHES,
+            unfinished.NEVER_CONSTRUCTED,
             *map(common.endpoint_name, self.roles),
             *map(common.message_type, self.roles),
             OWN,
             *map(common.qos_mismatch, on_topics),
-            *common.OTHER_CRASHES,
+            *OTHER_CRASHES,
             *HANGS,
             common.AWAITS_IN_VAIN,
             *map(common.never_spun, self.roles),
             *map(common.went_deaf, self.roles),
             OWN_LATE,
-            *common.NOTHING_THERE,
+            *unfinished.NOTHING_THERE,
         )
 
 

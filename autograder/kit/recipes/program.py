@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit import common_mistakes as common
 from autograder.kit import package_programs as programs
+from autograder.kit import unfinished
 from autograder.kit import workspace_mistakes as workspace
+from autograder.kit.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.in_words import first_difference
 from autograder.kit.model import Bench, Finding, Mistake, Pace
@@ -174,8 +175,8 @@ class Program:
             Mistake("entry_point", lambda e: programs.entry_point(e, entry), certain=True),
             Mistake("entry_point", lambda e: programs.no_executable(e, entry), certain=True),
             OWN,
-            *common.CRASHES,
-            *common.OTHER_CRASHES,
+            *CRASHES,
+            *OTHER_CRASHES,
             OWN_LATE,
-            *common.NOTHING_THERE[:3],
+            *unfinished.NOTHING_THERE[:3],
         )

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import re2
 
-from autograder.kit import common_mistakes as common
 from autograder.kit import package_programs as package
+from autograder.kit import unfinished
 from autograder.kit import workspace_mistakes as workspace
 from autograder.kit.crashes import traceback_of
 from autograder.kit.evidence import INTERRUPTED, Evidence, Part
@@ -273,7 +273,7 @@ class Programs:
     def _of_the_programs(self) -> Iterable[Mistake]:
         yield Mistake("entry_point", self._another_program)
         for program in self._programs:
-            late = () if program.ends_by_itself else (Mistake("ended_too_early", common.ended_too_early),)
+            late = () if program.ends_by_itself else (Mistake("ended_too_early", unfinished.ended_too_early),)
             copied = Mistake("crashed", partial(_class_not_in_its_file, program), certain=True)
             wrong = _Wrong(program)
             for mistake in (copied, *program.node.mistakes, *late):

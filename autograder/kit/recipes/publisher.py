@@ -7,8 +7,8 @@ from statistics import median
 from typing import TYPE_CHECKING
 
 from autograder.kit import common_mistakes as common
+from autograder.kit import unfinished
 from autograder.kit.draft import OWN, OWN_LATE
-from autograder.kit.hangs import HANGS
 from autograder.kit.in_words import counted
 from autograder.kit.model import STEP, Advice, Bench, Finding, Mistake, Pace
 from autograder.kit.published_texts import Publisher
@@ -238,26 +238,20 @@ class Hears:
         early += [("wrong_text", of.wrong_text)] * texts
         late = [("counter_start", of.start), ("counter_step", of.step)] * numbers
         return (
-            *common.CRASHES,
-            common.NEVER_CONSTRUCTED,
-            common.endpoint_name("publisher"),
-            common.message_type("publisher"),
-            common.qos_mismatch("publisher"),
-            *common.OTHER_CRASHES,
+            unfinished.NEVER_CONSTRUCTED,
+            *common.connecting("publisher"),
             common.everything_twice("publisher"),
             Mistake("published_before_discovery", self._published_before_discovery),
             OWN,
             *(self._mistake(*one, certain=True) for one in early),
             Mistake("never_published", self._never_published),
-            *HANGS,
-            common.never_spun("publisher"),
-            common.went_deaf("publisher"),
+            *common.spinning("publisher"),
             OWN_LATE,
             *(self._mistake(*one) for one in late),
-            Mistake("ended_too_early", common.ended_too_early),
+            Mistake("ended_too_early", unfinished.ended_too_early),
             Mistake("wrong_rate", self._wrong_rate),
             Mistake("stopped_publishing", self._stopped_publishing),
-            *common.NOTHING_THERE,
+            *unfinished.NOTHING_THERE,
         )
 
     def _mistake(

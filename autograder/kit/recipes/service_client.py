@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Any
 import re2
 
 from autograder.kit import common_mistakes as common
-from autograder.kit import giving_up, service_client_mistakes
-from autograder.kit.crashes import OTHER_SLIPS
+from autograder.kit import giving_up, service_client_mistakes, unfinished
+from autograder.kit.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.giving_up import drawn_patience
 from autograder.kit.hangs import HANGS
@@ -328,13 +328,13 @@ class Calls:
         """The common mistakes, most telling first."""
         return (
             WAIT.the_wrong_way_round(),
-            *common.CRASHES,
+            *CRASHES,
             called_too_early("called the service", "wait_for_service"),
             common.endpoint_name("client"),
             common.message_type("client"),
             *OTHER_SLIPS,
-            common.NOT_BEGUN,
-            common.USAGE_MESSAGE,
+            unfinished.NOT_BEGUN,
+            unfinished.USAGE_MESSAGE,
             WAIT.for_nobody(),
             WAIT.for_ever(),
             *(replace(hang, certain=True) for hang in (*HANGS, common.AWAITS_IN_VAIN)),
@@ -370,6 +370,6 @@ class Calls:
             *self._about_the_sum(),
             WAIT.silent_end(certain=True),
             WAIT.patience_not_kept(),
-            *common.OTHER_CRASHES,
-            *common.NOTHING_THERE,
+            *OTHER_CRASHES,
+            *unfinished.NOTHING_THERE,
         )

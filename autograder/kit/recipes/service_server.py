@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit import common_mistakes as common
+from autograder.kit import unfinished
 from autograder.kit.draft import OWN, OWN_LATE
-from autograder.kit.hangs import HANGS
 from autograder.kit.model import Bench, Finding, Mistake, Pace
 
 if TYPE_CHECKING:
@@ -178,13 +178,8 @@ class Asks:
             ),
             # This comes before any crash: a wrong answer may not fit into its field, and then rclpy's server crashes.
             OWN,
-            *common.CRASHES,
-            common.endpoint_name("service"),
-            common.message_type("service"),
-            *common.OTHER_CRASHES,
-            *HANGS,
-            common.never_spun("service"),
-            common.went_deaf("service"),
+            *common.connecting("service"),
+            *common.spinning("service"),
             OWN_LATE,
-            *common.NOTHING_THERE,
+            *unfinished.NOTHING_THERE,
         )

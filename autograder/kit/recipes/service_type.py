@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit import common_mistakes as common
 from autograder.kit import workspace_mistakes as workspace
+from autograder.kit.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.draft import OWN, SeenAsItIs
 from autograder.kit.model import Advice, Bench, Finding, Mistake
 from autograder.kit.runners import ServesInterface
@@ -223,8 +223,8 @@ class ServiceType(SeenAsItIs):
             Mistake("member_of_group", self._member_of_group, certain=True),
             Mistake("interface_not_listed", self._interface_not_listed, certain=True),
             *workspace.BUILD,
-            *common.CRASHES,
-            *common.OTHER_CRASHES,
+            *CRASHES,
+            *OTHER_CRASHES,
             Mistake("dependency_missing", self._dependency_missing, certain=True),
         )
 

@@ -6,8 +6,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from autograder.kit import common_mistakes as common
+from autograder.kit import unfinished
 from autograder.kit.draft import OWN, OWN_LATE
-from autograder.kit.hangs import HANGS
 from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace
 from autograder.kit.recipes.sent_texts import AT_PACE, SINGLY, TRIES, random_texts
 from autograder.kit.texts_said import changed, invented, is_said, repeated, retold
@@ -118,25 +118,19 @@ class Speaks:
     def ladder(self) -> tuple[Mistake, ...]:
         """The common mistakes, most telling first."""
         return (
-            *common.CRASHES,
-            common.NEVER_CONSTRUCTED,
-            common.endpoint_name("subscription"),
-            common.message_type("subscription"),
-            common.qos_mismatch("subscription"),
-            *common.OTHER_CRASHES,
+            unfinished.NEVER_CONSTRUCTED,
+            *common.connecting("subscription"),
             OWN,
-            Mistake("ended_too_early", common.ended_too_early),
+            Mistake("ended_too_early", unfinished.ended_too_early),
             Mistake("not_logged", _subscribes_again, certain=True),
-            *HANGS,
-            common.never_spun("subscription"),
-            common.went_deaf("subscription"),
+            *common.spinning("subscription"),
             OWN_LATE,
             Mistake("wrong_text", _changed_text),
             Mistake("invented_text", _invented_text, certain=True),
             Mistake("callback_too_slow", self._too_slow),
             Mistake("not_logged", _not_logged),
             Mistake("everything_twice", _said_again, certain=True),
-            *common.NOTHING_THERE,
+            *unfinished.NOTHING_THERE,
         )
 
     def _too_slow(self, evidence: Evidence) -> Advice | None:

@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit import common_mistakes as common
-from autograder.kit import giving_up
-from autograder.kit.crashes import OTHER_SLIPS, meant
+from autograder.kit import giving_up, unfinished
+from autograder.kit.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS, meant
 from autograder.kit.draft import OWN, OWN_LATE, Draft
 from autograder.kit.giving_up import LATENESS, PATIENCES
 from autograder.kit.lateness import SOON, was_patient
@@ -236,13 +235,13 @@ question = Draft(
     "Find the service of a given type on the graph, and name it.",
     OwnLadder(
         scenario,
-        *common.CRASHES,
+        *CRASHES,
         OWN,
         *OTHER_SLIPS,
-        common.USAGE_MESSAGE,
+        unfinished.USAGE_MESSAGE,
         OWN_LATE,
-        *common.OTHER_CRASHES,
-        *common.NOTHING_THERE,
+        *OTHER_CRASHES,
+        *unfinished.NOTHING_THERE,
     ),
 )
 question.asks("late", 4, "Finds a service that comes late", lambda evidence: _found(evidence.part(LATE)))
@@ -287,7 +286,7 @@ question.knows(
     "not_written",
     not_written,
     "Your function comes back at once and names no service.",
-    common.STEP_MISSING,
+    unfinished.STEP_MISSING,
     certain=True,
     before="syntax_error",
 )

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import re2
 
-from autograder.kit import common_mistakes as common
+from autograder.kit.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.draft import OWN, Draft
 from autograder.kit.evidence import Evidence
 from autograder.kit.model import Advice, Bench, Finding, Pace
@@ -236,7 +236,7 @@ mismatched = Draft(
     "inspecting_topics.mismatch",
     "Inspecting topics · Why they do not meet",
     "Find out which topic and type each of two nodes uses.",
-    OwnLadder(scenario, *common.CRASHES, *common.OTHER_CRASHES, OWN),
+    OwnLadder(scenario, *CRASHES, *OTHER_CRASHES, OWN),
 )
 mismatched.asks("topic_published", 2.5, "Finds the talker's topic", _finds("topic_published"))
 mismatched.asks("topic_subscribed", 2.5, "Finds the listener's topic", _finds("topic_subscribed"))

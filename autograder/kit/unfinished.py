@@ -1,0 +1,204 @@
+"""Mistakes of a subject that is not written yet, did not begin, or ended before its work was done."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import re2
+
+from autograder.kit.common_mistakes import WORDS, worked
+from autograder.kit.crashes import traceback_of
+from autograder.kit.giving_up import ended_at_once
+from autograder.kit.model import Advice, Mistake, mistake
+from autograder.kit.workspace_report import report_of
+
+if TYPE_CHECKING:
+    from autograder.kit.evidence import Evidence, Part
+
+STEP_MISSING = (
+    "Find the TODO in your code and write that step. In a notebook, hints below the cell open one at a time."
+)
+"""The advice if a step of the task is not written yet."""
+_BEGIN_AT_TODO = "If your code still has its TODO, begin there."
+
+
+def _what_main_does(evidence: Evidence) -> str:
+    """Return what main() has to do, for a server, a client or both, as the task asks."""
+    is_client = evidence.reference.interface.keys() & {"client", "action_client"}
+    calls = " A client calls, instead of the spin, its function that sends the request or the goal and waits for an answer."
+    spins = "In main(), call rclpy.init(), make your node and spin it: rclpy.spin(your_node)."
+    return spins + calls * bool(is_client)
+
+
+def _main_guard(evidence: Evidence) -> Advice | None:
+    ending = evidence.main.ending
+    if ending is None or ending.name != "exited" or ending.data.get("code") != 0 or evidence.main.said():
+        return None
+    if evidence.main.had_node:
+        return None
+    at_once = "The program ended at once, without a word and without a node:"
+    if report_of(evidence.main) is not None:  # the program starts by its entry point, which calls main()
+        return Advice(f"{at_once} its main() makes none.", f"{_what_main_does(evidence)} {_BEGIN_AT_TODO}")
+    return Advice(
+        f"{at_once} main() makes none, or nothing calls main().",
+        f"{_what_main_does(evidence)} Python calls main() only if the file ends with "
+        "`if __name__ == '__main__':` (two underscores on each side) and, indented below it, `main()`; `ros2 run` "
+        "calls it in any case. "
+        f"{_BEGIN_AT_TODO}",
+    )
+
+
+_USAGE = re2.compile(r"(?i)\b(?:usage|uso|utilisation|aufruf|benutzung|verwendung|gebruik)\s*:")
+
+
+def _usage_message(evidence: Evidence) -> str:
+    """Return the line in which a program explains its arguments, if it made no request; else empty."""
+    if evidence.in_a_notebook:
+        return ""
+    told = [line for part in evidence for line in part.said() if _USAGE.search(line)]
+    asked = any(part.of("request") or part.of("goal") for part in evidence)
+    return told[0].strip() if told and not asked else ""
+
+
+USAGE_MESSAGE = mistake(
+    "usage_message",
+    _usage_message,
+    "Your program did not accept the arguments that it was called with: “{}”.",
+    "Count them: sys.argv[0] is the program itself, so one argument makes len(sys.argv) 2, two make 3, and three make "
+    "4. A negative number is a number, too.",
+    certain=True,
+)
+
+
+_WORK = ("message", "request", "answered", "goal", "goal_answer", "matched")
+"""The kinds of events that show that a program works."""
+
+
+def ended_too_early(evidence: Evidence) -> Advice | None:
+    """The subject ended by itself with work left, after it had said or done something."""
+    ending = evidence.main.ending
+    if ending is None or traceback_of(evidence) or _main_guard(evidence):
+        return None
+    code = ending.data.get("code")
+    exited = f"ended by itself, with exit code {code}," if code else "ended by itself"
+    how = {"exited": exited, "returned": "returned"}.get(ending.name, "ended")
+    keep = (
+        "Keep it alive while it has work to do, for example with rclpy.spin(your_node), above anything that ends it; "
+        "exit() in a callback does, too."
+    )
+    if not any(part.said() or any(map(part.of, _WORK)) for part in evidence):
+        return Advice(
+            f"The program {how} and did nothing that the judge could see.", f"{_BEGIN_AT_TODO} {keep}"
+        )
+    roles = evidence.reference.interface.keys()
+    if roles and roles <= {"client", "action_client"}:
+        return None  # a client that did something may end when it likes: the criteria say what is missing
+    asked = evidence.main.of("asked")
+    is_open = len(asked) > len(evidence.main.of("answered"))
+    when = f"when {asked[-1].name} was called, and no answer came" if is_open else "before its work was done"
+    return Advice(f"The program {how} {when}.", keep)
+
+
+def _not_written(evidence: Evidence) -> str:
+    """Return what no node does yet although the code runs; empty if each expected endpoint is there."""
+    part = evidence.main
+    if part.ending is not None and part.ending.name == "exited" and part.had_node:
+        return ""  # a program may end before the graph shows its endpoints
+    nodes = any(survey.data.get("nodes") for survey in part.of("interface"))
+    returned_silently = part.returned is not None and not part.said()
+    wanted = evidence.reference.interface
+    missing = (
+        f"{verb} {name}"
+        for role, (verb, _) in WORDS.items()
+        for name in sorted(wanted.get(role, {}).keys() - part.endpoints(role))
+    )
+    return next(missing, "") if nodes or returned_silently else ""
+
+
+def _returned_silently(evidence: Evidence) -> bool:
+    """A function returned nothing, said nothing and requested nothing, in each run."""
+    asks = ("request", "goal", "message")
+    return bool(evidence.main.events) and all(
+        part.returned is not None and not part.said() and not any(map(part.of, asks)) for part in evidence
+    )
+
+
+def _returned_at_once(evidence: Evidence) -> bool:
+    """The same, and the function did not wait either, although it was told how long: the rest is missing."""
+    asked = any(part.of("called") or part.of("looked") for part in evidence)
+    return not asked and all(map(ended_at_once, evidence)) and _returned_silently(evidence)
+
+
+def _without_node(evidence: Evidence) -> str:
+    """Return the beginning of a sentence about a subject without a node; empty if it had one."""
+    if any(part.had_node or any(map(part.of, ("log", "request", "goal", "message"))) for part in evidence):
+        return ""
+    ending = evidence.main.ending
+    ended = {"exited": "The program ended, and no", "returned": "Your function returned, and no"}
+    return ended.get(ending.name, "No") if ending is not None else "No"
+
+
+def _surely_without_node(evidence: Evidence) -> str:
+    """The same, but empty for a function that returned: its node may have ended before the graph showed it."""
+    return "" if evidence.main.returned is not None else _without_node(evidence)
+
+
+def _never_constructed(part: Part) -> bool:
+    """True if the constructor of a notebook's class never finished."""
+    return part.first("subject", "never_constructed") is not None
+
+
+def _works(part: Part) -> bool:
+    return worked(part, "subscription")
+
+
+NEVER_CONSTRUCTED = mistake(
+    "never_ended",
+    lambda evidence: any(_never_constructed(part) and not _works(part) for part in evidence),
+    "Your node is never finished: its __init__ has a loop without an end, or waits for something.",
+    "Let __init__ only make what the node needs, and leave the work to callbacks: no loop and no wait in it.",
+    certain=True,
+)
+
+
+def constructor_remark(evidence: Evidence) -> str:
+    """Return a remark on a class that works in its constructor, which is right only in a program; else empty."""
+    if not any(_never_constructed(part) and _works(part) for part in evidence):
+        return ""
+    return (
+        "Your node works inside its __init__, which never comes to its end: the line that makes the node never comes "
+        "to its end either. Let __init__ only make what the node needs, and leave the work to callbacks."
+    )
+
+
+NOT_BEGUN, _RETURNED_SILENTLY = (
+    mistake(
+        "not_written",
+        found,
+        "Your function returns nothing, at once, and calls no server: a step is not written yet.",
+        STEP_MISSING,
+        certain=True,
+    )
+    for found in (_returned_at_once, _returned_silently)
+)
+"""A function as it was handed out: checked before mistakes about how it calls, waits or gives up."""
+NOTHING_THERE = (
+    _RETURNED_SILENTLY,
+    Mistake("main_guard", _main_guard, certain=True),
+    *(
+        mistake(
+            "nothing_on_the_graph",
+            found,
+            "{} node of yours appeared on the graph.",
+            "In a program, call rclpy.init() in main(), then make your node (of your class, or with create_node) and "
+            "spin it, which keeps the program running. In a notebook, make the node in your function (start_ros() has "
+            "started ROS) and do all of the work before the function returns. If your code does that already, leave "
+            "out domain_id and ROS_DOMAIN_ID: the judge looks for your node in the domain in which it was started.",
+            certain=found is _surely_without_node,
+        )
+        for found in (_surely_without_node, _without_node)
+    ),
+    mistake("not_written", _not_written, "Your code runs, but nothing of it {} yet.", STEP_MISSING),
+    Mistake("ended_too_early", ended_too_early),
+)
+"""The mistakes that are checked last, if nothing more exact fits."""
