@@ -19,15 +19,19 @@ STEP_MISSING = (
     "Find the TODO in your code and write that step. In a notebook, hints below the cell open one at a time."
 )
 """The advice if a step of the task is not written yet."""
+_SPINS = "In main(), call rclpy.init(), make your node and spin it: rclpy.spin(your_node)."
+_CALLS = (
+    "In main() of a client, call rclpy.init(), then your function that sends the request or the goal and waits for the "
+    "answer."
+)
 _BEGIN_AT_TODO = "If your code still has its TODO, begin there."
 
 
 def _what_main_does(evidence: Evidence) -> str:
     """Return what main() has to do, for a server, a client or both, as the task asks."""
-    is_client = evidence.reference.interface.keys() & {"client", "action_client"}
-    calls = " A client calls, instead of the spin, its function that sends the request or the goal and waits for an answer."
-    spins = "In main(), call rclpy.init(), make your node and spin it: rclpy.spin(your_node)."
-    return spins + calls * bool(is_client)
+    roles = evidence.reference.interface.keys()
+    clients = roles & {"client", "action_client"}
+    return " ".join([_SPINS] * (roles != clients or not roles) + [_CALLS] * bool(clients))
 
 
 def _main_guard(evidence: Evidence) -> Advice | None:
