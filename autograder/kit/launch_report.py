@@ -1,4 +1,4 @@
-"""How a launch reports its processes to the judge: one line of JSON for each, among its other output."""
+"""How a launch reports its processes to the judge, one line of JSON for each, and what their command lines say."""
 
 from __future__ import annotations
 
@@ -6,10 +6,12 @@ import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import re2
+
 from autograder.kit.evidence import REPORTS, Part
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
 MARK = REPORTS[1]
 
@@ -72,3 +74,37 @@ def placed_remappings(argv: Sequence[str]) -> list[tuple[range, str, str]]:
         if is_rule and (flagged or not of_ros):
             found.append((range(place - flagged, place + 1), old, new))
     return found
+
+
+_OF_A_PACKAGE = re2.compile(r"/lib/(\w[\w-]{0,60})/(\w[\w.-]{0,60})$")
+"""The end of the path of a package's program."""
+
+
+def as_run(
+    argv: Sequence[str], programs: Sequence[tuple[str, str]], leads_there: Callable[[str, str], bool]
+) -> tuple[str, ...]:
+    """Return a command line as ``ros2 run`` takes it, without some of its rules; empty if it starts no program.
+
+    Files of parameters are left out, too, because a launch writes one and removes it at its end.
+
+    Args:
+        argv: The command line of a process.
+        programs: The module of each program of the workspace, with slashes for dots, and the end of its path.
+        leads_there: Tells whether a rule from one name to another is to be left out.
+    """
+    # A prefix, such as `python3 -u`, may precede the program.
+    own = argv[: argv.index("--ros-args")] if "--ros-args" in argv else argv
+    for place, word in enumerate(own, 1):
+        if found := _OF_A_PACKAGE.search(word) or _OF_A_PACKAGE.search(_program(word, programs)):
+            rules = [at for at, *rule in placed_remappings(argv) if leads_there(*rule)]
+            gone = {at for places in rules for at in places}
+            gone |= {at + more for at, word in enumerate(argv) if word == "--params-file" for more in (0, 1)}
+            rest = [one for at, one in enumerate(argv) if at >= place and at not in gone]
+            return (found[1], found[2], *rest)
+    return ()
+
+
+def _program(word: str, programs: Sequence[tuple[str, str]]) -> str:
+    """Return the end of the path of the program that setup.py makes of a module or file; empty if there is none."""
+    file = word.removesuffix(".py") if word.endswith(".py") else word.replace(".", "/")
+    return next((path for module, path in programs if f"/{file}".endswith(f"/{module}")), "")

@@ -17,7 +17,7 @@ from autograder.kit import workspace_mistakes as workspace
 from autograder.kit.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.evidence import Evidence
-from autograder.kit.launch_report import Process, placed_remappings, processes, remappings
+from autograder.kit.launch_report import Process, as_run, processes, remappings
 from autograder.kit.model import Advice, Bench, Mistake, Pace
 from autograder.kit.runners import ALONE
 from autograder.kit.workspace_report import BUILDING, report_of
@@ -44,8 +44,6 @@ next ones until its writer's heartbeat, 3 s later (Fast DDS).
 PART = "launching"
 MOST = 4
 """The most programs that are started without their rules, if a launch file starts many."""
-_OF_A_PACKAGE = re2.compile(r"/lib/(\w[\w-]{0,60})/(\w[\w.-]{0,60})$")
-"""The end of the path of a package's program."""
 
 
 class Launched:
@@ -70,6 +68,23 @@ class Launched:
             {name for name, type_name in self._part.endpoints(role).items() if type_name == kind}
             for role in ("publisher", "subscription")
         )
+        self._processes = processes(self._part)
+        surveys = self._part.of("interface")
+        self._ends = {
+            (role, name, process) for s in surveys for role, name, process in s.data.get("ends", ())
+        }
+        self._talk, self._listen = (
+            {process for role, name, process in self._ends if (role, name) == (side, self.topic)}
+            for side in ("publisher", "subscription")
+        )
+        """The processes that publish under the new name, and those that subscribe; 0 for an unknown one."""
+        self._given = {_lower(process.pid) for process in self._processes if self._has_a_rule(process.argv)}
+        self._own = {
+            _lower(process.pid)
+            for process in self._processes
+            if any(package in word for word in process.argv) and not _is_a_tool(process.argv)
+        }
+        """The processes of the package's programs; a tool may also have a program's name among its arguments."""
 
     @property
     def heard(self) -> list[str]:
@@ -113,10 +128,10 @@ class Launched:
         A program that got no rule for the topic is started without arguments, because they may contain a rule of
         another form.
         """
-        ends = self._sides[0] | self._sides[1]
-        there = [one for one in processes(self._part) if {0, _lower(one.pid)} & ends]
+        ends = self._talk | self._listen
+        there = [one for one in self._processes if {0, _lower(one.pid)} & ends]
         words = [
-            self._without_rule(one.argv)[: None if self._has_a_rule(one.argv) else 2]
+            as_run(one.argv, self._programs, self._leads_there)[: None if self._has_a_rule(one.argv) else 2]
             for one in there
             if self._has_a_rule(one.argv) or _lower(one.pid) in self._own
         ]
@@ -125,12 +140,12 @@ class Launched:
     @property
     def talkers(self) -> int:
         """The number of programs that publish under the new name. One more subscriber does no harm."""
-        return len(self._sides[0])
+        return len(self._talk)
 
     @property
     def given_a_rule(self) -> int:
         """The number of programs under the new name that got a rule for it."""
-        return len(self._given & (self._sides[0] | self._sides[1]))
+        return len(self._given & (self._talk | self._listen))
 
     @property
     def moved_by_rules(self) -> bool:
@@ -139,28 +154,25 @@ class Launched:
         If an endpoint does not tell its process, any process with a rule may own it. Other subscribers there, such as
         ``ros2 topic echo``, need no rule.
         """
-        given, (talk, listen) = self._given, self._sides
+        given, listen = self._given, self._listen
         listeners = listen & (given | self._own) or listen
-        return all(side and (side <= given or (0 in side and given)) for side in (talk, listeners))
-
-    @property
-    def own_without_a_rule(self) -> bool:
-        """True if a program of the package is under the new name without a rule for it."""
-        return bool(((self._sides[0] | self._sides[1]) & self._own) - self._given)
+        return all(side and (side <= given or (0 in side and given)) for side in (self._talk, listeners))
 
     @property
     def has_a_talker(self) -> bool:
-        """True if a program of the package publishes under the new name, or an endpoint of an unknown process does."""
-        return self._has_one_of_its_own(self._sides[0])
+        """True if a program of the package publishes under the new name, or perhaps one that was renamed does."""
+        return self._has_one_of_its_own(self._talk)
 
     @property
     def has_a_listener(self) -> bool:
-        """True if a program of the package subscribes there, or an endpoint with an unknown process does."""
-        return self._has_one_of_its_own(self._sides[1])
+        """True if a program of the package subscribes there, or perhaps one that was renamed does."""
+        return self._has_one_of_its_own(self._listen)
 
     def _has_one_of_its_own(self, side: set[int]) -> bool:
-        # If the package's name differs from the course's, the rule distinguishes its programs from tools.
-        return bool(side & (self._own | self._given)) or 0 in side
+        # If the package's name differs from the course's, the rule distinguishes its programs from tools. An endpoint
+        # of an unknown process, 0, may be anybody's.
+        without_a_rule = (self._talk | self._listen) & self._own - self._given
+        return bool(side & (self._own | self._given) or 0 in side or without_a_rule)
 
     @property
     def is_settled(self) -> bool:
@@ -172,67 +184,15 @@ class Launched:
     @property
     def rules(self) -> list[str]:
         """The topic names to which the programs' rules apply."""
-        return [old for process in processes(self._part) for old, _ in remappings(process.argv)]
+        return [old for process in self._processes for old, _ in remappings(process.argv)]
 
     @property
     def all_are_there(self) -> bool:
         """True if each started program has a topic endpoint on the graph, or an endpoint's process is unknown."""
         known = {process for _, _, process in self._ends}
-        started = processes(self._part)
-        parents = {process.parent for process in started}
-        programs = {_lower(process.pid) for process in started if process.pid not in parents}
+        parents = {process.parent for process in self._processes}
+        programs = {_lower(process.pid) for process in self._processes if process.pid not in parents}
         return programs <= known or 0 in known
-
-    @property
-    def _ends(self) -> set[tuple[str, str, int]]:
-        """The topic endpoints that were ever seen: role, topic, process."""
-        surveys = self._part.of("interface")
-        return {(role, name, process) for s in surveys for role, name, process in s.data.get("ends", ())}
-
-    @property
-    def _sides(self) -> tuple[set[int], set[int]]:
-        """The processes that publish under the new name, and those that subscribe; 0 for an unknown one."""
-        talk, listen = (
-            {process for role, name, process in self._ends if (role, name) == (side, self.topic)}
-            for side in ("publisher", "subscription")
-        )
-        return talk, listen
-
-    @property
-    def _given(self) -> set[int]:
-        return {_lower(process.pid) for process in processes(self._part) if self._has_a_rule(process.argv)}
-
-    @property
-    def _own(self) -> set[int]:
-        """The processes of the package's programs; a tool may also have a program's name among its arguments."""
-        return {
-            _lower(process.pid)
-            for process in processes(self._part)
-            if any(self._package in word for word in process.argv) and not _is_a_tool(process.argv)
-        }
-
-    def _without_rule(self, argv: Sequence[str]) -> tuple[str, ...]:
-        """Return a command line as ``ros2 run`` takes it, without rules for the name; empty for other processes.
-
-        Files of parameters are left out, too, because a launch writes one and removes it at its end.
-        """
-        # A prefix, such as `python3 -u`, may precede the program.
-        own = argv[: argv.index("--ros-args")] if "--ros-args" in argv else argv
-        for place, word in enumerate(own, 1):
-            if found := _OF_A_PACKAGE.search(word) or _OF_A_PACKAGE.search(self._program(word)):
-                rules = [at for at, *rule in placed_remappings(argv) if self._leads_there(*rule)]
-                gone = {at for places in rules for at in places}
-                gone |= {
-                    at + more for at, word in enumerate(argv) if word == "--params-file" for more in (0, 1)
-                }
-                rest = [one for at, one in enumerate(argv) if at >= place and at not in gone]
-                return (found[1], found[2], *rest)
-        return ()
-
-    def _program(self, word: str) -> str:
-        """Return the end of the path of the program that setup.py makes of a module or file; empty for none."""
-        file = word.removesuffix(".py") if word.endswith(".py") else word.replace(".", "/")
-        return next((path for module, path in self._programs if f"/{file}".endswith(f"/{module}")), "")
 
     @cached_property
     def _programs(self) -> list[tuple[str, str]]:

@@ -28,7 +28,7 @@ def talker(seen: Launched, _: Launched) -> Finding:
     """The talker's messages come under the new name."""
     found = f"a publisher on {names(seen.publishers)}" if seen.publishers else "no publisher"
     expected, heard = f"the talker's messages on {seen.topic}", seen.heard
-    if heard and not _is_there(seen, seen.has_a_talker):
+    if heard and not seen.has_a_talker:
         return Finding(False, expected, f"“{heard[0]}” from something else")
     return Finding(bool(heard), expected, f"“{heard[0]}”" if heard else found)
 
@@ -38,13 +38,9 @@ def listener(seen: Launched, _: Launched) -> Finding:
     """A text that is sent under the new name is said by the listener."""
     found = f"it listens on {names(seen.subscriptions)}" if seen.subscriptions else "no subscription"
     said, expected = seen.says_what_it_hears, f"the listener says what is sent on {seen.topic}"
-    if said and not _is_there(seen, seen.has_a_listener):
+    if said and not seen.has_a_listener:
         return Finding(False, expected, "something else says it")
-    if said:
-        found = "it says it"
-    elif seen.topic in seen.subscriptions:
-        found = f"it listens on {seen.topic}, but does not say what it hears"
-    return Finding(said, expected, found)
+    return Finding(said, expected, "it says it" if said else found)
 
 
 @remap.criterion("nothing_left", 1, "No node uses the old name")
@@ -140,16 +136,11 @@ remap.knows(
 )
 
 
-def _is_there(seen: Launched, has_one: bool) -> bool:
-    """True if a program of the package is on its side of the topic, or perhaps one that was renamed."""
-    return has_one or seen.own_without_a_rule
-
-
 def _missing(seen: Launched) -> str:
     """Return the package's program that was replaced, for example by a command; empty if none was."""
-    if seen.heard and not _is_there(seen, seen.has_a_talker):
+    if seen.heard and not seen.has_a_talker:
         return "talker"
-    return "listener" if seen.says_what_it_hears and not _is_there(seen, seen.has_a_listener) else ""
+    return "listener" if seen.says_what_it_hears and not seen.has_a_listener else ""
 
 
 @remap.mistake("one_node_only", late=True)
