@@ -224,22 +224,20 @@ def _abort_not_reported(evidence: Evidence) -> Advice | None:
 ABORT_NOT_REPORTED = Mistake("abort_not_reported", _abort_not_reported)
 
 
-def _returns_another_value(evidence: Evidence) -> Advice | None:
-    """Return advice for a notebook's function that returns neither its goal's sequence nor, if refused, ``[]``."""
+def _returns_another_value(evidence: Evidence) -> tuple[str, str] | None:
+    """Return the wrong value of a notebook's function, and what it should be, in words; None if there is none."""
     late, refused = evidence.part(LATE), evidence.part(REFUSED)
     result = late.first("result")
     if result and (value := returned_instead(late, result.data["fields"]["sequence"])):
-        return Advice(
-            f"Your function returns {value}, and not the sequence of its goal's result as a list.",
-            "End with `return list(...)` of the sequence in the result. A string, a whole result or nothing is not a "
-            "list.",
-        )
-    if refused.first("goal") and (value := returned_instead(refused, [])):
-        return Advice(
-            f"When its goal is rejected, your function returns {value}, and not an empty list.",
-            "Where `accepted` of the goal handle is False, say so, and end with `return []`.",
-        )
-    return None
+        return value, "and not the sequence of its goal's result as a list"
+    value = returned_instead(refused, []) if refused.first("goal") else ""
+    return (value, "and not an empty list, when its goal is rejected") if value else None
 
 
-NOT_RETURNED = Mistake("not_returned", _returns_another_value)
+NOT_RETURNED = mistake(
+    "not_returned",
+    _returns_another_value,
+    "Your function returns {0[0]}, {0[1]}.",
+    "End with `return list(...)` of the sequence in the result, and with `return []` where `accepted` of the goal "
+    "handle is False. A string, a whole result or nothing is not a list.",
+)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.model import Advice, Pace
+from autograder.kit.model import Advice, Mistake, Pace
 from autograder.kit.quoted_names import own_line
 from autograder.kit.workspace_report import BUILDING, report_of
 
@@ -152,6 +152,15 @@ def wrong_folder(evidence: Evidence, entry: Entry) -> Advice | None:
         f"{file} is not in the folder of the package's modules: it is src/{package}/{lost}.",
         f"Move it to src/{package}/{package}/{file}, into the inner one of the two folders {package}, and check "
         "again: the judge builds.",
+    )
+
+
+def mistakes(entry: Entry) -> tuple[Mistake, ...]:
+    """Return the mistakes of a package that does not have the task's program, most specific first."""
+    return (
+        Mistake("wrong_folder", lambda evidence: wrong_folder(evidence, entry), certain=True),
+        Mistake("entry_point", lambda evidence: entry_point(evidence, entry), certain=True),
+        Mistake("entry_point", lambda evidence: no_executable(evidence, entry), certain=True),
     )
 
 

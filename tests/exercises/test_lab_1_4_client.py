@@ -57,7 +57,7 @@ def returned(name: str, value: str, *events: Event) -> Part:
         (str(NUMBERS), "[]", ""),
         (f"'{NUMBERS}'", "[]", "and not the sequence of its goal's result as a list"),
         ("3", "[]", "returns 3"),
-        (str(NUMBERS), "None", "When its goal is rejected, your function returns None"),
+        (str(NUMBERS), "None", "returns None, and not an empty list, when its goal is rejected"),
         (str(NUMBERS), "[0]", "returns [0], and not an empty list"),
     ],
 )

@@ -172,8 +172,7 @@ class Program:
         return (
             *workspace.BUILD,
             Mistake("package_name", lambda e: programs.package_name(e, entry.package), certain=True),
-            Mistake("entry_point", lambda e: programs.entry_point(e, entry), certain=True),
-            Mistake("entry_point", lambda e: programs.no_executable(e, entry), certain=True),
+            *programs.mistakes(entry),
             OWN,
             *CRASHES,
             *OTHER_CRASHES,

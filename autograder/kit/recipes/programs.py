@@ -254,21 +254,9 @@ class Programs:
     def _of_the_package(self) -> Iterable[Mistake]:
         yield from workspace.BUILD
         yield Mistake("package_name", lambda e: package.package_name(e, self._name), certain=True)
-        for key, recognise in (
-            ("wrong_folder", package.wrong_folder),
-            ("entry_point", package.entry_point),
-            ("entry_point", package.no_executable),
-        ):
-            for program in self._programs:
-                yield Mistake(key, partial(self._about_package, recognise, program), certain=True)
-
-    def _about_package(
-        self,
-        recognise: Callable[[Evidence, package.Entry], Advice | None],
-        program: Program,
-        evidence: Evidence,
-    ) -> Advice | None:
-        return recognise(program.view(evidence), self._entry(program))
+        for program in self._programs:
+            for mistake in package.mistakes(self._entry(program)):
+                yield replace(mistake, recognise=partial(_of_the_view, mistake, program))
 
     def _of_the_programs(self) -> Iterable[Mistake]:
         yield Mistake("entry_point", self._another_program)
@@ -305,6 +293,10 @@ class Programs:
                     "ExternalShutdownException around rclpy.spin, and end with rclpy.try_shutdown()."
                 )
         return ""
+
+
+def _of_the_view(mistake: Mistake, program: Program, evidence: Evidence) -> Advice | None:
+    return mistake.recognise(program.view(evidence))
 
 
 class _Wrong:

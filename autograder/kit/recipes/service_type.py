@@ -172,12 +172,8 @@ class ServiceType(SeenAsItIs):
     def _member_of_group(self, evidence: Evidence) -> Advice | None:
         """Return advice if package.xml lacks the line that marks an interface package, or has it inside a comment."""
         holders = self._holders(evidence)
-        if self.builds(evidence).passed or not holders:
-            return None
-        report = report_of(evidence.main)
-        if report is None or report.built or GROUP not in report.line + report.log:
-            return None
-        if any(GROUP in p.dependencies for p, _ in holders):
+        named = any(GROUP in package.dependencies for package, _ in holders)
+        if self.builds(evidence).passed or not holders or named:
             return None
         return Advice(
             f"package.xml of {holders[0][0].name} does not say that it is an interface package.",
