@@ -81,13 +81,13 @@ def message_type(role: str) -> Mistake:
 def qos_mismatch(role: str) -> Mistake:
     """The QoS settings of the two ends are not compatible."""
 
-    def misfit(evidence: Evidence) -> Event | None:
+    def mismatch(evidence: Evidence) -> Event | None:
         misfits = (e for name in sorted(_wanted(evidence, role)) for e in evidence.main.of("mismatch", name))
         return next((event for event in misfits if not evidence.main.of("message", event.name)), None)
 
     return mistake(
         "qos_mismatch",
-        misfit,
+        mismatch,
         "Your node and the other side are both on {0.name}, but their {0.data[policy]} is not compatible, so no "
         "message arrives.",
         "Use the queue depth 10 in place of the QoS profile: that is reliable and volatile, as the other side is.",
@@ -98,6 +98,18 @@ def qos_mismatch(role: str) -> Mistake:
 def servers(part: Part) -> int:
     """Return the largest number of servers that existed at the same time."""
     return max((int(event.data["count"]) for event in part.of("servers")), default=0)
+
+
+def misfit(evidence: Evidence, role: str) -> str:
+    """Return what is wrong with the one server of a role, in words: name, type or number; empty if nothing is."""
+    name, type_name = evidence.reference.only(role)
+    made, noun = evidence.main.endpoints(role), role.replace("_", " ")
+    if name not in made:
+        return f"the {noun} {', '.join(sorted(made))}" if made else f"no {noun}"
+    if made[name] != type_name:
+        return f"{name} is a {made[name]}"
+    count = servers(evidence.main)
+    return f"{count} servers of {name}" if count > 1 else ""
 
 
 def two_servers(role: str, comes_of_it: str, next_step: str) -> Mistake:

@@ -154,13 +154,8 @@ class Asks:
         """Decide whether there is exactly one server of the right name and type, and it answers."""
         name, type_name = evidence.reference.only("service")
         seen, expected = self.seen(evidence), f"one server of {name} ({type_name}) that answers"
-        made = seen.part.endpoints("service")
-        if name not in made:
-            return Finding(False, expected, f"a service {', '.join(sorted(made))}" if made else "no service")
-        if made[name] != type_name:
-            return Finding(False, expected, f"{name} is a {made[name]}")
-        if seen.count > 1:
-            return Finding(False, expected, f"{seen.count} servers of {name}")
+        if wrong := common.misfit(evidence, "service"):
+            return Finding(False, expected, wrong)
         # If a program answers and ends at once, the answer may or may not arrive; if it crashes, it has not sent one.
         enough = SURE if seen.part.traceback else max(SURE, len(seen.asked))
         if seen.part.ending is not None and len(seen.answers) < enough:

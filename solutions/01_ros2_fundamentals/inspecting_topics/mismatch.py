@@ -102,66 +102,41 @@ def bystander(planted: Mapping[str, Any]) -> dict[str, dict[str, str]]:
 
 
 def mismatches(random: Random) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Each case with its names and types. No two share one: an answer that is made up fits one case at most."""
+    """Yield each case with the names and types of two nodes that do not meet, and of a third that is beside the point.
+
+    No two cases share a name or a type: an answer that is made up fits one case at most. A list of all topics with
+    their types does not say which of them are whose.
+    """
     (early, *others), (late, *more) = (random.sample(words, len(words)) for words in (_EARLY, _LATE))
-    third, *things = random.sample([*others, *more], 2 * len(CASES) + 1)
+    anywhere, *things = random.sample([*others, *more], 2 * len(CASES) + 1)
     qualities = random.sample(_QUALITIES, 2 * len(CASES))
     kinds = zip(random.sample(_TYPES, len(CASES)), random.sample(_OTHER_TYPES, len(CASES)), strict=True)
-    for case, thing, types in zip(CASES, (early, late, third), kinds, strict=True):
-        yield (
-            case,
-            mismatch(
-                random,
-                case,
-                (thing, things.pop(), things.pop()),
-                (qualities.pop(), qualities.pop()),
-                types,
-            ),
+    for case, thing, types in zip(CASES, (early, late, anywhere), kinds, strict=True):
+        other, its_own, quality, second = things.pop(), things.pop(), qualities.pop(), qualities.pop()
+        kind, another = random.sample(types, 2)
+        third = random.choice(_BYSTANDERS)
+        topic = f"/{thing}/{quality}"
+        # The wrong names are of the kind that happens: an ending, a namespace, another word.
+        wrong = random.choice(
+            (f"{topic}s", f"/{other}{topic}", f"/{thing}/{second}", f"/{quality}", f"/{thing}_{quality}")
         )
-
-
-def mismatch(
-    random: Random,
-    case: str,
-    things: tuple[str, str, str],
-    qualities: tuple[str, str],
-    types: tuple[str, str],
-) -> dict[str, Any]:
-    """Names and types of two nodes that do not meet, and of a third that has nothing to do with it.
-
-    A list of all topics with their types does not say which of them are whose.
-
-    Args:
-        random: Draws the rest.
-        case: What the two sides have different.
-        things: The one that the topics are about, another one, and one of the third node's.
-        qualities: What is said of it, and something else.
-        types: The type of both, or of one side, and that of the other one.
-    """
-    (thing, other, its_own), (quality, second) = things, qualities
-    kind, another = random.sample(types, 2)
-    third = random.choice(_BYSTANDERS)
-    topic = f"/{thing}/{quality}"
-    # The wrong names are of the kind that happens: an ending, a namespace, another word.
-    wrong = random.choice(
-        (f"{topic}s", f"/{other}{topic}", f"/{thing}/{second}", f"/{quality}", f"/{thing}_{quality}")
-    )
-    published, subscribed = (topic, topic) if case == CASES[1] else random.sample((topic, wrong), 2)
-    numbers = random.sample(range(100, 1000), 3)
-    return {
-        # The subject is told these names: no word of a topic may be among theirs.
-        "talker": f"driver_{numbers[0]}",
-        "listener": f"monitor_{numbers[1]}",
-        "bystander": f"{third}_{numbers[2]}",
-        "beside": {
-            f"/{word}/{random.choice(_QUALITIES)}": random.choice(types)
-            for word in (third, its_own, random.choice(_OTHERS))
-        },
-        "topic_published": published,
-        "topic_subscribed": subscribed,
-        "type_published": kind,
-        "type_subscribed": kind if case == CASES[0] else another,
-    }
+        published, subscribed = (topic, topic) if case == CASES[1] else random.sample((topic, wrong), 2)
+        numbers = random.sample(range(100, 1000), 3)
+        planted = {
+            # The subject is told these names: no word of a topic may be among theirs.
+            "talker": f"driver_{numbers[0]}",
+            "listener": f"monitor_{numbers[1]}",
+            "bystander": f"{third}_{numbers[2]}",
+            "beside": {
+                f"/{word}/{random.choice(_QUALITIES)}": random.choice(types)
+                for word in (third, its_own, random.choice(_OTHERS))
+            },
+            "topic_published": published,
+            "topic_subscribed": subscribed,
+            "type_published": kind,
+            "type_subscribed": kind if case == CASES[0] else another,
+        }
+        yield case, planted
 
 
 def answer(part: Part) -> Mapping[str, Any] | None:

@@ -39,7 +39,7 @@ from lab_1_4._goals import (
     to_be_canceled,
 )
 
-from autograder.kit.common_mistakes import servers
+from autograder.kit.common_mistakes import misfit, servers
 from autograder.kit.goals_seen import CANCELED, status_text
 from autograder.kit.model import Finding
 
@@ -67,15 +67,8 @@ def serves(evidence: Evidence) -> Finding:
     """One action server of the right name and type, and it accepts a goal."""
     name, type_name = evidence.reference.only("action_server")
     part, expected = evidence.main, f"one server of {name} ({type_name}) that accepts goals"
-    made = part.endpoints("action_server")
-    if name not in made:
-        return Finding(
-            False, expected, f"an action {', '.join(sorted(made))}" if made else "no action server"
-        )
-    if made[name] != type_name:
-        return Finding(False, expected, f"{name} is a {made[name]}")
-    if servers(part) > 1:
-        return Finding(False, expected, f"{servers(part)} servers of {name}")
+    if wrong := misfit(evidence, "action_server"):
+        return Finding(False, expected, wrong)
     first = goal(part, ALONE)
     if part.ending is not None and not first.over and not first.feedback:
         # The answer of a program that exits with it may or may not get out of it.
