@@ -165,7 +165,7 @@ class Wait:
         """Make the mistake of a client that asks its server for something, and does not report a missing one."""
 
         def recognise(evidence: Evidence) -> Advice | None:
-            if not self.asked(evidence.part(self.served[0])) or not self.fault(evidence):
+            if not self.asked(evidence.part(self.served[0])):
                 return None
             return giving_up.silent_end(evidence.part(self.absent), self.had_server(evidence), self.noun)
 

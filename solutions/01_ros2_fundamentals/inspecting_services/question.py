@@ -90,7 +90,9 @@ def named_services(random: Random, another: str, *, hidden: bool) -> tuple[str, 
     A ``hidden`` name ends as the notebook's own list leaves out, although only the type counts.
     """
     # The graph tells of services in the order of their names: the right one is neither the first nor the last.
-    first, *between, last = sorted(_name(random) for _ in range(random.choice(NAMES)))
+    first, *between, last = sorted(
+        f"/{random.choice(_WORDS)}/{_number(random)}" for _ in range(random.choice(NAMES))
+    )
     right = between.pop(random.randrange(len(between)))
     misleading = {f"{first}{HIDDEN}": ADDER, last: another}
     for name in between:
@@ -149,10 +151,6 @@ def looks_for(bench: Bench, patience: float, *, lateness: float) -> None:
 def _serve(bench: Bench, services: Mapping[str, str]) -> None:
     for service, type_name in services.items():
         bench.serve(service, type_name, lambda _: {})
-
-
-def _name(random: Random) -> str:
-    return f"/{random.choice(_WORDS)}/{_number(random)}"
 
 
 def _number(random: Random) -> str:
@@ -222,8 +220,6 @@ def _found(part: Part) -> Finding:
 def _how_it_went(part: Part) -> str:
     if part.ending is None:
         return "named none, and never ended" if part.events else "not reached"
-    if "TimeoutError" in part.traceback:
-        return "gave up"
     return f"“{part.said()[-1]}”" if part.said() else "named none"
 
 
@@ -377,8 +373,6 @@ question.knows(
 @question.mistake("silent_end", certain=True, late=True)
 def silent_end(seen: Evidence, _: Evidence) -> Advice | None:
     """Without such a service the subject ends, and does not report that."""
-    if says_that_there_is_none(seen, seen).passed:
-        return None
     return giving_up.silent_end(seen.part(ABSENT), found_in(seen), "service")
 
 
