@@ -29,22 +29,31 @@ GIVE_UP_LIMIT = 12.0
 """Time limit in seconds: until then a client without a server must have ended, or have repeatedly said that it waits.
 """
 LATENESS = 1.5
-"""The delay in seconds between a client's start and the start of its late server."""
+"""The longest delay in seconds between a client's start and the start of its late server."""
+LATE_AT_FIRST = 0.65
+"""The same delay as long as the run without a server can still show that the client would have waited longer."""
+CLOSELY = 0.5
+"""Seconds after a short patience within which a function that uses this patience as its limit has given up.
+
+A function with a constant of three quarters of a second or more waits longer, and a function with a shorter constant
+misses a server that comes after :data:`LATE_AT_FIRST`.
+"""
 PATIENCES = (6.5, 6.95)
 """The range, in seconds, from which a function's patience is drawn at random.
 
 No usual constant, such as 5 or 10, lies within this range, even with the tolerances below.
 """
-PATIENCES_WITHOUT_A_SERVER = {Pace.FAST: (0.33, 0.37), Pace.REAL_TIME: PATIENCES}
+PATIENCES_WITHOUT_A_SERVER = {Pace.FAST: (0.2, 0.24), Pace.REAL_TIME: PATIENCES}
 """The range in seconds, for each pace, in a run without a server. There the function waits for its whole patience.
 
 A constant that is long enough for a late server is too long for the short range. A function that needs longer, such
-as one that waits in whole seconds, gets the long range in the second look.
+as one that waits in whole seconds, gets the long range in the second look. The waits of rclpy look four times a
+second, so they take a quarter of a second here.
 """
 TOO_LONG = 2.0
 """Seconds that a function may need beyond its patience, for making and destroying its node and for a slow machine."""
-SLACK = 3.0
-"""A short patience may be exceeded by this factor. A slower function gets a longer patience in the second look."""
+SLACK = 1.1
+"""The same for a patience shorter than this. A slower function gets a longer patience in the second look."""
 TOO_SHORT = 0.5
 """The smallest fraction of its patience that a function must wait."""
 PART_OF_A_WAIT = 1.0
@@ -193,7 +202,8 @@ def broken_patience(part: Part) -> str:
     limit = patience(part)
     if limit is None or part.ending is None:
         return ""
-    if max(limit * TOO_SHORT, limit - PART_OF_A_WAIT) <= waited(part) <= limit + min(TOO_LONG, limit * SLACK):
+    slack = SLACK if limit < SLACK else TOO_LONG
+    if max(limit * TOO_SHORT, limit - PART_OF_A_WAIT) <= waited(part) <= limit + slack:
         return ""
     return f"gave up after {waited(part):.1f} s, where {PATIENCE} was {limit:g}"
 

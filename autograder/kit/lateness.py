@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.kit.giving_up import LATENESS
-from autograder.kit.model import mistake
+from autograder.kit.giving_up import CLOSELY, LATE_AT_FIRST, LATENESS, TOO_SHORT, patience, waited
+from autograder.kit.model import Pace, mistake
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -49,6 +49,26 @@ by a moment.
 def answers_late(bench: Bench) -> float:
     """Return the number of seconds for which the judge holds back an answer."""
     return ANSWERS_SOON if bench.in_a_cell else ANSWERS_LATE
+
+
+def late_at_first(bench: Bench) -> float:
+    """Return the delay in seconds of a late server, before the run without a server."""
+    return LATE_AT_FIRST if bench.pace is Pace.FAST else LATENESS
+
+
+def may_be_impatient(bench: Bench) -> bool:
+    """Return True if the run without a server, the last one, does not show that the client waits long enough.
+
+    A function that was told how long to wait shows that by waiting that long, and any other client by a long wait. In
+    real time the late server was as late as it can be.
+    """
+    absent = bench.seen()
+    limit = patience(absent)
+    if absent.ending is None or bench.pace is Pace.REAL_TIME:
+        return False
+    if limit is None:
+        return not was_patient(absent)
+    return not limit * TOO_SHORT <= waited(absent) <= limit + CLOSELY
 
 
 def called_before_server(part: Part) -> bool:
@@ -133,15 +153,21 @@ def await_goal(bench: Bench, server: ActionCounterpart, within: float) -> bool:
     return server.await_goal(within if came else 0.0)
 
 
-def hold_back(bench: Bench, kind: str) -> None:
-    """Let time pass until the first request of a kind has waited as long as a held-back answer waits.
+def hold_back(bench: Bench, kind: str, number: int = 1, seconds: float | None = None) -> None:
+    """Let time pass until a request has waited as long as a held-back answer waits.
 
     This takes longer on a busy machine, where even a subject that hardly waits needs time to report that.
+
+    Args:
+        bench: The bench of the scenario.
+        kind: The event kind of the request.
+        number: The number of the request among those of this kind, from 1.
+        seconds: The time from the request to its answer; by default that of :func:`answers_late`.
     """
     seen = bench.seen()
-    request = seen.first(kind)
-    if request is not None:
-        bench.await_end(max(0.0, answers_late(bench) - (seen.events[-1].t - request.t)))
+    for request in seen.of(kind)[number - 1 : number]:
+        age = seen.events[-1].t - request.t
+        bench.await_end(max(0.0, (answers_late(bench) if seconds is None else seconds) - age))
 
 
 def again_while(
@@ -172,7 +198,9 @@ def _missed(request: str) -> Callable[[Part], bool]:
     return lambda seen: not seen.of(request) and was_patient(seen)
 
 
-def meets_late(bench: Bench, meet: Callable[[float], bool], role: str, request: str) -> bool:
+def meets_late(
+    bench: Bench, meet: Callable[[float], bool], role: str, request: str, lateness: float = LATENESS
+) -> bool:
     """Run the subject with a late server. If a patient subject just misses it, run again with shorter delays.
 
     A request may also be lost if the client sends it at the very moment it ends.
@@ -183,6 +211,7 @@ def meets_late(bench: Bench, meet: Callable[[float], bool], role: str, request: 
             work.
         role: The role of the subject's endpoint, such as ``client``.
         request: The event kind of the subject's request to the server.
+        lateness: The delay of the server in the first run, in seconds.
 
     Returns:
         True if the subject finished its work in the last run.
@@ -191,14 +220,19 @@ def meets_late(bench: Bench, meet: Callable[[float], bool], role: str, request: 
     def sooner() -> bool:
         return meet(SOON)
 
-    done = again_while(bench, _missed(request), sooner, meet(LATENESS), 1)
+    done = again_while(bench, _missed(request), sooner, meet(lateness), 1)
     name, _ = bench.reference.only(role)
     # A client that waits for a different server would only wait once more, in vain.
     times = TRIES - 1 if name in bench.seen().endpoints(role) else 0
     return again_while(bench, _missed(request), sooner, done, times)
 
 
-def meets_late_action(bench: Bench, meet: Callable[[float, float], bool], requests: Sequence[str]) -> bool:
+def meets_late_action(
+    bench: Bench,
+    meet: Callable[[float, float], bool],
+    requests: Sequence[str],
+    lateness: float = LATENESS,
+) -> bool:
     """Run the subject with a late action server. If a patient subject just misses it, run again with shorter delays.
 
     Args:
@@ -206,12 +240,13 @@ def meets_late_action(bench: Bench, meet: Callable[[float, float], bool], reques
         meet: Makes one run. Its arguments are the delays of the server and of an answer, in seconds. Returns True if
             the subject finished its work.
         requests: The event kinds of the requests whose answers the judge holds back.
+        lateness: The delay of the server in the first run, in seconds.
 
     Returns:
         True if the subject finished its work in the last run.
     """
     held = answers_late(bench)
-    done = meets_late(bench, lambda lateness: meet(lateness, held), "action_client", "goal")
+    done = meets_late(bench, lambda late: meet(late, held), "action_client", "goal", lateness)
 
     def missed_an_answer(seen: Part) -> bool:
         return not seen.of("result_request") and was_patient_with_an_answer(seen, requests)

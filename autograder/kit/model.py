@@ -125,8 +125,11 @@ class Bench(Protocol):
     def part(self, name: str, **inputs: Any) -> None:
         """Begin a part, that is, a new run of the subject. ``inputs`` are stored in its record."""
 
-    def again(self) -> None:
-        """Begin the last part again with a new run of the subject. The record of the earlier run is discarded."""
+    def again(self, name: str = "") -> None:
+        """Begin a part again, the last one if no name is given, with a new run of the subject.
+
+        The record of the earlier run is discarded.
+        """
 
     def keep(self, name: str) -> bool:
         """In the second look, reuse a part of the first look in which the subject ended by itself. Return True if so.

@@ -205,7 +205,7 @@ AT_ONCE = tuple((0.1 + t / 1000, "waiting") for t in range(200))
             _waits(*EACH_SECOND, told=1.5), "still waiting after 12 s", id="was told how long to wait"
         ),
         pytest.param(_waits((0.5, "not available"), told=0.35, ends=0.6), "", id="keeps a short patience"),
-        pytest.param(_waits((1.0, "not available"), told=0.35, ends=1.1), "", id="waits a whole second"),
+        pytest.param(_waits((1.0, "not available"), told=0.2, ends=1.1), "", id="waits a whole second"),
         pytest.param(
             _waits((1.5, "not available"), told=0.37, ends=1.5),
             "gave up after 1.5 s, where patience_sec was 0.37",

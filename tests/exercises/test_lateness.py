@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
+from unittest.mock import MagicMock
 
 import pytest
 
 from autograder.kit.evidence import Event, Part, Reference
-from autograder.kit.giving_up import LATENESS
+from autograder.kit.giving_up import CLOSELY, LATE_AT_FIRST, LATENESS, PATIENCES_WITHOUT_A_SERVER
 from autograder.kit.lateness import (
     ANSWERS_LATE,
     ANSWERS_SOON,
@@ -16,12 +17,14 @@ from autograder.kit.lateness import (
     PATIENT_WITH_AN_ANSWER,
     SOON,
     TRIES,
+    may_be_impatient,
     meets_late_action,
     meets_present,
     missed_a_result,
     was_patient,
     was_patient_with_an_answer,
 )
+from autograder.kit.model import Pace
 
 if TYPE_CHECKING:
     from autograder.kit.model import Bench
@@ -78,6 +81,38 @@ def test_patience_with_an_answer_is_counted_from_the_last_request(
     events: list[Event], expected: bool
 ) -> None:
     assert was_patient_with_an_answer(Part("", {}, events), ["goal", "cancel"]) is expected
+
+
+TOLD = Event(0.0, "subject", "started", {"accepted": ["patience_sec"]})
+
+
+@pytest.mark.parametrize(
+    ("events", "expected"),
+    [
+        ([TOLD, ended(0.26)], False),
+        ([TOLD, ended(0.2 + CLOSELY)], False),
+        ([TOLD, ended(0.76)], True),  # a constant of three quarters of a second
+        ([TOLD, ended(0.05)], True),
+        ([TOLD], False),
+        ([SEEN, ended(0.4 + PATIENT)], False),
+        ([SEEN, said(1.4), ended(0.4 + 2 * PATIENT)], True),
+        ([SEEN], False),
+    ],
+    ids=["its patience", "a little more", "a constant", "none", "for ever", "long", "a second", "on and on"],
+)
+def test_the_run_without_a_server_shows_who_waits_long_enough(events: list[Event], expected: bool) -> None:
+    part = Part("", {"patience_sec": 0.22}, events)
+    assert may_be_impatient(MagicMock(pace=Pace.FAST, seen=lambda: part)) is expected
+    assert not may_be_impatient(MagicMock(pace=Pace.REAL_TIME, seen=lambda: part))
+
+
+def test_no_constant_passes_for_a_short_patience_and_meets_a_server_that_is_a_little_late() -> None:
+    shortest, longest = PATIENCES_WITHOUT_A_SERVER[Pace.FAST]
+    looks = 0.25  # seconds between two looks of wait_for_service (rclpy, client.py)
+    for constant in (step * looks for step in range(1, 9)):
+        taken_for_patience = constant <= longest + CLOSELY
+        assert not taken_for_patience or constant < LATE_AT_FIRST
+    assert looks <= shortest + CLOSELY
 
 
 class FakeBench:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from random import Random
-from types import SimpleNamespace
 from typing import Any
 from unittest.mock import MagicMock
 
@@ -56,14 +55,36 @@ def runs_of(scenario: Any, seed: int, monkeypatch: pytest.MonkeyPatch) -> list[t
     """The runs of a check in their order, each with its name and what it is made of."""
     order: list[tuple[str, Any]] = []
 
-    def called(_: Any, run: Run, calls: int, **__: Any) -> bool:
+    def called(_: Any, run: Run, *__: Any) -> bool:
         order.append((run.name, run))
         return True
 
     monkeypatch.setattr(service_client, "called", called)
+    monkeypatch.setattr(service_client, "called_late", called)
     monkeypatch.setattr(service_client, "unserved", lambda _, numbers: order.append((ABSENT, numbers)))
-    scenario(SimpleNamespace(random=Random(seed), seen=lambda: Part(LATE)))
+    scenario(MagicMock(pace=Pace.FAST, random=Random(seed), seen=lambda: Part(LATE)))
     return order
+
+
+@pytest.mark.parametrize(("impatient", "lateness"), [(False, [0.65]), (True, [0.65, 1.5])])
+def test_a_service_comes_late_once_more_if_nothing_shows_that_its_client_would_have_waited(
+    impatient: bool, lateness: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    came: list[float] = []
+
+    def called_late(_: Any, run: Run, calls: int, seconds: float) -> bool:
+        came.append(seconds)
+        return True
+
+    monkeypatch.setattr(service_client, "called_late", called_late)
+    monkeypatch.setattr(service_client, "called", lambda *_: True)
+    monkeypatch.setattr(service_client, "unserved", lambda *_: None)
+    monkeypatch.setattr(service_client, "may_be_impatient", lambda _: impatient)
+    asked = Part(LATE, {}, [Event(0.0, "request", "/add_two_ints", {})])
+    bench = MagicMock(pace=Pace.FAST, random=Random(0), seen=lambda: asked)
+    service_client.scenario(bench, [Run(LATE, (1, 2)), Run(BIASED, (1, 2))], (3, 4), calls=1)
+    assert came == lateness
+    assert [call.args for call in bench.again.mock_calls] == [(LATE,)] * impatient
 
 
 @pytest.mark.parametrize("exercise", [exercise_1_2_three_ints, lab_1_3_client])
@@ -231,11 +252,40 @@ def test_who_raises_has_not_waited_also_where_the_answer_came_before_its_end(
 def test_the_service_comes_when_its_client_is_known_so_that_no_call_gets_lost(lateness: float) -> None:
     bench = MagicMock(pace=Pace.FAST)
     bench.reference.only.return_value = ("/add_two_ints", "my_robot_interfaces/srv/AddTwoInts")
-    service_client.meets_service(bench, Run(BIASED, (1, 2)), 1, 1.0, lateness=lateness)
-    order = [
-        name for name, *_ in bench.mock_calls if name in ("start", "await_endpoint", "let_wait", "serve")
+    assert _meets(lateness=lateness) == [
+        "start",
+        "await_endpoint",
+        *(["let_wait"] if lateness else []),
+        "serve",
     ]
-    assert order == ["start", "await_endpoint", *(["let_wait"] if lateness else []), "serve"]
+
+
+def test_the_service_is_there_before_a_client_that_is_known_to_wait_for_its_answers() -> None:
+    assert _meets(prepared=True) == ["serve", "start", "await_endpoint"]
+
+
+def _meets(**how: Any) -> list[str]:
+    bench = MagicMock(pace=Pace.FAST)
+    bench.reference.only.return_value = ("/add_two_ints", "my_robot_interfaces/srv/AddTwoInts")
+    service_client.meets_service(bench, Run(BIASED, (1, 2)), 1, **how)
+    return [name for name, *_ in bench.mock_calls if name in ("start", "await_endpoint", "let_wait", "serve")]
+
+
+@pytest.mark.parametrize("in_a_cell", [True, False])
+@pytest.mark.parametrize("waits", [True, False])
+def test_only_a_function_that_has_reported_an_answer_finds_its_service_there(
+    in_a_cell: bool, waits: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found: list[bool] = []
+
+    def meets_service(*_: Any, prepared: bool) -> bool:
+        found.append(prepared)
+        return True
+
+    monkeypatch.setattr(service_client, "meets_service", meets_service)
+    bench = MagicMock(pace=Pace.FAST, in_a_cell=in_a_cell, seen=lambda: Part(BIASED))
+    service_client.called(bench, Run(BIASED, (1, 2)), 1, _reported(RETURNED) if waits else Part(LATE))
+    assert found == [in_a_cell and waits]
 
 
 @pytest.mark.parametrize(("missed", "runs"), [(0, 1), (1, 2), (2, 3), (99, 4)])
@@ -252,7 +302,7 @@ def test_who_waited_long_and_missed_an_answer_is_started_again_and_not_for_ever(
     monkeypatch.setattr(service_client, "reports", lambda _: len(held) > missed)
     monkeypatch.setattr(service_client, "was_patient_with_an_answer", lambda *_: True)
     bench = MagicMock(pace=Pace.FAST, random=Random(0))
-    assert service_client.called(bench, Run(BIASED, (1, 2), held=1), 1)
+    assert service_client.called(bench, Run(BIASED, (1, 2), held=1), 1, Part(LATE))
     assert held == [1, *[0] * (runs - 1)]
     assert bench.again.call_count == runs - 1
 

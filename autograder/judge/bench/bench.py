@@ -119,10 +119,11 @@ class TestBench:
             self._wire, self._recorder, self._subject, self._on_graph, self._open, self.pace, self.doubt
         )
 
-    def again(self) -> None:
-        """Begin the last part again, and discard its record so far."""
+    def again(self, name: str = "") -> None:
+        """Begin a part again, the last one if no name is given, and discard its record so far."""
         self.stop()
-        dropped = self.parts.pop()
+        dropped = next(part for part in reversed(self.parts) if name in ("", part.name))
+        self.parts.remove(dropped)
         self.part(dropped.name, **dropped.inputs)
 
     def keep(self, name: str) -> bool:

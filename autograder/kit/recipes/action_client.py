@@ -1,8 +1,10 @@
 """A recipe for a client of an action. The judge is the server.
 
 Only a client that shows what it receives can be right: the judge's numbers are not Fibonacci numbers and not sorted,
-one of them occurs twice, and the result differs from the last feedback. The server comes late in one run, refuses the
-goal in another, aborts it in a third, and is absent in the last.
+one of them occurs twice, and the result differs from the last feedback. The server comes a little late in one run,
+refuses the goal in another, aborts it in a third, and is absent in the last. If the run without a server does not show
+that the client would have waited longer, the first run is made again with a server that comes as late as the task
+allows.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ from autograder.kit import unfinished
 from autograder.kit.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
 from autograder.kit.draft import SeenAsItIs
 from autograder.kit.giving_up import (
+    LATENESS,
     PATIENCE,
     PATIENCES,
     PATIENCES_WITHOUT_A_SERVER,
@@ -32,6 +35,8 @@ from autograder.kit.lateness import (
     called_before_server,
     called_too_early,
     hold_back,
+    late_at_first,
+    may_be_impatient,
     meets_late_action,
     meets_present,
     missed_a_result,
@@ -42,7 +47,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from autograder.kit.counterparts import ActionCounterpart
-    from autograder.kit.evidence import Evidence
+    from autograder.kit.evidence import Evidence, Part
     from autograder.kit.model import Advice
 
 ORDERS = {LATE: (41, 46), REFUSED: (-9, -1), ABORTED: (0, 0), ABSENT: (11, 30)}
@@ -74,10 +79,17 @@ AFTERMATH = 1.0
 
 def scenario(bench: Bench) -> None:
     """Make four runs: one succeeds at a late server; then, in random order, one refused, one aborted, one unserved."""
-    if late(bench) and not called_before_server(bench.seen()):
-        known = bool(bench.seen().of("goal"))
-        for run in bench.random.sample((refused, aborted, unserved), 3):
-            run(bench, known)
+    inputs = begin(bench, LATE)
+    if not late(bench, inputs, late_at_first(bench)) or called_before_server(bench.seen()):
+        return
+    first, impatient = bench.seen(), False
+    for run in bench.random.sample((refused, aborted, unserved), 3):
+        run(bench, first)
+        if run is unserved:
+            impatient = may_be_impatient(bench)
+    if impatient and first.of("goal"):
+        bench.again(LATE)
+        late(bench, inputs, LATENESS)
 
 
 def begin(bench: Bench, name: str) -> dict[str, Any]:
@@ -99,17 +111,16 @@ def start(bench: Bench, inputs: Mapping[str, Any]) -> None:
     bench.start(inputs["order"], patience_sec=inputs[PATIENCE])
 
 
-def late(bench: Bench) -> bool:
-    """Make one run with a server that comes late. Return True if the subject finished its work."""
-    inputs = begin(bench, LATE)
+def late(bench: Bench, inputs: Mapping[str, Any], lateness: float) -> bool:
+    """Make one run with a server that comes ``lateness`` seconds late. Return True if the subject finished its work."""
 
-    def meet(lateness: float, held: float) -> bool:
-        return meets_late_server(bench, inputs, lateness, held, SHOWN_WITHIN)
+    def meet(seconds: float, held: float) -> bool:
+        return meets_late_server(bench, inputs, seconds, held, SHOWN_WITHIN)
 
     def in_haste() -> bool:
         return meets_late_server(bench, inputs, SOON, ANSWERS_SOON, HASTE)
 
-    done = meets_late_action(bench, meet, ["goal"])
+    done = meets_late_action(bench, meet, ["goal"], lateness)
     done = again_while(bench, missed_a_result, in_haste, done)
     bench.stop()
     return done
@@ -136,31 +147,42 @@ def meets_late_server(
     return works_on_a_goal(bench, server, "succeeded", FEEDBACKS, shown_within[bench.pace])
 
 
-def meets_server(bench: Bench, *, accept: bool = True) -> ActionCounterpart:
-    """Start the subject's server as soon as the judge has discovered the subject, which was just started.
+def meets_server(
+    bench: Bench, begin_it: Callable[[], object], *, accept: bool = True, prepared: bool = False
+) -> ActionCounterpart:
+    """Start the subject, and start its server as soon as the judge has discovered the subject.
 
     If the server existed earlier, a client might discover it first. Then chance would decide whether the goal of a
     client that ends at once reaches the judge.
 
     Args:
         bench: The bench of the scenario.
+        begin_it: Starts the subject.
         accept: True to accept goals, False to refuse them.
+        prepared: True to start the server before the subject.
     """
     action, type_name = bench.reference.only("action_client")
+    server = bench.serve_action(action, type_name, accept_goal=accept) if prepared else None
+    begin_it()
     bench.await_endpoint("action_client", action)
-    return bench.serve_action(action, type_name, accept_goal=accept)
+    return server or bench.serve_action(action, type_name, accept_goal=accept)
 
 
-def aborted(bench: Bench, known: bool) -> None:
-    """Make one run with an aborted goal. ``known`` is True if the subject has already sent a goal."""
+def aborted(bench: Bench, first: Part) -> None:
+    """Make one run with an aborted goal. ``first`` is the run with the late server."""
     inputs = begin(bench, ABORTED)
 
     def meet() -> bool:
-        start(bench, inputs)
-        return works_on_a_goal(bench, meets_server(bench), "aborted", 1, HASTE[bench.pace])
+        server = meets_server(bench, lambda: start(bench, inputs), prepared=needs_no_search(bench, first))
+        return works_on_a_goal(bench, server, "aborted", 1, HASTE[bench.pace])
 
-    meets_present(bench, meet, "goal", known=known)
+    meets_present(bench, meet, "goal", known=bool(first.of("goal")))
     bench.stop()
+
+
+def needs_no_search(bench: Bench, first: Part) -> bool:
+    """Return True if the server may exist before the subject, a function in the kernel that waits for answers."""
+    return bench.in_a_cell and bool(first.of("result_request"))
 
 
 def works_on_a_goal(
@@ -218,24 +240,26 @@ def is_done(evidence: Evidence) -> bool:
     return part.ending is not None or (result is not None and bool(part.said(after=result)))
 
 
-def refused(bench: Bench, known: bool) -> None:
-    """Make one run with a server that refuses every goal."""
+def refused(bench: Bench, first: Part) -> None:
+    """Make one run with a server that refuses every goal. ``first`` is the run with the late server."""
     inputs = begin(bench, REFUSED)
-    refuse(bench, lambda: start(bench, inputs), known=known)
+    known, prepared = bool(first.of("goal")), needs_no_search(bench, first)
+    refuse(bench, lambda: start(bench, inputs), known=known, prepared=prepared)
 
 
-def refuse(bench: Bench, begin_it: Callable[[], object], *, known: bool) -> None:
+def refuse(bench: Bench, begin_it: Callable[[], object], *, known: bool, prepared: bool = False) -> None:
     """Refuse the goal of the subject, and end the part.
 
     Args:
         bench: The bench of the scenario.
         begin_it: Starts the subject.
         known: True if the subject has already sent a goal.
+        prepared: True to start the server before the subject.
     """
 
     def meet() -> bool:
-        begin_it()
-        if meets_server(bench, accept=False).await_goal(GOAL_LIMIT):
+        server = meets_server(bench, begin_it, accept=False, prepared=prepared)
+        if server.await_goal(GOAL_LIMIT):
             bench.await_end(END_LIMIT[bench.pace])
         return bench.await_end(0.0)
 
@@ -243,7 +267,7 @@ def refuse(bench: Bench, begin_it: Callable[[], object], *, known: bool) -> None
     bench.stop()
 
 
-def unserved(bench: Bench, _: bool) -> None:
+def unserved(bench: Bench, _: Part) -> None:
     """Make one run without a server."""
     action, _ = bench.reference.only("action_client")
     inputs = begin(bench, ABSENT)

@@ -5,6 +5,9 @@ whether it used the answer; in one the numbers fill 64 bits; and in one there is
 include a 0, which is easily mistaken for no answer, and negative numbers. In two runs one answer is held back for a
 while.
 
+The service is first only a little late. If the run without a service does not show that the client would have waited
+for longer, the first run is made again with a service that comes as late as the task allows.
+
 The subject cannot tell in advance which run has no service: after the run with the late service the others come in
 random order, with the same kinds of numbers and patience.
 """
@@ -21,12 +24,16 @@ from autograder.kit import common_mistakes as common
 from autograder.kit import giving_up, service_client_mistakes, unfinished
 from autograder.kit.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
 from autograder.kit.draft import OWN, OWN_LATE
-from autograder.kit.giving_up import drawn_patience
+from autograder.kit.giving_up import LATENESS, PATIENCE, drawn_patience
 from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import (
+    ANSWERS_LATE,
     again_while,
     called_before_server,
     called_too_early,
+    hold_back,
+    late_at_first,
+    may_be_impatient,
     meets_late,
     meets_present,
     was_patient_with_an_answer,
@@ -62,10 +69,6 @@ AFTERMATH = 1.0
 """Seconds in which a client that has reported its sum may end, or go on and show what else it does."""
 SAYS_MORE = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
 """Seconds for a client that has said something about its last answer, but not the sum, to say the sum."""
-HELD = 0.7
-"""Seconds for which an answer is held back: longer than a client takes that does not really wait, and shorter than
-the usual limits in programs, such as half a second.
-"""
 
 
 @dataclass(frozen=True)
@@ -95,50 +98,79 @@ def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls:
         calls: The number of calls of a subject that has finished its work.
     """
     late, *others = runs
-    if not called(bench, late, calls) or called_before_server(bench.seen()):
+    begin(bench, late)
+    if not called_late(bench, late, calls, late_at_first(bench)) or called_before_server(bench.seen()):
         return
-    known = bool(requests(bench.seen()))
+    first = bench.seen()
     order: list[Run | None] = [*others, None]
     bench.random.shuffle(order)
-    hangs = False
+    hangs = impatient = False
     for run in order:
         if run is None:
             unserved(bench, nobody)
+            impatient = may_be_impatient(bench)
         elif not hangs:
-            hangs = not called(bench, run, calls, known=known)
+            begin(bench, run)
+            hangs = not called(bench, run, calls, first)
+    if impatient and requests(first):
+        bench.again(LATE)
+        called_late(bench, late, calls, LATENESS)
 
 
-def called(bench: Bench, run: Run, calls: int, *, known: bool = False) -> bool:
-    """Make one run with a service. Return True if the subject finished its work. ``known``: it has called before."""
-    patience = drawn_patience(bench)
-    bench.part(run.name, numbers=list(run.numbers), patience_sec=patience)
-    meet = partial(meets_service, bench, run, calls, patience)
-    if run.name != LATE:
-        done = meets_present(bench, meet, "request", known=known, wanted=calls)
-    else:
-        done = meets_late(bench, lambda lateness: meet(lateness=lateness), "client", "request")
+def begin(bench: Bench, run: Run) -> None:
+    """Begin the part of a run with a service."""
+    bench.part(run.name, numbers=list(run.numbers), patience_sec=drawn_patience(bench))
+
+
+def called_late(bench: Bench, run: Run, calls: int, lateness: float) -> bool:
+    """Make the run in which the service comes late. Return True if the subject finished its work."""
+    done = meets_late(
+        bench, lambda late: meets_service(bench, run, calls, lateness=late), "client", "request", lateness
+    )
+    return _with_quick_answers(bench, run, calls, done)
+
+
+def called(bench: Bench, run: Run, calls: int, first: Part) -> bool:
+    """Make a run with a service that exists; ``first`` is the run with the late one.
+
+    Returns:
+        True if the subject finished its work.
+    """
+    # A client in the kernel that has reported an answer waits for answers, so its calls reach a service that existed
+    # before it, too, and it need not look for the service a second time.
+    meet = partial(meets_service, bench, run, calls, prepared=bench.in_a_cell and reports(first))
+    done = meets_present(bench, meet, "request", known=bool(requests(first)), wanted=calls)
+    return _with_quick_answers(bench, run, calls, done)
+
+
+def _with_quick_answers(bench: Bench, run: Run, calls: int, done: bool) -> bool:
+    """End a run; before that, make it again if a patient client has missed an answer that was held back."""
 
     def missed_an_answer(seen: Part) -> bool:
         return bool(run.held) and not reports(seen) and was_patient_with_an_answer(seen, ["request"])
 
-    sooner = partial(meets_service, bench, replace(run, held=0), calls, patience)
+    sooner = partial(meets_service, bench, replace(run, held=0), calls)
     done = again_while(bench, missed_an_answer, sooner, done)
     bench.stop()
     return done
 
 
-def meets_service(bench: Bench, run: Run, calls: int, patience: float, *, lateness: float = 0.0) -> bool:
+def meets_service(
+    bench: Bench, run: Run, calls: int, *, lateness: float = 0.0, prepared: bool = False
+) -> bool:
     """Start the subject and serve it. Return True if the subject finished its work.
 
     Args:
         bench: The bench of the scenario.
         run: The requests and answers.
         calls: The number of calls of a subject that has finished its work.
-        patience: Seconds that a function is told to wait.
         lateness: Seconds by which the service comes after its client.
+        prepared: True if the service comes before its client.
     """
     service, type_name = bench.reference.only("client")
-    bench.start(*run.numbers, patience_sec=patience)
+    answer = answering(run.answers)
+    server = bench.serve(service, type_name, answer, hold=run.held) if prepared else None
+    bench.start(*run.numbers, patience_sec=bench.seen().inputs[PATIENCE])
     # The service starts when the judge has discovered the client. If it existed before, the client might discover it
     # first, and chance would decide whether the call of a client that ends at once reaches the judge.
     # A subject with another client waits for something else. One without a client may only be slow to show it.
@@ -148,13 +180,14 @@ def meets_service(bench: Bench, run: Run, calls: int, patience: float, *, latene
         return bench.await_end(0.0)
     if lateness:
         bench.let_wait(lateness)
-    server = bench.serve(service, type_name, answering(run.answers), hold=run.held)
+    server = server or bench.serve(service, type_name, answer, hold=run.held)
     if run.held and bench.wait_until(
         lambda seen: len(requests(seen.main)) >= run.held, CALL_LIMIT, quiet=HANGS_AFTER
     ):
         # Any node on the graph may ask the client's node something meanwhile: that is not the answer.
         bench.settle()
-        bench.await_end(HELD)
+        # If a person waits, only the first answer is as late as it may be: one long wait shows a client's limit.
+        hold_back(bench, "request", run.held, ANSWERS_LATE if run.held == 1 else None)
         server.release()
     done = bench.wait_until(lambda seen: has_spoken(seen, calls), CALL_LIMIT, quiet=HANGS_AFTER)
     if done and bench.wait_until(lambda seen: is_done(seen, calls), SAYS_MORE[bench.pace]):
