@@ -232,6 +232,7 @@ def meets_late_action(
     meet: Callable[[float, float], bool],
     requests: Sequence[str],
     lateness: float = LATENESS,
+    held: float | None = None,
 ) -> bool:
     """Run the subject with a late action server. If a patient subject just misses it, run again with shorter delays.
 
@@ -241,12 +242,13 @@ def meets_late_action(
             the subject finished its work.
         requests: The event kinds of the requests whose answers the judge holds back.
         lateness: The delay of the server in the first run, in seconds.
+        held: The delay of these answers in the first run, in seconds; by default that of :func:`answers_late`.
 
     Returns:
         True if the subject finished its work in the last run.
     """
-    held = answers_late(bench)
-    done = meets_late(bench, lambda late: meet(late, held), "action_client", "goal", lateness)
+    delay = answers_late(bench) if held is None else held
+    done = meets_late(bench, lambda late: meet(late, delay), "action_client", "goal", lateness)
 
     def missed_an_answer(seen: Part) -> bool:
         return not seen.of("result_request") and was_patient_with_an_answer(seen, requests)

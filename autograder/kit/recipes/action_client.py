@@ -28,9 +28,11 @@ from autograder.kit.giving_up import (
 from autograder.kit.goal_reports import ABORTED, ABSENT, FEEDBACKS, LATE, REFUSED, WAIT, unshown_feedback
 from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import (
+    ANSWERS_LATE,
     ANSWERS_SOON,
     SOON,
     again_while,
+    answers_late,
     await_goal,
     called_before_server,
     called_too_early,
@@ -89,7 +91,7 @@ def scenario(bench: Bench) -> None:
             impatient = may_be_impatient(bench)
     if impatient and first.of("goal"):
         bench.again(LATE)
-        late(bench, inputs, LATENESS)
+        late(bench, inputs, LATENESS, answers_late(bench))
 
 
 def begin(bench: Bench, name: str) -> dict[str, Any]:
@@ -111,16 +113,24 @@ def start(bench: Bench, inputs: Mapping[str, Any]) -> None:
     bench.start(inputs["order"], patience_sec=inputs[PATIENCE])
 
 
-def late(bench: Bench, inputs: Mapping[str, Any], lateness: float) -> bool:
-    """Make one run with a server that comes ``lateness`` seconds late. Return True if the subject finished its work."""
+def late(bench: Bench, inputs: Mapping[str, Any], lateness: float, held: float = ANSWERS_LATE) -> bool:
+    """Make one run with a late server. Return True if the subject finished its work.
 
-    def meet(seconds: float, held: float) -> bool:
-        return meets_late_server(bench, inputs, seconds, held, SHOWN_WITHIN)
+    Args:
+        bench: The bench of the scenario.
+        inputs: The inputs of the subject.
+        lateness: The delay of the server, in seconds.
+        held: The delay of the answer to the goal. Also if a person waits, it is once as late as it may be: only a long
+            wait shows a client's limit.
+    """
+
+    def meet(seconds: float, answer: float) -> bool:
+        return meets_late_server(bench, inputs, seconds, answer, SHOWN_WITHIN)
 
     def in_haste() -> bool:
         return meets_late_server(bench, inputs, SOON, ANSWERS_SOON, HASTE)
 
-    done = meets_late_action(bench, meet, ["goal"], lateness)
+    done = meets_late_action(bench, meet, ["goal"], lateness, held)
     done = again_while(bench, missed_a_result, in_haste, done)
     bench.stop()
     return done

@@ -186,7 +186,7 @@ def meets_service(
     ):
         # Any node on the graph may ask the client's node something meanwhile: that is not the answer.
         bench.settle()
-        # If a person waits, only the first answer is as late as it may be: one long wait shows a client's limit.
+        # Also if a person waits, one answer is as late as it may be: only a long wait shows a client's limit.
         hold_back(bench, "request", run.held, ANSWERS_LATE if run.held == 1 else None)
         server.release()
     done = bench.wait_until(lambda seen: has_spoken(seen, calls), CALL_LIMIT, quiet=HANGS_AFTER)
