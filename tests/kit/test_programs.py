@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from unittest.mock import MagicMock
 
 import pytest
 
 from autograder.judge.verdicts import trial
 from autograder.kit import package_programs
 from autograder.kit.evidence import INTERRUPTED, Event, Evidence, Part, Reference
-from autograder.kit.model import Advice, Criterion, Exercise, Finding, Mistake
+from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Mistake
 from autograder.kit.package_programs import Entry
 from autograder.kit.recipes.programs import Program, Programs
 from autograder.kit.workspace_report import PackageReport, WorkspaceReport, as_line
@@ -255,3 +256,14 @@ def test_nothing_is_said_of_a_build_that_is_not_the_students(subtests: pytest.Su
         with subtests.test(exercise.id):
             report = as_line(WorkspaceReport("built", built=True, changed=changed))
             assert trial.judge(exercise, evidence([said(report)]), "").remarks == ()
+
+
+def test_a_run_that_is_made_again_is_one_of_the_same_program() -> None:
+    def scenario(bench: Bench) -> None:
+        bench.again("talking")
+        bench.again()
+
+    bench = MagicMock(before=None, reference=Reference("lab_9_1.programs", {}))
+    program = Program("talker", replace(NODE, scenario=scenario), "", 3)
+    Programs(PACKAGE, program).exercise("lab_9_1.programs", "", "").scenario(bench)
+    assert [call.args for call in bench.again.mock_calls] == [("talker: talking",), ("",)]

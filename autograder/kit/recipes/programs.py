@@ -102,6 +102,9 @@ class _OneProgram:
     def part(self, name: str, **inputs: Any) -> None:
         self._bench.part(f"{self._program.prefix}{name}", **inputs)
 
+    def again(self, name: str = "") -> None:
+        self._bench.again(name and f"{self._program.prefix}{name}")
+
     def keep(self, name: str) -> bool:
         return self._bench.keep(f"{self._program.prefix}{name}")
 
