@@ -6,7 +6,7 @@ import contextlib
 import statistics
 from dataclasses import dataclass
 
-from autograder.boxes.execution import Cell
+from autograder.execution.cells import Cell
 from autograder.grading.running.worker_process import WorkerProcess
 from autograder.grading.task import Task
 from autograder.temporary_folders import HeldFolder

@@ -14,7 +14,8 @@ from unittest import mock
 
 from rich.console import Console
 
-from autograder.boxes.execution import CellRun, Ended, Execution
+from autograder.boxes.limits import Ended
+from autograder.execution.cells import CellRun, Execution
 from autograder.grading import batch
 from autograder.grading.running import backends
 from autograder.grading.running.dispatcher import Done

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import psutil
 
-from autograder.boxes.execution import CellType
+from autograder.execution.cells import CellType
 from autograder.grading.task import Task
 from autograder.temporary_folders import HeldFolder
 from benchmarks.machine import CpuGroup

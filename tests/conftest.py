@@ -27,7 +27,7 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-TOGETHER = ("tests/attacks", "tests/boxes")
+TOGETHER = ("tests/attacks", "tests/boxes", "tests/execution")
 """Folders whose tests share what takes long to make, so that one process runs them all."""
 APART = ("tests/authoring/test_recording.py", "tests/authoring/test_new_exercise.py")
 """Files with long tests that share nothing, so that several processes take them."""

@@ -29,14 +29,16 @@ MAY_IMPORT = {
     "exercises": frozenset({"course", "kit"}),
     "messages": frozenset({"verdict"}),
     "cards": frozenset({"verdict"}),
-    "boxes": frozenset({"messages", "verdict", "process_trees", "temporary_folders"}),
+    "boxes": frozenset({"process_trees", "temporary_folders"}),  # what isolates knows nothing of what runs
+    "execution": frozenset({"boxes", "messages", "verdict", "process_trees", "temporary_folders"}),
     "masters": frozenset({"course", "exercises", "regular_files"}),
     "mcap_files": frozenset[str](),
     "process_trees": frozenset[str](),
     "temporary_folders": frozenset[str](),
-    "appeals": ALL - {"grading", "boxes", "notebook"},
-    "notebook": ALL - {"judge", "exercises", "kit", "masters", "boxes", "grading", "authoring", "appeals"},
-    "judge": ALL - {"notebook", "cards", "masters", "boxes", "grading", "authoring", "appeals"},
+    "appeals": ALL - {"grading", "boxes", "execution", "notebook"},
+    "notebook": ALL
+    - {"judge", "exercises", "kit", "masters", "boxes", "execution", "grading", "authoring", "appeals"},
+    "judge": ALL - {"notebook", "cards", "masters", "boxes", "execution", "grading", "authoring", "appeals"},
     "__main__": frozenset({"cli", "course"}),
 }
 
@@ -120,7 +122,7 @@ def test_the_process_with_the_gradebook_imports_nothing_that_executes_a_submissi
         "autograder.judge.",
         "autograder.notebook.",
         "autograder.workspaces.",
-        "autograder.boxes.runner",
+        "autograder.execution.runner",
     )
     but = {"autograder.judge.settings"}  # the variables of ROS, for the fork servers
     assert "autograder.grading.running.worker_process" in reached

@@ -11,7 +11,7 @@ from rich.console import Console
 
 from autograder.authoring.execution_plan import Planned, plan
 from autograder.authoring.execution_problems import Problem, problems_of, write_report
-from autograder.boxes.execution import CellType
+from autograder.execution.cells import CellType
 from autograder.grading.running import engine
 from autograder.grading.running.progress import BatchProgress, plain_line
 from autograder.temporary_folders import HeldFolder
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from autograder.boxes.execution import Cell, Execution
+    from autograder.execution.cells import Cell, Execution
 
 REPORTS = "execution-reports"
 """The folder of the course for pages about notebooks that failed."""

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 from nbconvert import HTMLExporter
 
 from autograder.authoring.execution_plan import NotebookKind
-from autograder.boxes.execution import CellType, Ended
+from autograder.boxes.limits import Ended
+from autograder.execution.cells import CellType
 from autograder.grading.rebuilding import nbformat_nodes
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
     from autograder.authoring.execution_plan import Planned
-    from autograder.boxes.execution import Cell, CellRun, Execution
+    from autograder.execution.cells import Cell, CellRun, Execution
     from autograder.verdict import Verdict
 
 TRACEBACK = "Traceback (most recent call last)"

@@ -45,7 +45,7 @@ class Entrance:
         reader_seconds: The limit in seconds of processor time for a process that may only read from and write to its
             descriptors (:func:`autograder.boxes.seccomp_filter.filter_for_readers`); 0 for any other process.
         filters_itself: True for such a process that takes its filter itself, before it reads anything: a desk first
-            connects to its kernel (:mod:`autograder.boxes.kernel_desk`).
+            connects to its kernel (:mod:`autograder.execution.kernel_desk`).
     """
 
     cwd: str

@@ -48,8 +48,8 @@ Older versions used another prefix and no lock. Their folders are left alone.
 _LIBRARY_FOLDERS = 8
 """The number of folders for libraries, more than any workspace of the course has packages with libraries."""
 SUPERVISOR_MODULE = "autograder.boxes.supervisor"
-KERNEL_MODULE = "autograder.boxes.kernel_process"
-PROGRAM_MODULE = "autograder.boxes.program_process"
+KERNEL_MODULE = "autograder.execution.kernel_process"
+PROGRAM_MODULE = "autograder.execution.program_process"
 _GOODBYE_SECONDS = 3.0
 RCLPY = (
     "rclpy",
@@ -245,7 +245,7 @@ class Addresses:
 
     Attributes:
         supervisors: The address used by :class:`autograder.boxes.sandbox.Enclosure`; empty without a sandbox.
-        kernels: The address used by :class:`autograder.boxes.kernel.Kernel`.
+        kernels: The address used by :class:`autograder.execution.kernel.Kernel`.
         judges: The address used to start judges.
         programs: The address used by :meth:`autograder.boxes.sandbox.Enclosure.ros2`; empty without a sandbox.
     """

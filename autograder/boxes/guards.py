@@ -21,8 +21,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.boxes.cgroups import Group, usable
-from autograder.boxes.execution import Ended
-from autograder.boxes.limits import open_files_of_a_box
+from autograder.boxes.limits import Ended, open_files_of_a_box
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -6,11 +6,29 @@ import resource
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import StrEnum
 
 Left = Callable[[], float]
 """A function that returns the seconds that are left; zero or less when the time is over."""
 Patient = Callable[[float], Left]
 """A function that, given a number of seconds, starts a time limit and returns a function for the seconds left of it."""
+
+
+class Ended(StrEnum):
+    """How the execution of a cell ended."""
+
+    DONE = "done"
+    RAISED = "raised"
+    TIMED_OUT = "timed_out"
+    KERNEL_DIED = "kernel_died"
+    OUT_OF_MEMORY = "out_of_memory"
+    OUT_OF_CPU = "out_of_cpu"
+    TOO_MANY_PROCESSES = "too_many_processes"
+    TOO_MANY_FILES = "too_many_files"
+    TOO_MANY_LOCKS = "too_many_locks"
+    TOO_MUCH_OUTPUT = "too_much_output"
+    NOT_RUN = "not_run"
+    """The cell did not run, because the kernel had ended or the notebook's time was over."""
 
 
 @dataclass(frozen=True)

@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from datetime import datetime
 
-    from autograder.boxes.execution import Execution
+    from autograder.execution.cells import Execution
     from autograder.grading.class_records import Entered
     from autograder.grading.gradebooks.gradebook_reading import Entries
     from autograder.grading.gradebooks.writer import Writer

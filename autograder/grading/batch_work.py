@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
     from datetime import datetime
 
-    from autograder.boxes.execution import Execution
+    from autograder.execution.cells import Execution
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
     from autograder.grading.gradebooks.gradebook_reading import Entries
     from autograder.grading.rebuilding.fingerprints import Fingerprints

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Self
 
 import msgspec
 
-from autograder.boxes.execution import CellType
+from autograder.execution.cells import CellType
 from autograder.grading.reporting.rows import Row  # noqa: TC001  (the same)
 
 if TYPE_CHECKING:
-    from autograder.boxes.execution import Execution
+    from autograder.execution.cells import Execution
     from autograder.grading.gradebooks.gradebook_reading import SubmissionEntry
     from autograder.grading.task import Task
 

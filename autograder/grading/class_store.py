@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 import msgspec
 
-from autograder.boxes.execution import Execution
+from autograder.execution.cells import Execution
 from autograder.grading.class_records import Attempt, Entered, KeptEvidence, Origin
 from autograder.grading.errors import DiskFull, StoreTrouble, is_disk_full, said_by_database
 from autograder.grading.reporting.rows import Row

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field, replace
 
 import msgspec
 
-from autograder.boxes.execution import Cell, CellCheck, Execution
 from autograder.boxes.limits import Limits
-from autograder.boxes.verdicts_without_judge import grader_trouble, zero_points
+from autograder.execution.cells import Cell, CellCheck, Execution
+from autograder.execution.verdicts_without_judge import grader_trouble, zero_points
 from autograder.verdict import State, Verdict
 
 UNREADABLE = "unreadable"

@@ -8,7 +8,8 @@ import pytest
 
 from autograder.authoring.execution_plan import NotebookKind, Planned
 from autograder.authoring.execution_problems import problems_of
-from autograder.boxes.execution import Cell, CellCheck, CellRun, Ended, Execution
+from autograder.boxes.limits import Ended
+from autograder.execution.cells import Cell, CellCheck, CellRun, Execution
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.task import Task
 from autograder.verdict import Diagnosis, State, Verdict

@@ -14,12 +14,12 @@ import psutil
 import pytest
 
 from autograder.boxes import cgroups, guards
-from autograder.boxes.execution import Cell, CellCheck, Ended, Execution
 from autograder.boxes.fork_server import ForkServers
-from autograder.boxes.limits import Limits
-from autograder.boxes.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
-from autograder.boxes.runner import run_notebook
+from autograder.boxes.limits import Ended, Limits
 from autograder.boxes.sandbox import why_impossible
+from autograder.execution.cells import Cell, CellCheck, Execution
+from autograder.execution.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
+from autograder.execution.runner import run_notebook
 from autograder.judge.serving import attached
 from autograder.temporary_folders import scratch_folder
 
@@ -256,8 +256,8 @@ def test_an_interrupt_that_meets_the_kernel_itself_leaves_it_alive(run: Run) -> 
 
 
 def test_an_error_of_a_limit_has_its_own_word() -> None:
-    from autograder.boxes.execution import CellRun
-    from autograder.boxes.verdicts_without_judge import without_verdict
+    from autograder.execution.cells import CellRun
+    from autograder.execution.verdicts_without_judge import without_verdict
 
     assert CHECK.check is not None
     full = CellRun(Ended.RAISED, error="OSError: [Errno 28] No space left on device: 'log'")

@@ -16,12 +16,12 @@ import pytest
 
 from autograder import course
 from autograder.boxes import mounts
-from autograder.boxes.execution import Cell
 from autograder.boxes.limits import Limits
 from autograder.boxes.mounts import installation
-from autograder.boxes.notebook_boxes import BoxedPlace, JudgeSetting
-from autograder.boxes.runner import run_notebook
 from autograder.boxes.sandbox import Bind, Enclosure
+from autograder.execution.cells import Cell
+from autograder.execution.notebook_boxes import BoxedPlace, JudgeSetting
+from autograder.execution.runner import run_notebook
 from autograder.temporary_folders import scratch_folder
 from environment.place import Place
 

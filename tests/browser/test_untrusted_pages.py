@@ -23,9 +23,9 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "grading"))
 from server_of_a_test import jupyter_server
 from tiny_class import FakeEngine, TinyClass, make_tiny_class
 
-from autograder.boxes.execution import CellRun, CellType, Ended
-from autograder.boxes.limits import Limits
-from autograder.boxes.outputs import Budget, OutputCollector
+from autograder.boxes.limits import Ended, Limits
+from autograder.execution.cells import CellRun, CellType
+from autograder.execution.outputs import Budget, OutputCollector
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.returning.sanitize import clean, harmless_markdown
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from playwright.sync_api import Page
 
-    from autograder.boxes.execution import Execution
+    from autograder.execution.cells import Execution
     from autograder.grading.task import Task
 
 pytestmark = [

@@ -18,9 +18,9 @@ import pytest
 from click.testing import CliRunner
 from tiny_class import TALKER, FakeEngine, TinyClass
 
-from autograder.boxes.execution import Cell, CellCheck, CellRun, Ended, Execution
-from autograder.boxes.limits import Limits
+from autograder.boxes.limits import Ended, Limits
 from autograder.cli import cli
+from autograder.execution.cells import Cell, CellCheck, CellRun, Execution
 from autograder.grading import class_store
 from autograder.grading.class_records import Attempt, Entered, Origin
 from autograder.grading.class_store import ClassStore

@@ -13,8 +13,9 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from autograder.boxes.execution import Cell, CellCheck, CellRun, Ended, Execution
+from autograder.boxes.limits import Ended
 from autograder.cards.readable import printable
+from autograder.execution.cells import Cell, CellCheck, CellRun, Execution
 from autograder.grading.classes.class_directory import reason_against_name
 from autograder.grading.classes.new_class import NewClass
 from autograder.grading.classes.seeds import create_secret, read_secret, seed_for

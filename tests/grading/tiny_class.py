@@ -11,8 +11,9 @@ import nbformat
 from nbgrader.api import Gradebook
 from rich.console import Console
 
-from autograder.boxes.execution import CellRun, Ended, Execution
-from autograder.boxes.verdicts_without_judge import grader_trouble, zero_points
+from autograder.boxes.limits import Ended
+from autograder.execution.cells import CellRun, Execution
+from autograder.execution.verdicts_without_judge import grader_trouble, zero_points
 from autograder.grading.batch import grade
 from autograder.grading.classes.new_class import new_class
 from autograder.grading.running.dispatcher import Done

@@ -20,7 +20,7 @@ from graded import gradable, graders_judge, judged_answer
 from tests.tiers import asked_for
 
 if TYPE_CHECKING:
-    from autograder.boxes.execution import Execution
+    from autograder.execution.cells import Execution
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 

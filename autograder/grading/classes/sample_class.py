@@ -14,7 +14,7 @@ from rich.console import Console
 
 from autograder import course
 from autograder.boxes import sandbox
-from autograder.boxes.execution import CellType
+from autograder.execution.cells import CellType
 from autograder.grading.batch import grade
 from autograder.grading.classes.class_directory import CONFIG_NAME, STATE_NAME, SUFFIX
 from autograder.grading.classes.new_class import CONFIG, new_class

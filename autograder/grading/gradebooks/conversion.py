@@ -14,8 +14,9 @@ from nbformat.v4 import rwbase
 from nbgrader.preprocessors import LimitOutput
 from nbgrader.utils import compute_checksum, determine_grade, is_grade, is_solution, is_task
 
-from autograder.boxes.execution import Cell, CellCheck, CellRun, CellType, Ended, Execution
+from autograder.boxes.limits import Ended
 from autograder.cards.bundle import mimebundle
+from autograder.execution.cells import Cell, CellCheck, CellRun, CellType, Execution
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.classes.timestamps import companions
 from autograder.grading.gradebooks.gradebook import NotebookEntry

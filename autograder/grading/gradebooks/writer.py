@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from autograder.boxes.execution import Execution
+    from autograder.execution.cells import Execution
     from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
     from autograder.grading.gradebooks.gradebook_reading import SubmissionEntry

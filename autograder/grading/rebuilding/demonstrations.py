@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from autograder.boxes.execution import CellType
+from autograder.execution.cells import CellType
 from autograder.grading.rebuilding.rebuild import is_the_masters
 from autograder.masters.parsing import CellRole
 

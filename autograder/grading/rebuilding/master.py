@@ -13,7 +13,7 @@ from nbgrader.preprocessors import SaveCells
 from traitlets.config import Config
 
 from autograder import exercises
-from autograder.boxes.execution import CellCheck
+from autograder.execution.cells import CellCheck
 from autograder.grading.errors import MasterUnusable
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.rebuild import grade_id, is_answer, is_check

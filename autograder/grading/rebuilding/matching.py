@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.boxes.execution import CellType
+from autograder.execution.cells import CellType
 from autograder.masters.code_cells import python_of, written_file
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from typing import Any
 
 import re2
 
-from autograder.boxes.execution import CellType
-from autograder.boxes.outputs import IMAGES
+from autograder.execution.cells import CellType
+from autograder.execution.outputs import IMAGES
 from autograder.grading.rebuilding.submission import (
     LONGEST_NAME,
     MAX_CELL_CHARACTERS,

@@ -12,7 +12,7 @@ import itertools
 import re  # noqa: TID251  (a class of characters each, nothing repeated: there is nothing to try twice)
 from typing import TYPE_CHECKING
 
-from autograder.boxes.execution import CellType
+from autograder.execution.cells import CellType
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.matching import Known, match, normalized
 from autograder.grading.rebuilding.shown_pictures import ShownPictures

@@ -11,7 +11,7 @@ from typing import IO, TYPE_CHECKING, Annotated
 
 import msgspec
 
-from autograder.boxes.execution import CellType  # noqa: TC001  (msgspec reads the annotations)
+from autograder.execution.cells import CellType  # noqa: TC001  (msgspec reads the annotations)
 from autograder.regular_files import files_below, opened
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.boxes.execution import Cell, CellType
+from autograder.execution.cells import Cell, CellType
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, Submission
 from autograder.grading.classes.configuration import limits_of
 from autograder.grading.classes.seeds import seed_for

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from autograder.boxes.execution import Execution
+    from autograder.execution.cells import Execution
     from autograder.grading.task import Task
 
 NOT_SUBMITTED = "not_submitted"

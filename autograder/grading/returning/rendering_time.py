@@ -13,7 +13,7 @@ import gc
 import time
 from typing import TYPE_CHECKING
 
-from autograder.boxes.execution import Cell, CellType
+from autograder.execution.cells import Cell, CellType
 from autograder.grading.rebuilding.submission import HARMLESS_LENGTH
 from autograder.judge.verdicts.deciding import Undecided, limited
 

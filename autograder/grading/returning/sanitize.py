@@ -17,8 +17,8 @@ import re2
 from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath
 from pygments.token import STANDARD_TYPES
 
-from autograder.boxes.execution import CellType
-from autograder.boxes.outputs import IMAGES
+from autograder.execution.cells import CellType
+from autograder.execution.outputs import IMAGES
 from autograder.grading.rebuilding import nbformat_nodes
 from autograder.grading.rebuilding.rebuild import is_check, is_the_masters
 from autograder.grading.rebuilding.submission import HARMLESS_LENGTH

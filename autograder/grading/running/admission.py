@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.boxes.execution import Execution
-from autograder.boxes.outputs import IMAGES, NotebookOutputs
+from autograder.execution.cells import Execution
+from autograder.execution.outputs import IMAGES, NotebookOutputs
 from autograder.grading.rebuilding.parsing import BASE64
 from autograder.grading.rebuilding.submission import (
     MAX_BYTES,
@@ -26,8 +26,8 @@ from autograder.grading.running.orders import LARGEST_ANSWER, Offer
 from autograder.verdict import State
 
 if TYPE_CHECKING:
-    from autograder.boxes.execution import CellCheck, CellRun
     from autograder.boxes.limits import Limits
+    from autograder.execution.cells import CellCheck, CellRun
     from autograder.grading.task import Task
     from autograder.verdict import Verdict
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from autograder.boxes.execution import Cell, Execution
+    from autograder.execution.cells import Cell, Execution
 
 
 @dataclass

@@ -40,7 +40,7 @@ from environment.installation import COMMAND
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator
 
-    from autograder.boxes.execution import Execution
+    from autograder.execution.cells import Execution
     from autograder.grading.running.orders import Command
     from autograder.grading.task import Task
 

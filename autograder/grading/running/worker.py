@@ -21,12 +21,11 @@ from typing import TYPE_CHECKING, Any, Self
 
 import msgspec
 
-from autograder.boxes.execution import Ended, Execution
 from autograder.boxes.fork_server import Addresses
-from autograder.boxes.limits import raise_own
-from autograder.boxes.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
-from autograder.boxes.runner import Unfinished, run_notebook
+from autograder.boxes.limits import Ended, raise_own
 from autograder.boxes.sandbox import NoSandbox
+from autograder.execution.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
+from autograder.execution.runner import Unfinished, run_notebook
 from autograder.grading.returning.rendering_time import too_costly
 from autograder.grading.running.workspace_service import arrange, served
 from autograder.grading.task import Task
@@ -42,8 +41,8 @@ from autograder.temporary_folders import scratch_folder
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
-    from autograder.boxes.execution import Cell
     from autograder.boxes.limits import Left
+    from autograder.execution.cells import Cell, Execution
     from autograder.verdict import Verdict
 
 LAST_SECONDS = 10.0

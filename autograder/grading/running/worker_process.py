@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder import course
-from autograder.boxes.execution import Execution
 from autograder.boxes.fork_server import ForkServers
+from autograder.execution.cells import Execution
 from autograder.grading.running.orders import JUDGE
 from autograder.judge.settings import boxed_ros_environment, ros_environment
 from autograder.messages.lines import Hangup, Lines, Silent, TooLong

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from autograder import exercises
 from autograder.boxes.environment import kernel_environment
-from autograder.boxes.notebook_boxes import SHARED_FOLDER, BoxedPlace
+from autograder.execution.notebook_boxes import SHARED_FOLDER, BoxedPlace
 from autograder.judge.settings import boxed_ros_environment, ros_environment
 from autograder.workspaces.builds import cache, own_builds
 from autograder.workspaces.built_ahead import build_ahead
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.boxes.fork_server import Addresses
-    from autograder.boxes.notebook_boxes import UnboxedPlace
+    from autograder.execution.notebook_boxes import UnboxedPlace
     from autograder.grading.task import Task
 
 _BUILDS, _PROGRAMS = "builds", "bin"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from autograder.boxes.execution import CellType
+from autograder.execution.cells import CellType
 from autograder.grading.classes.class_directory import SUFFIX
 from autograder.grading.errors import MasterUnusable
 from autograder.grading.rebuilding import nbformat_nodes

@@ -12,9 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from autograder.boxes.environment import box_environment
-from autograder.boxes.execution import Ended
 from autograder.boxes.guards import BoxGuard
-from autograder.boxes.limits import BUILD_LIMITS, Limits
+from autograder.boxes.limits import BUILD_LIMITS, Ended, Limits
 from autograder.boxes.mounts import HOME, WORK
 from autograder.boxes.sandbox import Bind, Enclosure
 from autograder.temporary_folders import fresh_folder

@@ -9,8 +9,9 @@ import nbformat
 from nbformat.v4 import new_code_cell, new_notebook
 from tiny_class import FakeEngine
 
-from autograder.boxes.execution import Cell, CellRun, CellType, Ended, Execution
-from autograder.boxes.verdicts_without_judge import verdict_by_tests, zero_points
+from autograder.boxes.limits import Ended
+from autograder.execution.cells import Cell, CellRun, CellType, Execution
+from autograder.execution.verdicts_without_judge import verdict_by_tests, zero_points
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
 

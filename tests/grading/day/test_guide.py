@@ -18,8 +18,8 @@ from instructor import by_person
 from tiny_class import TALKER
 
 from autograder import exercises
-from autograder.boxes.execution import Execution
 from autograder.cli import cli
+from autograder.execution.cells import Execution
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
 from autograder.grading.rebuilding.task_making import tasks_of

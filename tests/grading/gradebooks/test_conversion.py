@@ -16,7 +16,7 @@ from bs4 import BeautifulSoup
 from nbgrader.preprocessors import AssignLatePenalties, GetGrades, SaveAutoGrades
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
-from autograder.boxes.execution import CellCheck
+from autograder.execution.cells import CellCheck
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.timestamps import handed_in_at
 from autograder.grading.gradebooks import conversion, gradebook

@@ -22,8 +22,8 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import re2
 
-from autograder.boxes.execution import CellType
 from autograder.boxes.seccomp_filter import ARCHITECTURES
+from autograder.execution.cells import CellType
 from autograder.grading.rebuilding import desk_process
 from autograder.grading.rebuilding.submission import ReadNotebook, SubmittedCell, Unreadable
 

@@ -10,7 +10,7 @@ import nbformat
 import pytest
 from nbformat import NotebookNode
 
-from autograder.boxes.execution import CellType
+from autograder.execution.cells import CellType
 from autograder.grading.rebuilding.parsing import parse
 from autograder.grading.rebuilding.rebuild import rebuild
 from autograder.grading.rebuilding.submission import SubmittedCell

@@ -9,8 +9,8 @@ import msgspec
 import nbformat
 import pytest
 
-from autograder.boxes.execution import CellType
-from autograder.boxes.outputs import Budget, OutputCollector
+from autograder.execution.cells import CellType
+from autograder.execution.outputs import Budget, OutputCollector
 from autograder.grading.rebuilding import nbformat_nodes
 
 _new_output: Any = nbformat.v4.new_output

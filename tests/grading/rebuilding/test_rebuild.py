@@ -4,7 +4,7 @@ import nbformat
 import pytest
 from nbformat import NotebookNode
 
-from autograder.boxes.execution import CellType
+from autograder.execution.cells import CellType
 from autograder.grading.rebuilding.rebuild import rebuild, rebuild_unreadable
 from autograder.grading.rebuilding.submission import SubmittedCell
 from autograder.grading.rebuilding.task_making import cells_of

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from autograder.boxes.execution import CellType
+from autograder.execution.cells import CellType
 from autograder.grading.rebuilding import submission
 from autograder.grading.rebuilding.parsing import parse
 from autograder.grading.rebuilding.submission import SubmittedCell, UnreadableSubmission, read_bytes

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from tiny_class import TALKER, TinyClass
 
-from autograder.boxes.execution import CellType
+from autograder.execution.cells import CellType
 from autograder.grading.classes.class_directory import ClassDirectory, Submission
 from autograder.grading.gradebooks.gradebook_reading import CellEntry, SubmissionEntry
 from autograder.grading.rebuilding import nbformat_nodes

@@ -11,7 +11,7 @@ import pytest
 from nbconvert.exporters import HTMLExporter
 from nbformat import NotebookNode
 
-from autograder.boxes.execution import CellType
+from autograder.execution.cells import CellType
 from autograder.grading.rebuilding.rebuild import rebuild, rebuild_unreadable
 from autograder.grading.rebuilding.submission import SubmittedCell
 from autograder.grading.returning.page_exporter import markdown_to_html

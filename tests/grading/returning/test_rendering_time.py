@@ -9,7 +9,7 @@ import nbformat
 import pytest
 from nbconvert.exporters import HTMLExporter
 
-from autograder.boxes.execution import Cell, CellType
+from autograder.execution.cells import Cell, CellType
 from autograder.grading.rebuilding.submission import HARMLESS_LENGTH
 from autograder.grading.returning import rendering_time
 from autograder.grading.returning.rendering_time import SECONDS, too_costly

@@ -9,7 +9,8 @@ import msgspec
 import pytest
 from tiny_class import FakeEngine, TinyClass
 
-from autograder.boxes.execution import CellRun, Ended, Execution
+from autograder.boxes.limits import Ended
+from autograder.execution.cells import CellRun, Execution
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.rebuilding.task_making import tasks_of
 from autograder.grading.running.admission import LARGEST_OFFER, Forged, admitted, admitted_offer

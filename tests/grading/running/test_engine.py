@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from autograder.boxes.execution import Cell, CellRun, Ended, Execution
+from autograder.boxes.limits import Ended
+from autograder.execution.cells import Cell, CellRun, Execution
 from autograder.grading.running import dispatcher, engine, this_machine
 from autograder.grading.task import Task
 

@@ -17,7 +17,8 @@ import pytest
 from nbgrader.api import Gradebook
 from tiny_class import GRADE, LISTENER, TALKER, FakeEngine, TinyClass
 
-from autograder.boxes.execution import Cell, CellCheck, CellRun, Ended, Execution
+from autograder.boxes.limits import Ended
+from autograder.execution.cells import Cell, CellCheck, CellRun, Execution
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.running import engine
 from autograder.grading.running.worker import a_check_was_stopped

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
+from autograder.boxes.limits import Ended  # noqa: TC001  (msgspec reads the annotations)
 from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annotations)
 
 
@@ -55,23 +56,6 @@ class Cell:
     check: CellCheck | None = None
     name: str = ""
     own: bool = False
-
-
-class Ended(StrEnum):
-    """How the execution of a cell ended."""
-
-    DONE = "done"
-    RAISED = "raised"
-    TIMED_OUT = "timed_out"
-    KERNEL_DIED = "kernel_died"
-    OUT_OF_MEMORY = "out_of_memory"
-    OUT_OF_CPU = "out_of_cpu"
-    TOO_MANY_PROCESSES = "too_many_processes"
-    TOO_MANY_FILES = "too_many_files"
-    TOO_MANY_LOCKS = "too_many_locks"
-    TOO_MUCH_OUTPUT = "too_much_output"
-    NOT_RUN = "not_run"
-    """The cell did not run, because the kernel had ended or the notebook's time was over."""
 
 
 @dataclass(frozen=True)

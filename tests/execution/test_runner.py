@@ -13,16 +13,16 @@ import psutil
 import pytest
 
 from autograder.boxes.box import NoSandbox
-from autograder.boxes.execution import Cell, CellCheck, CellType, Ended, Execution
 from autograder.boxes.fork_server import Addresses
-from autograder.boxes.limits import Left, Limits, Patient, wall_time
-from autograder.boxes.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
-from autograder.boxes.runner import Unfinished, run_notebook
+from autograder.boxes.limits import Ended, Left, Limits, Patient, wall_time
+from autograder.execution.cells import Cell, CellCheck, CellType, Execution
+from autograder.execution.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
+from autograder.execution.runner import Unfinished, run_notebook
 from autograder.temporary_folders import scratch_folder
 from autograder.verdict import State, Verdict
 
 if TYPE_CHECKING:
-    from autograder.boxes.kernel import Channels
+    from autograder.execution.kernel import Channels
 
 CHECK = CellCheck("lab.one", "One", points=10, worth=10, limit=2)
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.boxes.execution import CellCheck, CellRun, Ended
-from autograder.boxes.verdicts_without_judge import without_verdict
+from autograder.boxes.limits import Ended
+from autograder.execution.cells import CellCheck, CellRun
+from autograder.execution.verdicts_without_judge import without_verdict
 from autograder.verdict import ASKS_FOR_INPUT
 
 CHECK = CellCheck("lab.one", "One", points=10, worth=10, limit=2)

@@ -13,23 +13,23 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import pytest
 
-from autograder.boxes.desk_messages import admitted_answer
-from autograder.boxes.execution import Cell, CellCheck, Ended, Execution
 from autograder.boxes.fork_server import INSIDE, ForkServer
-from autograder.boxes.limits import Limits
-from autograder.boxes.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
-from autograder.boxes.outputs import NotebookOutputs
-from autograder.boxes.runner import run_notebook
+from autograder.boxes.limits import Ended, Limits
+from autograder.execution.cells import Cell, CellCheck, Execution
+from autograder.execution.desk_messages import admitted_answer
+from autograder.execution.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
+from autograder.execution.outputs import NotebookOutputs
+from autograder.execution.runner import run_notebook
 from autograder.temporary_folders import scratch_folder
 from autograder.verdict import State, Verdict
-from tests.boxes.hostile_kernel_desk import CRAFTED, SCRIPT
+from tests.execution.hostile_kernel_desk import CRAFTED, SCRIPT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from autograder.boxes.boxed_processes import ForkedProcess
     from autograder.boxes.fork_server import Addresses
-    from autograder.boxes.kernel import Channels
+    from autograder.execution.kernel import Channels
 
 ROOT = Path(__file__).resolve().parents[2]
 CHECK = Cell("1", check=CellCheck("lab.one", "One", points=10, worth=10, limit=2))
@@ -44,7 +44,9 @@ FAILS = [
 def hostile(boxed: Addresses, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Addresses]:
     """Fork servers with a program of desks that a notebook can choose."""
     address = tmp_path_factory.mktemp("f") / "k"
-    server = ForkServer(INSIDE, "tests.boxes.hostile_kernel_desk", address, extra={"PYTHONPATH": str(ROOT)})
+    server = ForkServer(
+        INSIDE, "tests.execution.hostile_kernel_desk", address, extra={"PYTHONPATH": str(ROOT)}
+    )
     yield replace(boxed, kernels=server.address)
     server.stop()
 

@@ -12,7 +12,7 @@ import ast
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from autograder.boxes.execution import Cell, CellType
+from autograder.execution.cells import Cell, CellType
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

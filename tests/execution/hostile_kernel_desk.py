@@ -20,12 +20,12 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 import re2
 
-from autograder.boxes import kernel_desk, kernel_process
+from autograder.execution import kernel_desk, kernel_process
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from autograder.boxes.desk_messages import Order, Said
+    from autograder.execution.desk_messages import Order, Said
 
 _NAMED = re2.compile(r"hostile: (\w+) ?(\d*)")
 SCRIPT = "<script>fired()</script><img src=x onerror=fired()>"

@@ -18,20 +18,19 @@ from typing import TYPE_CHECKING, Protocol
 import msgspec
 
 from autograder.boxes.box import NoSandbox
-from autograder.boxes.desk_messages import FURTHER_BYTES, MOST_ESCAPED, Do, Order, Said, admitted_answer
-from autograder.boxes.execution import Ended
 from autograder.boxes.guards import INTERVAL, NoGuard
-from autograder.boxes.limits import wall_time
+from autograder.boxes.limits import Ended, wall_time
+from autograder.execution.desk_messages import FURTHER_BYTES, MOST_ESCAPED, Do, Order, Said, admitted_answer
 from autograder.messages.lines import Hangup, Lines, Silent, TooLong
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.boxes.boxed_processes import ForkedProcess
-    from autograder.boxes.desk_messages import Answer
     from autograder.boxes.guards import Guard
     from autograder.boxes.limits import Left, Limits
-    from autograder.boxes.outputs import NotebookOutputs
+    from autograder.execution.desk_messages import Answer
+    from autograder.execution.outputs import NotebookOutputs
 
 SHELL, IOPUB = 1, 2
 """The channels in use, by their numbers in the names of the sockets."""
@@ -65,7 +64,7 @@ class Channels:
 
 
 class Place(Protocol):
-    """The part of :class:`autograder.boxes.notebook_boxes.BoxedPlace` that a kernel needs."""
+    """The part of :class:`autograder.execution.notebook_boxes.BoxedPlace` that a kernel needs."""
 
     def start_kernel(self, channels: Channels) -> ForkedProcess:
         """Start the kernel's process."""

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from autograder.boxes.outputs import OUTPUT_BYTES, Budget, OutputCollector
+from autograder.execution.outputs import OUTPUT_BYTES, Budget, OutputCollector
 
 
 def collector(cell: int = 10_000, notebook: int = 100_000) -> OutputCollector:

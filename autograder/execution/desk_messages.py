@@ -1,6 +1,6 @@
 """The orders to a kernel's desk and the desk's answers: lines of JSON on a socket.
 
-The desk (:mod:`autograder.boxes.kernel_desk`) reads what a student's program says, so the program may have taken the
+The desk (``kernel_desk.py``) reads what a student's program says, so the program may have taken the
 desk over. An answer is a document of this form or it is not used.
 """
 
@@ -13,7 +13,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from autograder.boxes.outputs import TRACEBACK_LINES
+from autograder.execution.outputs import TRACEBACK_LINES
 
 MOST_ESCAPED = 8
 """The most bytes in an answer for each byte of output. A control character takes six."""

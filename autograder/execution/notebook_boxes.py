@@ -13,20 +13,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from autograder.boxes.boxed_processes import ForkedProcess
-from autograder.boxes.desk_messages import Setting
 from autograder.boxes.enter_box import Entrance
 from autograder.boxes.environment import base_environment, box_environment, kernel_environment
 from autograder.boxes.guards import BoxGuard, NoGuard
 from autograder.boxes.mounts import HOME, WORK, Bind
 from autograder.boxes.sandbox import Enclosure
+from autograder.execution.desk_messages import Setting
 from autograder.temporary_folders import write_files
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from autograder.boxes.fork_server import Addresses
-    from autograder.boxes.kernel import Channels
     from autograder.boxes.limits import Limits
+    from autograder.execution.kernel import Channels
 
 SHARED_FOLDER = Path("/run/judge")
 """The path, in the student's box, of the folder that the box shares with its grader."""

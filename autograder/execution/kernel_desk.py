@@ -3,7 +3,7 @@
 A desk is a fork of the kernels' fork server, which has loaded Jupyter's protocol (``jupyter_client.session``) and
 ZeroMQ. It connects to the kernel. Then, before it reads anything, it takes a filter of system calls: from now on it can
 open no file, start no process or thread, and make no further connection. ZeroMQ keeps a message in memory, without a
-limit, until the last part has come: here the memory limit of the process ends that. :mod:`autograder.boxes.kernel`
+limit, until the last part has come: here the memory limit of the process ends that. :mod:`autograder.execution.kernel`
 gives the orders.
 """
 
@@ -20,10 +20,10 @@ from jupyter_client.session import Session
 from zmq.utils.monitor import recv_monitor_message
 
 from autograder.boxes import syscalls
-from autograder.boxes.desk_messages import Answer, Do, Order, Said, Setting
-from autograder.boxes.kernel import IOPUB, SHELL
-from autograder.boxes.outputs import Budget, OutputCollector
 from autograder.boxes.seccomp_filter import filter_for_desks
+from autograder.execution.desk_messages import Answer, Do, Order, Said, Setting
+from autograder.execution.kernel import IOPUB, SHELL
+from autograder.execution.outputs import Budget, OutputCollector
 from autograder.messages.lines import Hangup, Lines
 
 if TYPE_CHECKING:

@@ -19,9 +19,9 @@ import zmq
 from ipykernel.kernelapp import IPKernelApp
 from traitlets.config import Config
 
-from autograder.boxes import kernel_desk
 from autograder.boxes.fork_server import INTERFACES, RCLPY, preload, preload_ros
-from autograder.boxes.kernel import IOPUB, SHELL
+from autograder.execution import kernel_desk
+from autograder.execution.kernel import IOPUB, SHELL
 from autograder.temporary_folders import HeldFolder
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
 
     Args:
         call: ``key``, with which messages are signed, and ``address``, the path in the names of the sockets. For a desk
-            the argument of :func:`autograder.boxes.kernel_desk.run`.
+            the argument of :func:`autograder.execution.kernel_desk.run`.
         descriptors: The listening sockets of the shell and iopub channels, and a descriptor for other output. For a
             desk the socket of its orders.
     """

@@ -10,12 +10,17 @@ import contextlib
 import time
 from typing import TYPE_CHECKING, Protocol
 
-from autograder.boxes.execution import Cell, CellCheck, CellRun, CellType, Ended, Execution
-from autograder.boxes.hang_limits import Hangs, seconds_again
-from autograder.boxes.kernel import Kernel, KernelFailed, Place
-from autograder.boxes.limits import Patient, first_of, wall_time
-from autograder.boxes.outputs import NotebookOutputs
-from autograder.boxes.verdicts_without_judge import LIMITS, grader_trouble, verdict_by_tests, without_verdict
+from autograder.boxes.limits import Ended, Patient, first_of, wall_time
+from autograder.execution.cells import Cell, CellCheck, CellRun, CellType, Execution
+from autograder.execution.hang_limits import Hangs, seconds_again
+from autograder.execution.kernel import Kernel, KernelFailed, Place
+from autograder.execution.outputs import NotebookOutputs
+from autograder.execution.verdicts_without_judge import (
+    LIMITS,
+    grader_trouble,
+    verdict_by_tests,
+    without_verdict,
+)
 from autograder.verdict import State, Verdict
 
 if TYPE_CHECKING:

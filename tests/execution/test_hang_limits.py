@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.boxes.execution import Cell, CellCheck, Ended
-from autograder.boxes.limits import Limits
-from autograder.boxes.runner import _Run
+from autograder.boxes.limits import Ended, Limits
+from autograder.execution.cells import Cell, CellCheck
+from autograder.execution.runner import _Run
 
 if TYPE_CHECKING:
     from autograder.boxes.limits import Left

@@ -1,0 +1,38 @@
+"""Fork servers for all tests of boxes, and of what runs in them."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+import pytest
+
+from autograder.boxes.fork_server import ForkServers
+from autograder.boxes.sandbox import why_impossible
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from autograder.boxes.fork_server import Addresses
+
+NO_JUDGE = "autograder.boxes.supervisor"
+"""These tests need none: any module with a \"prepare\" will do."""
+
+
+@pytest.fixture(scope="session")
+def boxed() -> Iterator[Addresses]:
+    """The fork servers of a machine with a sandbox."""
+    why = why_impossible()
+    if why and os.environ.get("CI"):
+        pytest.fail(f"no sandbox is possible here, and this project's CI has one: {why}")
+    if why:
+        pytest.skip(f"no sandbox is possible here: {why}")
+    with ForkServers(NO_JUDGE, boxed=True) as warm:
+        yield warm.addresses
+
+
+@pytest.fixture(scope="session")
+def unboxed() -> Iterator[Addresses]:
+    """The fork servers where nothing is boxed."""
+    with ForkServers(NO_JUDGE, boxed=False) as warm:
+        yield warm.addresses
