@@ -37,7 +37,7 @@ LAB = "lab.md"
 WHY = ".why.md"
 """The suffix of the file, next to an exercise, that contains the reasons for its reference solution."""
 SOLUTION = ".solution.json"
-"""The suffix of the file, made from these reasons and the master, that students see with full marks."""
+"""The suffix of the file with an exercise's solution and its reasons, which students see with full marks."""
 
 
 class NoCourse(LookupError):

@@ -1,7 +1,7 @@
 """Set the course up in ``.venv``: ``python3 -m environment.bootstrap``, with the options below.
 
-Called by ``./course``, with any Python from 3.11 on and its standard library only. Each step is stamped with
-a hash of its inputs (see steps.py), so running this again only does what is left to do: usually nothing.
+``./course`` calls this, with any Python from 3.11 on and only its standard library. Each step is stamped with a hash
+of its inputs (see steps.py), so a second run does only what is left to do: usually nothing.
 """
 
 from __future__ import annotations
@@ -31,20 +31,20 @@ ROOT = Path(__file__).resolve().parent.parent
 # The disk space of a complete environment, with some reserve for the build, in bytes.
 _SPACE_NEEDED = 1_600_000_000
 _LOG_LINES_SHOWN = 25
-# pip names all of its packages in one line.
+# The maximum length of a line of the log that is shown, in characters. pip names all of its packages in one line.
 _LOG_COLUMNS_SHOWN = 200
 
 
 def say(line: str) -> None:
-    """Print a line for the user, on standard error: standard output is the following command's."""
+    """Print a line for the user on standard error, because standard output belongs to the command that follows."""
     print(f"course: {line}", file=sys.stderr, flush=True)
 
 
 def choose_ros(place: Place, environ: Mapping[str, str]) -> tuple[Ros, dict[str, str]]:
-    """Decide which ROS to use; return it with the variables in which it is sourced.
+    """Decide which ROS to use. Return it, with the variables in which it is sourced.
 
     Raises:
-        NoRosError: there is none to be used here.
+        NoRosError: No ROS can be used here.
     """
     sourced = ros_flavour.with_recorded(environ, ros_flavour.load(place.prefix))
 
@@ -71,15 +71,15 @@ def without_network(wheels: Path | None) -> dict[str, str]:
 
 
 def _find_base_python() -> Path:
-    # Run by the Python of an environment, this must not make the next one out of it.
+    # If the Python of an environment runs this, the next environment must not be made from it.
     return Path(os.path.realpath(getattr(sys, "_base_executable", INTERPRETER)))
 
 
 def _check_place(place: Place) -> None:
-    """Look for what would make the set-up fail later, or do harm.
+    """Check for conditions that would make the set-up fail later or do harm.
 
     Raises:
-        SetupError: something is in the way.
+        SetupError: Such a condition was found.
     """
     if ":" in str(place.root):
         raise SetupError(f"a search path cannot hold a folder with a colon in its name: {place.root}")
@@ -104,7 +104,7 @@ def _check_space(place: Place) -> None:
 
 
 def _explain_failure(log_path: Path) -> None:
-    """Show the end of the log, with a word about the usual causes."""
+    """Show the end of the log, with a sentence about the usual causes."""
     try:
         with log_path.open(encoding="utf-8", errors="replace") as log:
             lines = list(deque(log, _LOG_LINES_SHOWN))
@@ -125,7 +125,7 @@ def _explain_failure(log_path: Path) -> None:
 
 
 def _extras(place: Place, asked: Sequence[str]) -> list[str]:
-    """Return what is installed besides, now and from now on: an extra that was asked for once stays."""
+    """Return the extras to install. An extra that was requested once stays."""
     noted = place.notes / "extras"
     before = noted.read_text(encoding="utf-8").split() if noted.is_file() else []
     wanted = [name for name in EXTRAS if name in before or name in asked]
@@ -138,13 +138,13 @@ def set_up(place: Place, environ: Mapping[str, str], with_tests: bool, extras: S
     """Bring the environment up to date.
 
     Args:
-        place: where everything is.
-        environ: the user's variables.
-        with_tests: also what ``./course test`` needs.
-        extras: also what these extras of pyproject.toml need.
+        place: The paths of the environment.
+        environ: The environment variables of the user.
+        with_tests: True to install what ``./course test`` needs, too.
+        extras: The extras of pyproject.toml to install.
 
     Raises:
-        SetupError, NoRosError, MissingPackagesError: it cannot be done; the text says what to do.
+        SetupError, NoRosError, MissingPackagesError: The set-up failed. The message says what to do.
     """
     _check_place(place)
     ros, sourced = choose_ros(place, environ)
@@ -173,7 +173,7 @@ def set_up(place: Place, environ: Mapping[str, str], with_tests: bool, extras: S
 
 
 def _provide(need: system_packages.Need, log: IO[str], otherwise: str) -> None:
-    """Install what is missing for a need if that is possible; else print the consequence and the command to get it."""
+    """Install what is missing for a need if that is possible; else print the consequence and the command to type."""
     apt = system_packages.Apt.here()
     for row in system_packages.provide(need, log, say, apt):
         get = system_packages.get_with([row], apt)
@@ -181,7 +181,7 @@ def _provide(need: system_packages.Need, log: IO[str], otherwise: str) -> None:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Set up, one set-up at a time, and note the token of `./course` when all is done."""
+    """Set up, one set-up at a time, and record the token of `./course` when everything is done."""
     parser = argparse.ArgumentParser(
         prog="python3 -m environment.bootstrap", description=__doc__.splitlines()[0]
     )

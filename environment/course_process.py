@@ -1,17 +1,17 @@
-"""The start of every Python of the course's environment: ROS is found, and nothing has to be sourced.
+"""Starts every Python of the course's environment so that it finds ROS without sourcing.
 
-The set-up copies this file into the site-packages of ``.venv``, with a ``.pth`` file that calls `begin` and
-with the paths of this machine in ``course_paths.py``. So ``.venv/bin/python talker.py`` works in any
-terminal, and so does everything that Python starts. Every start pays for what is done here, so it imports
-nothing but ``os`` and ``sys``.
+The set-up copies this file into the site-packages of ``.venv``, with a ``.pth`` file that calls `begin`, and with the
+paths of this machine in ``course_paths.py``. So ``.venv/bin/python talker.py`` works in any terminal, and so does
+everything that Python starts. Every start pays for what is done here, so this file imports nothing but ``os`` and
+``sys``.
 
-The ROS wheels bring a ``.pth`` of their own (ros-wheels-bootstrapper) that starts Python a second time with
-``LD_LIBRARY_PATH`` set. `begin` runs before it and takes over, because that one
+The ROS wheels contain a ``.pth`` file of their own (ros-wheels-bootstrapper), which starts Python a second time with
+``LD_LIBRARY_PATH`` set. `begin` runs before that file and takes its place, because that file
 
-* trusts its guard variable, which a process of another environment can have set for its own libraries;
-* keeps a sourced ROS of another distribution in front, so that the wrong rclpy is found;
-* takes the library folders in the order of a set, another one at each start;
-* costs each start 10 ms for what it imports, also when it has nothing to do.
+* trusts its guard variable, which a process of another environment may have set for its own libraries;
+* keeps a sourced ROS of another distribution at the front, so that the wrong rclpy is found;
+* adds the library folders in the order of a set, which is different at each start;
+* costs each start 10 ms for its imports, even if it has nothing to do.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ if TYPE_CHECKING:
 _IN_FRONT = ("PATH",)
 # A change of these reaches a running process too late: the loader and the interpreter read them at the start.
 READ_AT_START = ("LD_LIBRARY_PATH", "PYTHONPATH", "PYTHONUTF8")
-# Set for the length of one second start, so that it can not become a third.
+# This variable is set only during a second start, so that no third start follows.
 _SECOND_START = "_COURSE_SECOND_START"
 _BOOTSTRAPPER = "ros_wheels_bootstrapper"
-# The program that a workspace's setup.bash asks what to export. It compares with its own environment, so that
-# must be the terminal's, or half of the variables are taken for set.
+# The program that a workspace's setup.bash asks what to export. It compares with its own environment, so it must run
+# in the terminal's environment; otherwise half of the variables would count as set.
 _SETUP_BASH_HELPER = "_local_setup_util"
 
 
 def holds_rclpy(prefix: str) -> bool:
-    """Tell whether a folder is the prefix of an installed ROS 2 (a workspace on top of one is not)."""
+    """Return True if a folder is the prefix of an installed ROS 2. A workspace on top of one is not."""
     return os.path.exists(f"{prefix}/share/rclpy/package.xml")  # noqa: PTH110 (pathlib costs 10 ms)
 
 
@@ -52,17 +52,16 @@ def _lies_in(path: str, folders: Sequence[str]) -> bool:
 def variables(
     paths: Mapping[str, Sequence[str]], values: Mapping[str, str], environ: Mapping[str, str]
 ) -> dict[str, str]:
-    """Return the variables that have to change for a process of the course, with their new values.
+    """Return the variables that have to change in a process of the course, with their new values.
 
-    An existing folder keeps its place, so that a student's sourced workspace stays in front of
-    ROS. The folders of another ROS than the one this environment was set up with are dropped: two in one
-    process never work. ``PATH`` keeps them, for a folder of programs is only looked at when nothing before it
-    fits.
+    A folder that is already in a search path keeps its position, so that a student's sourced workspace stays before
+    ROS. Folders of a ROS other than the one of this environment are dropped, because two in one process never work.
+    ``PATH`` keeps them, because a folder of programs is searched only if nothing before it fits.
 
     Args:
-        paths: for each search path variable, the folders that must be in it.
-        values: the variables with one value.
-        environ: the variables of the process as they are.
+        paths: The folders that must be in each search path variable.
+        values: The variables that have a single value.
+        environ: The current variables of the process.
     """
     ours = paths.get("AMENT_PREFIX_PATH", ())
     prefixes = _entries(environ.get("AMENT_PREFIX_PATH"))
@@ -81,18 +80,18 @@ def variables(
 
 
 def _start_again(environ: MutableMapping[str, str]) -> None:
-    """Replace this process by the same one, so that it starts with the environment it has now."""
+    """Replace this process by a new start of the same program, with the current environment."""
     environ[_SECOND_START] = "1"
     python = sys.executable  # noqa: TID251  (this file stands alone in site-packages, and starts nothing new)
     os.execve(python, [python, *sys.orig_argv[1:]], dict(environ))
 
 
 def begin() -> None:
-    """Set the variables of this process; if it is too late for that, start the process again once."""
+    """Set the variables of this process. If it is too late for that, start the process again, once."""
     from course_paths import PATHS, VALUES
 
     environ = os.environ
-    # The .pth file imports the module by name and then finds it imported.
+    # The .pth file imports the module by name, and so finds it already imported.
     sys.modules[_BOOTSTRAPPER] = type(sys)(_BOOTSTRAPPER)
     if any(os.path.basename(word).startswith(_SETUP_BASH_HELPER) for word in sys.orig_argv[1:2]):  # noqa: PTH119
         return
@@ -104,9 +103,9 @@ def begin() -> None:
 
 
 def join() -> None:
-    """Set the variables of a process that runs already and was started by another Python.
+    """Set the variables of a running process that another Python started.
 
-    The paths of libraries come too late for its loader: see environment/plain_kernel.py.
+    The loader of the process does not use changed paths of libraries: see environment/plain_kernel.py.
     """
     from course_paths import PATHS, VALUES
 

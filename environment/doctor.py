@@ -1,7 +1,7 @@
 """Say what the course needs is there, and what is missing: ``python -m environment.doctor``.
 
-Each probe looks at one group of things and answers with Findings; `PROBES` is their order. A probe never
-raises: what it cannot find out is a finding too.
+Each probe examines one group of needs and returns Findings; `PROBES` lists the probes in order. A probe never raises
+an exception: if it cannot find something out, this is a finding, too.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ SET_UP = "Type: ./course setup"
 # Fast DDS moves messages between processes through /dev/shm. A participant takes about half a megabyte per
 # transport; a container's default of 64 MB is enough for a class of one.
 _SHM_NEEDED = 64_000_000
-# Class directories, notebooks with pictures and logs, in bytes.
+# The free disk space for class directories, notebooks with pictures, and logs, in bytes.
 _DISK_NEEDED = 500_000_000
-# Programs that only print their version, in seconds.
+# Time limit in seconds for a program that only prints its version.
 _SHORT = 20.0
 
-# ok: it is there and works.  missing: the course needs it.  optional: not there, and only a part needs it.
-# unchecked: could not be found out, because something else is missing.
+# ok: it exists and works. missing: the course needs it. optional: it is missing, but only a part of the course needs
+# it. unchecked: this could not be found out, because something else is missing.
 State = Literal["ok", "missing", "optional", "unchecked"]
 
 _SIGN = {"ok": "ok", "missing": "MISSING", "optional": "optional", "unchecked": "not checked"}
@@ -48,13 +48,13 @@ _SIGN = {"ok": "ok", "missing": "MISSING", "optional": "optional", "unchecked": 
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that the course needs or can use.
+    """The result for one thing that the course needs or can use.
 
     Attributes:
-        name: the thing.
-        state: how it stands with it.
-        detail: what was found: a version, a path, what was wrong.
-        remedy: how to get it; empty if there is nothing to do.
+        name: The name of the thing.
+        state: Whether the thing exists and is needed.
+        detail: The version, the path, or what is wrong.
+        remedy: How to install it; empty if there is nothing to do.
     """
 
     name: str
@@ -64,12 +64,12 @@ class Finding:
 
 
 def exit_code(findings: Iterable[Finding]) -> int:
-    """Return 0 if everything that the course needs is there, else 1."""
+    """Return 0 if everything that the course needs exists, else 1."""
     return 1 if any(finding.state == "missing" for finding in findings) else 0
 
 
 def as_text(findings: Iterable[Finding]) -> str:
-    """Return the findings as lines for a terminal: the state, the thing, the detail, then the remedy."""
+    """Return the findings as lines for a terminal: state, name, detail, and then the remedy."""
     lines = []
     for finding in findings:
         lines.append(f"{_SIGN[finding.state]:<12} {finding.name}: {finding.detail}")
@@ -79,7 +79,7 @@ def as_text(findings: Iterable[Finding]) -> str:
 
 
 def _output(program: list[str] | PythonChild) -> tuple[int, str]:
-    """Run a command and return its exit code and all it printed; 127 if it could not be started or hung."""
+    """Run a command. Return exit code and output; the code is 127 if it could not be started or did not end in time."""
     child = program if isinstance(program, PythonChild) else PythonChild(program, dict(os.environ), None)
     try:
         done = subprocess.run(
@@ -108,10 +108,10 @@ def _last_line(text: str) -> str:
 
 
 def _again(extra: str = "") -> str:
-    """Return how to get what a set-up installs.
+    """Return the command that installs what a set-up installs.
 
     Args:
-        extra: The extra of the wheel that brings it; empty for what comes with a sourced ROS only.
+        extra: The extra of the wheel; empty for something that comes only with a sourced ROS.
     """
     if IS_CLONE:
         return f"Delete the folder .venv, then {SET_UP[0].lower()}{SET_UP[1:]}"
@@ -119,7 +119,7 @@ def _again(extra: str = "") -> str:
 
 
 def python() -> list[Finding]:
-    """Look at the Python that runs this, and at the environment of the course."""
+    """Check the Python that runs this, and the environment of the course."""
     detail = f"{sys.version.split()[0]}, {INTERPRETER}"
     if not IS_CLONE:
         return [Finding("Python", "ok", detail)]
@@ -136,9 +136,9 @@ def python() -> list[Finding]:
 
 
 def ros() -> list[Finding]:
-    """Look at the ROS 2 that was set up, at its middleware and at the interface package."""
+    """Check the ROS 2 that was set up, its middleware and the interface package."""
     recorded = ros_flavour.load(Path(sys.prefix))
-    # The last line: a library that is loaded may have printed before.
+    # Only the last line is read, because a library may have printed something before it.
     report = _parsed(_last_line(_output(python_child("-m", "environment.ros_report"))[1]))
     found = [_ros(recorded, report), _middleware(report)]
     # The wheel does not contain the course's own interfaces.
@@ -188,7 +188,7 @@ def _interfaces(report: dict[str, object]) -> Finding:
 
 
 def talk() -> list[Finding]:
-    """Let two processes talk to each other over ROS."""
+    """Check whether two processes can exchange a message over ROS."""
     name = "Two nodes talk"
     if _output(python_child("-c", "import rclpy"))[0] != 0:
         return [Finding(name, "unchecked", "rclpy is missing")]
@@ -205,7 +205,7 @@ def talk() -> list[Finding]:
 
 
 def build_tools() -> list[Finding]:
-    """Look at what builds packages."""
+    """Check the programs that build packages."""
     found = []
     compilers = system_packages.find_compilers()
     if compilers:
@@ -241,7 +241,7 @@ def _distribution(name: str) -> str:
 
 
 def jupyter() -> list[Finding]:
-    """Look at JupyterLab, nbgrader and the kernel."""
+    """Check JupyterLab, nbgrader and the kernel."""
     found = []
     for title, name in (("JupyterLab", "jupyterlab"), ("nbgrader", "nbgrader")):
         number = _distribution(name)
@@ -250,14 +250,14 @@ def jupyter() -> list[Finding]:
             if number
             else Finding(title, "missing", "not installed", _again("class"))
         )
-    if not IS_CLONE:  # whose kernel is the user's own
+    if not IS_CLONE:  # an installed wheel uses the user's own kernel
         return found
     spec = Path(sys.prefix) / "share/jupyter/kernels" / jupyter_files.KERNEL_NAME / "kernel.json"
     return [*found, kernel(spec)]
 
 
 def kernel(spec: Path) -> Finding:
-    """Check a kernelspec: it must start a Python that exists, with the variables of a graded cell."""
+    """Check a kernelspec: it must start an existing Python, with the variables of a graded cell."""
     name = f"Kernel {jupyter_files.KERNEL_NAME}"
     try:
         content = json.loads(spec.read_text(encoding="utf-8"))
@@ -274,7 +274,7 @@ def kernel(spec: Path) -> Finding:
 
 
 def space() -> list[Finding]:
-    """Look at the disk and at the shared memory."""
+    """Check the disk space and the shared memory."""
     folder = ROOT if IS_CLONE else Path.cwd()
     whose = (
         f"Have {owner(folder)}, whose folder it is, type what changes it, such as: ./course setup"
@@ -287,14 +287,14 @@ def space() -> list[Finding]:
 
 
 def folder_space(name: str, folder: Path, needed: int, remedy: str, not_yours: str = "") -> Finding:
-    """Look at a folder that must be writable and have room.
+    """Check a folder that must be writable and have enough free space.
 
     Args:
-        name: what it is.
-        folder: the folder.
-        needed: the free space that it must have, in bytes.
-        remedy: how to get it.
-        not_yours: what to do if the folder belongs to another user; the same remedy if empty.
+        name: The name of the folder in the report.
+        folder: The path of the folder.
+        needed: The required free space, in bytes.
+        remedy: What to do if there is too little space.
+        not_yours: What to do if the folder belongs to another user; the same as ``remedy`` if empty.
     """
     if not folder.is_dir():
         return Finding(name, "missing", f"the folder {folder} does not exist", remedy)
@@ -308,7 +308,7 @@ def folder_space(name: str, folder: Path, needed: int, remedy: str, not_yours: s
 
 
 def sandbox() -> list[Finding]:
-    """Look at whether submissions can be shut off in boxes, and at what holds a box to its limits."""
+    """Check whether submissions can be isolated in boxes, and what enforces the limits of a box."""
     name = "Sandbox"
     path = shutil.which("bwrap")
     if path is None:
@@ -330,7 +330,7 @@ def sandbox() -> list[Finding]:
 
 
 def for_tests() -> list[Finding]:
-    """Look at what only ./course test uses."""
+    """Check what only ./course test uses."""
     chromium = system_packages.find_program(*system_packages.CHROMIUM_NAMES)
     return [Finding("Chromium", "ok", chromium)] if chromium else _not_there("tests")
 
@@ -349,7 +349,7 @@ def _not_there(need: system_packages.Need) -> list[Finding]:
 
 
 def for_more() -> list[Finding]:
-    """Look at what builds packages and at Jupyter: a wheel judges programs without them."""
+    """Check what builds packages, and Jupyter. A wheel can judge programs without them."""
     found = [*build_tools(), *jupyter()]
     if IS_CLONE:
         return found
@@ -360,14 +360,14 @@ PROBES = (python, ros, talk, for_more, space, sandbox, *([for_tests] if IS_CLONE
 
 
 def examine() -> list[Finding]:
-    """Look at everything, in about two seconds, and return the findings in their order."""
-    # Most probes wait for a process: three at a time.
+    """Run all probes, which takes about two seconds, and return the findings in order."""
+    # Most probes wait for a process, so three run at a time.
     with ThreadPoolExecutor(3) as pool:
         return [finding for found in pool.map(lambda probe: probe(), PROBES) for finding in found]
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Print the findings and return the exit code: 0 if the course can run, 1 if something is missing."""
+    """Print the findings. Return the exit code: 0 if the course can run, 1 if something is missing."""
     parser = argparse.ArgumentParser(prog="python -m environment.doctor", description=__doc__.splitlines()[0])
     parser.add_argument("--json", action="store_true", help="print the findings as a JSON list")
     options = parser.parse_args(arguments)

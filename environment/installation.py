@@ -1,4 +1,4 @@
-"""How this package came here, and so what its messages tell people to type: a wheel has no ``./course``.
+"""Tells how this package was installed, because a wheel has no ``./course`` for its messages to name.
 
 Only the standard library is used: this runs before anything is installed.
 """
@@ -21,6 +21,6 @@ def installing(extra: str, clone: str = "") -> str:
 
     Args:
         extra: The name of the extra in pyproject.toml.
-        clone: The words behind ``./course setup`` in a clone, which leaves out only some extras.
+        clone: The options of ``./course setup`` in a clone, where only some extras are left out.
     """
     return " ".join(f"./course setup {clone}".split()) if IS_CLONE else f"pip install '{PACKAGE}[{extra}]'"

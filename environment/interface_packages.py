@@ -1,7 +1,7 @@
-"""The packages with interfaces that the set-up builds: the course's own, and those in the folders of its chapters.
+"""Finds and builds interface packages: the course's own, and those in the folders of its chapters.
 
-A folder holds definitions only, and the set-up makes the package of them: students write such a package in a lab, and
-nothing that they are handed may be the answer.
+A folder contains only definitions, and the set-up makes a package of them, because students write such a package in a
+lab, and nothing that they receive may be the answer.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ ONLY_PYTHON = (
     "-DCMAKE_C_FLAGS_RELEASE=-O0 -DNDEBUG",
     "-DCMAKE_CXX_FLAGS_RELEASE=-O0 -DNDEBUG",
 )
-"""For CMake: interfaces for Python nodes alone."""
+"""Arguments for CMake that generate interfaces for Python nodes only."""
 
-# The folder of the chapters: in the course, and in a hand-out.
+# The folders that may contain the chapters: in the course, and in a hand-out.
 _CHAPTERS = ("solutions", "exercises")
 _DEFINITIONS = (".action", ".msg", ".srv")
 _PACKAGE_XML = """\
@@ -56,10 +56,10 @@ _TAGS = {
 
 
 def interface_packages(root: Path) -> tuple[Path, ...]:
-    """Return the folders of all packages, in a stable order; each is called as its package.
+    """Return the folders of all packages, in a fixed order. Each folder has the name of its package.
 
     Args:
-        root: the folder of the course.
+        root: The folder of the course.
     """
     patterns = ("environment/interfaces/*", *(f"{name}/*/interfaces/*" for name in _CHAPTERS))
     return tuple(
@@ -68,25 +68,25 @@ def interface_packages(root: Path) -> tuple[Path, ...]:
 
 
 def only_python_needs(packages: Sequence[Path]) -> bool:
-    """Return whether no package holds a message, of which others make interfaces, for C++ too in a full build."""
+    """Return True if interfaces for Python are enough, because no package has a message that others use in C++."""
     return not any(True for package in packages for _ in package.glob("msg/*.msg"))
 
 
 def build_command(
     colcon: Path, python: Path, packages: Sequence[Path], prefix: Path, scratch: Path, *, light: bool = False
 ) -> list[str | Path]:
-    """Make the packages, and return the command that builds them into a prefix.
+    """Write the packages, and return the command that builds them into a prefix.
 
     Args:
-        colcon: the program.
-        python: the interpreter that the interfaces are for.
-        packages: the folders of the definitions.
-        prefix: the common install folder of all.
-        scratch: a folder for what is made on the way.
-        light: for Python nodes alone.
+        colcon: The path of colcon.
+        python: The interpreter for which interfaces are generated.
+        packages: The folders with the definitions.
+        prefix: The common install folder of all packages.
+        scratch: A folder for intermediate files.
+        light: True to generate interfaces for Python only.
 
     Raises:
-        OSError: They cannot be written.
+        OSError: The packages cannot be written.
     """
     sources = scratch / "interfaces"
     shutil.rmtree(sources, ignore_errors=True)
@@ -107,7 +107,7 @@ def _definitions(folder: Path) -> list[Path]:
 
 
 def _make_package(folder: Path, place: Path) -> None:
-    """Write the package of a folder: a copy of its definitions, and what colcon and CMake have to know."""
+    """Write a package: a copy of the folder's definitions, and the files that colcon and CMake need."""
     shutil.copytree(folder, place)
     names = [file.relative_to(folder).as_posix() for file in _definitions(folder)]
     needless = {"action_msgs"} if not any(name.endswith(".action") for name in names) else set()

@@ -1,7 +1,7 @@
-"""JupyterLab's settings from the environment: the kernel's variables, its terminals, no questions about news.
+"""Writes JupyterLab's settings in the environment: kernel variables and terminals, and no question about news.
 
-All of it is inside the environment (``.venv/share/jupyter``, ``.venv/etc``), so that it holds
-however JupyterLab is started and touches no setting of the user's own.
+Everything is inside the environment (``.venv/share/jupyter``, ``.venv/etc``). So it applies however JupyterLab is
+started, and changes no setting of the user.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ KERNEL_NAME = "python3"
 
 
 def kernel_install_options() -> list[str]:
-    """Return the options of ``python -m ipykernel install`` that make the kernel of the course."""
+    """Return the options with which ``python -m ipykernel install`` makes the kernel of the course."""
     options = ["--sys-prefix", "--name", KERNEL_NAME, "--display-name", "Python 3 (ipykernel)"]
     return options + [word for name, value in KERNEL_VARIABLES.items() for word in ("--env", name, value)]
 
@@ -30,7 +30,7 @@ def kernel_install_options() -> list[str]:
 def lab_settings() -> dict[str, object]:
     """Return the settings that differ from JupyterLab's own.
 
-    On its first start it asks whether it may fetch news: a student should meet the course, not a question.
+    At its first start JupyterLab asks whether it may fetch news. A student should see the course and not a question.
     """
     return {
         "@jupyterlab/apputils-extension:notification": {
@@ -42,14 +42,13 @@ def lab_settings() -> dict[str, object]:
 
 
 def server_config(root: Path, bash: str | None) -> dict[str, object]:
-    """Return the server's configuration: its terminals start with ROS at hand.
+    """Return the server's configuration, with which ROS is available in terminals.
 
-    Without it a login shell's profile puts the system's programs in front, and ``python talker.py`` finds no
-    rclpy.
+    Otherwise the profile of a login shell puts the system's programs first, and ``python talker.py`` finds no rclpy.
 
     Args:
-        root: the folder of the course.
-        bash: the path of bash, or None if there is none; then the terminals keep their defaults.
+        root: The folder of the course.
+        bash: The path of bash; None if there is none, in which case terminals keep their defaults.
     """
     if bash is None:
         return {}

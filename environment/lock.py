@@ -1,13 +1,14 @@
 """Resolve the dependencies into hashed lock files: ``python3 -m environment.lock [--upgrade | --wheels FOLDER]``.
 
-The lock files in ``requirements/`` are one resolution, cut into the parts that a set-up installs separately:
+The lock files in ``requirements/`` come from one resolution, which is cut into the parts that a set-up installs
+separately:
 
 * ``uv.lock``: uv, which installs the others, and resolves them here;
 * ``course.lock``: the dependencies of pyproject.toml, those of a class, and the build tools;
 * ``ros.lock``: the ROS wheels and their other dependencies, left out if a Jazzy is sourced;
-* ``dev.lock``: what ``./course test`` needs besides;
-* ``cluster.lock``, ``postgresql.lock``, ``site.lock``: what the extra of that name needs besides, installed where
-  it is asked for.
+* ``dev.lock``: what only ``./course test`` needs;
+* ``cluster.lock``, ``postgresql.lock``, ``site.lock``: what only the extra with that name needs, installed on
+  request.
 
 Without ``--upgrade`` a version that is locked stays as long as the inputs allow it. The locks name no package
 index: that is what pip is configured for, and the hashes make sure that it is the same file.
@@ -40,7 +41,7 @@ COURSE = ("--extra", "class")
 """The extras that the course itself is installed with: ROS is in a lock of its own."""
 LOCKS = ("uv", "course", "ros", "dev", *EXTRAS)
 
-# The oldest Python of the project; the resolution is universal, markers cover the newer ones.
+# The oldest Python of the project. The resolution is universal, and markers in it cover newer versions.
 OLDEST_PYTHON = "3.11"
 
 _HEADER = """\
@@ -60,7 +61,7 @@ _BLOCK_START = re.compile(r"^([A-Za-z0-9][A-Za-z0-9._-]*)==")
 
 
 def inputs_digest(root: Path = ROOT) -> str:
-    """Return the SHA-256 (hexadecimal) of everything that a lock is made from.
+    """Return the SHA-256 (hexadecimal) of everything from which a lock is made.
 
     Of pyproject.toml only the dependency lists count, so that other edits of it leave the locks valid.
     """
@@ -76,9 +77,9 @@ def inputs_digest(root: Path = ROOT) -> str:
 
 
 def split_blocks(lock: str) -> list[tuple[str, str]]:
-    """Cut the text of a lock file into (name, requirement with its hashes and comments), in order.
+    """Yield the parts of a lock file in order: a name, and its requirement with hashes and comments.
 
-    A name can come several times, with different markers.
+    A name may come several times, with different markers.
     """
     blocks: list[tuple[str, list[str]]] = []
     for line in lock.splitlines():
@@ -97,9 +98,9 @@ def cut(everything: str, course: set[str], extras: Mapping[str, set[str]]) -> di
     since any of them may be installed without the others.
 
     Args:
-        everything: the text of the whole resolution.
-        course: the names that the course needs without ROS.
-        extras: the same with each extra.
+        everything: The text of the whole resolution.
+        course: The names of the packages that the course needs without ROS.
+        extras: The names of the packages that each extra needs.
     """
     bodies: dict[str, list[str]] = {name: [] for name in LOCKS}
     for name, block in split_blocks(everything):
@@ -126,9 +127,10 @@ def _resolve(resolver: Path, work: Path, inputs: list[Path], *options: str) -> s
 
 
 def fill(folder: Path, locks: Sequence[str] = LOCKS) -> int:
-    """Download the files that a set-up installs, each by its hash, and return pip's exit code.
+    """Download the files that a set-up installs, checked by their hashes. Return pip's exit code.
 
-    The Python that runs this has to be the version that will install them, to the last number: some locks depend on it.
+    The Python that runs this must have exactly the version that will install the files, because some locks depend on
+    it.
     """
     command = [
         INTERPRETER,
@@ -168,7 +170,7 @@ def main(arguments: list[str] | None = None) -> int:
         work = Path(folder)
         uv = ROOT / ".venv/bin/uv"
         everything = work / "everything.txt"
-        # The resolver prefers the versions it finds in its output file.
+        # The resolver prefers the versions that it finds in its output file.
         locked = [REQUIREMENTS / f"{name}.lock" for name in LOCKS]
         everything.write_text("".join(path.read_text(encoding="utf-8") for path in locked if path.exists()))
         extras = [word for extra in ("dev", *EXTRAS) for word in ("--extra", extra)]

@@ -1,7 +1,7 @@
-"""A talk between two processes over ROS: ``python -m environment.loopback talk|listen TOPIC SECONDS``.
+"""Sends a message between two processes over ROS: ``python -m environment.loopback talk|listen TOPIC SECONDS``.
 
-The doctor starts both and waits for the listener. They use the domain and the transports of whoever asks, for
-those are what a student's nodes will use.
+The doctor starts both processes and waits for the listener. They use the domain and transports of the caller, because
+a student's nodes will use these, too.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ LIMIT = 10.0
 
 
 def seconds_to_first_message(limit: float = LIMIT) -> float | None:
-    """Start a talker and a listener and return the seconds until the message was heard.
+    """Start a talker and a listener. Return the seconds until the message arrived.
 
     Args:
-        limit: how long the two try, in seconds.
+        limit: Time limit in seconds for the two processes.
 
     Returns:
-        None if nothing was heard, or if one of them could not run.
+        None if the message did not arrive, or if one of the processes could not run.
     """
-    # Nobody else has this topic.
+    # No other program uses this topic.
     topic = f"/course_doctor_{uuid.uuid4().hex}"
     started = time.monotonic()
     with _start("talk", topic, limit) as talker, _start("listen", topic, limit) as listener:
@@ -47,7 +47,7 @@ def _start(role: str, topic: str, limit: float) -> Popen[bytes]:
 
 
 def main(role: str, topic: str, limit: float) -> int:
-    """Be the talker or the listener; return 0 if the listener heard something."""
+    """Run as the talker or the listener. Return 0 if the listener heard the message."""
     import rclpy
     from rclpy.utilities import try_shutdown
     from std_msgs.msg import String

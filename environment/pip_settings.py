@@ -1,4 +1,4 @@
-"""pip's settings as uv has them: uv installs the packages and reads none of pip's own configuration."""
+"""Converts pip's settings for uv, because uv installs the packages and does not read pip's configuration."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-# In the order in which pip reads them, the last one wins (pip's documentation, "Configuration").
+# The sections in the order in which pip reads them; the last one wins (pip's documentation, "Configuration").
 _SECTIONS = ("global", "install", ":env:")
 _OPTIONS = {
     "index-url": "--default-index",
@@ -26,10 +26,10 @@ _VARIABLES = {
 
 
 def as_uv_has_them(listed: str) -> tuple[list[str], dict[str, str]]:
-    """Return options and variables that have uv fetch from where pip does.
+    """Return the options and variables with which uv downloads from the same place as pip.
 
     Args:
-        listed: what ``pip config list`` prints: a section, a name and a quoted value a line.
+        listed: The output of ``pip config list``: on each line a section, a name and a quoted value.
     """
     settings = _settings(listed)
     options = [

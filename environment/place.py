@@ -1,4 +1,4 @@
-"""The places of the course's environment, and the variables that lead its processes there."""
+"""The paths of the course's environment, and the variables with which processes find it."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ INTERFACES = "my_robot_interfaces"
 
 @dataclass(frozen=True)
 class Place:
-    """The places of the environment.
+    """The paths of the environment.
 
     Attributes:
-        root: the folder of the course.
-        base_python: the interpreter that the environment is made with.
+        root: The folder of the course.
+        base_python: The interpreter from which the environment is made.
     """
 
     root: Path
@@ -54,7 +54,7 @@ class Place:
 
     @property
     def locked(self) -> Path:
-        """The folder on which a set-up has its lock: no box sees it, for to lock a folder one needs only to read it."""
+        """The folder that a set-up locks. No box sees it, because any process that can read a folder can lock it."""
         return self.root
 
     @property
@@ -79,12 +79,12 @@ class Place:
         )
 
     def lock(self, name: str) -> Path:
-        """Return a lock file."""
+        """Return the path of a lock file."""
         return self.environment / "requirements" / f"{name}.lock"
 
 
 def environment_paths(place: Place, ros: Ros) -> dict[str, list[str]]:
-    """Return, for each search path variable, what a process of the course must have in it, first to last."""
+    """Return the folders that each search path variable of a process of the course must have, in order."""
     prefix = str(place.prefix)
     libraries = [f"{prefix}/lib", *sorted(str(path) for path in place.site_packages.glob("ros_*.libs"))]
     own: dict[str, list[str]] = {
@@ -111,9 +111,9 @@ def environment_values(place: Place) -> dict[str, str]:
 
 
 def owner(folder: Path) -> str:
-    """Return the name of a folder's owner; the number if the owner has no name here.
+    """Return the name of a folder's owner; the owner's number if it has no name on this machine.
 
-    In a course that several people share, one of them has to set it up.
+    If several people share a course, one of them has to set it up.
     """
     number = folder.stat().st_uid
     try:

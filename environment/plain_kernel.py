@@ -1,4 +1,4 @@
-"""The course in a Jupyter kernel that knows nothing of it, as in Colab: set up ``.venv``, then join the environment.
+"""Uses the course in a Jupyter kernel that was started without it, as in Colab: sets up ``.venv``, then joins it.
 
 The first cell of each notebook calls `set_up` where ``autograder`` cannot be imported
 (``autograder/masters/first_cell.py`` writes that cell). The environment is the one that ``./course setup`` makes, with
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parent.parent
 OLDEST = (3, 11)
-"""The oldest Python that the course runs on."""
+"""The oldest version of Python on which the course runs."""
 _OPENED_BY_NAME = ("librmw_*.so", "lib*__rosidl_*.so")
 """The libraries that ROS opens by name while it runs: the middleware and the types of messages."""
 _SITES = ("site-packages", "dist-packages")
@@ -39,7 +39,7 @@ class NotSetUp(Exception):
 
 
 def set_up(root: Path = ROOT) -> None:
-    """Set the course up if it has to be, and have this kernel use it.
+    """Set the course up if necessary, and let this kernel use it.
 
     Args:
         root: The folder of the course.
@@ -57,9 +57,9 @@ def set_up(root: Path = ROOT) -> None:
 
 
 def run_set_up(root: Path) -> None:
-    """Run ``./course setup`` and show what it says; the environment is made with the Python of this kernel.
+    """Run ``./course setup`` with the Python of this kernel, and show its output.
 
-    An existing environment stays as it is, although it may come from another Python.
+    An existing environment stays unchanged, even if another Python made it.
 
     Raises:
         NotSetUp: The set-up failed.
@@ -84,7 +84,7 @@ def run_set_up(root: Path) -> None:
 
 
 def join(root: Path) -> None:
-    """Have this process import and start what is installed in the course's environment.
+    """Let this process import and start what is installed in the course's environment.
 
     Raises:
         NotSetUp: The environment was made with another Python.
@@ -114,7 +114,7 @@ def join(root: Path) -> None:
 
 
 def _import_from(site_packages: Path, root: Path) -> None:
-    """Put the folders behind Python's own modules and a student's, before what else is installed here."""
+    """Add the folders to the search path after Python's own modules and a student's, before other installations."""
     ours = [str(site_packages), str(root)]
     others = [entry for entry in sys.path if entry not in ours]
     first = next((place for place, entry in enumerate(others) if entry.endswith(_SITES)), len(others))
@@ -122,10 +122,10 @@ def _import_from(site_packages: Path, root: Path) -> None:
 
 
 def load_libraries(files: Iterable[Path], folders: Sequence[Path]) -> None:
-    """Load shared libraries, each after what it needs of these folders, and nothing else.
+    """Load shared libraries, each after those of these folders that it needs.
 
-    The wheels bring copies of libraries along, and some end a process that loads two of them. A library that needs a
-    file that is nowhere is left out: whatever uses it says so when it is imported.
+    The wheels contain copies of libraries, and some libraries end a process that loads two copies. A library that
+    needs a missing file is left out: the code that uses it reports this when it is imported.
     """
     for file in files:
         _load(file, folders)

@@ -1,10 +1,11 @@
-"""The one way to start a Python process of this project: its command line, its environment, its folder.
+"""The only way to start a Python process of this project: its command line, environment and folder.
 
-A command of the course is typed in any folder, also in one that a student has filled. Python imports from the current
-folder, from relative folders of ``PYTHONPATH``, and from what other variables name. A process of ours must not: a
-``json.py`` there would run with the rights of the instructor. The linter forbids ``sys.executable`` everywhere else.
+A command of the course may be typed in any folder, even in one that a student has filled. Python imports from the
+current folder, from relative folders of ``PYTHONPATH``, and from places that other variables name. A process of this
+project must not do that: a ``json.py`` there would run with the rights of the instructor. The linter forbids
+``sys.executable`` everywhere else.
 
-A student's own program is not started with this. It finds the modules beside it, as Python always does.
+A student's own program is not started in this way. It finds the modules next to it, as Python always does.
 """
 
 from __future__ import annotations
@@ -22,7 +23,9 @@ if TYPE_CHECKING:
 INTERPRETER = sys.executable  # noqa: TID251  (here it is made into a command line)
 """The path of this Python. To start it, use :func:`python_child`."""
 SAFE_PATH = "PYTHONSAFEPATH"
-"""The variable that has the effect of ``-P``. Every Python below inherits it: it must not reach a student's program."""
+"""The variable with the effect of ``-P``. All child processes inherit it, so it must be removed for a student's
+program.
+"""
 TYPED_PYTHONPATH = "COURSE_PYTHONPATH"
 """The variable with the terminal's ``PYTHONPATH``, for a student's program: ``./course`` drops relative folders."""
 _SEARCH_PATHS = ("PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH")
@@ -38,7 +41,7 @@ _KEPT_OF_PYTHON = {
     "PYTHONUNBUFFERED",
     "PYTHONUTF8",
 }
-"""Variables that decide how a process reads, writes and prints. Python's other variables name code or files."""
+"""Variables that affect how a process reads, writes and prints. Python's other variables name code or files."""
 
 
 @dataclass(frozen=True)
@@ -67,20 +70,20 @@ class PythonChild:
 def python_child(
     *words: str, environment: Mapping[str, str] | None = None, folder: str | None = "/"
 ) -> PythonChild:
-    """Describe a Python process that imports nothing from the current folder.
+    """Return a Python process, not yet started, that imports nothing from the current folder.
 
     Args:
         words: The arguments of Python, such as ``"-m"``, the name of a module and the arguments of the module.
-        environment: The environment to clean; the one of this process if None.
-        folder: The current folder of the process. No student can write to the root of the file system. None means the
-            folder of this process, for a process that is given relative paths.
+        environment: The environment to clean; None for the environment of this process.
+        folder: The current folder of the process. The default is the root of the file system, to which no student can
+            write. None means the folder of this process, for a process that gets relative paths.
     """
     cleaned = clean_environment(os.environ if environment is None else environment)
     return PythonChild([INTERPRETER, "-P", *words], cleaned, folder)
 
 
 def clean_environment(environment: Mapping[str, str]) -> dict[str, str]:
-    """Return an environment without relative folders in search paths, and without what makes Python run other code.
+    """Return an environment without relative folders in search paths and without what makes Python run other code.
 
     The folders of a sourced ROS are absolute, so they stay. An empty entry of a search path means the current folder.
     """
@@ -99,5 +102,5 @@ def clean_environment(environment: Mapping[str, str]) -> dict[str, str]:
 
 
 def installed_program(name: str) -> Path:
-    """Return the path of a program that the set-up has installed beside this Python; it may not exist."""
+    """Return the path at which the set-up installs a program next to this Python. The program may not exist."""
     return Path(INTERPRETER).with_name(name)

@@ -1,4 +1,4 @@
-"""The ROS 2 that the course runs on: one that is sourced, or the pinned wheels.
+"""Decides which ROS 2 the course uses: one that is sourced, or the pinned wheels.
 
 A sourced Jazzy (a system's ``/opt/ros/jazzy`` or a RoboStack environment) is used when this Python can import
 its rclpy. In every other case the wheels of ``requirements/ros.lock`` are installed. The set-up decides once
@@ -25,7 +25,7 @@ DISTRO = "jazzy"
 # The file with the set-up's decision, below the prefix of the environment.
 RECORD = Path("course") / "ros.json"
 
-# The search paths that sourcing a ROS 2 sets. PATH is not among them: it is the programs' of the whole
+# The search paths that sourcing a ROS 2 sets. PATH is not among them, because it has the programs of the whole
 # session.
 SOURCED_PATHS = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH")
 
@@ -43,9 +43,9 @@ class Ros:
     """The ROS 2 that an environment is set up with.
 
     Attributes:
-        flavour: the kind of installation.
-        paths: what its sourcing put into the search path variables; empty for the wheels.
-        notice: a line for the user about something sourced that is not used, or an empty text.
+        flavour: The kind of installation.
+        paths: What sourcing ROS adds to the search path variables; empty for the wheels.
+        notice: A line for the user about a sourced ROS that is not used; empty if there is none.
     """
 
     flavour: Flavour
@@ -60,7 +60,7 @@ class Ros:
 
 @dataclass(frozen=True)
 class Machine:
-    """The facts that decide whether the wheels run here."""
+    """The facts that decide whether the wheels run on this machine."""
 
     system: str
     processor: str
@@ -69,14 +69,14 @@ class Machine:
 
     @classmethod
     def here(cls) -> Machine:
-        """Return the machine that this process runs on; `glibc` is None for another C library."""
+        """Return the machine on which this process runs. `glibc` is None if it has another C library."""
         name, version = platform.libc_ver()
         numbers = [int(part) for part in version.split(".")[:2]] if name == "glibc" else []
         glibc = (numbers[0], numbers[1]) if len(numbers) == 2 else None
         return cls(platform.system(), platform.machine(), glibc, sys.version_info[:2])
 
     def why_no_wheels(self) -> str:
-        """Say why the wheels do not run here, or return an empty text if they do."""
+        """Return why the wheels do not run here; empty if they do."""
         if self.system != "Linux" or self.processor != "x86_64":
             return f"they exist for Linux on x86_64 only, this is {self.system} on {self.processor}"
         if self.glibc is None or self.glibc < _OLDEST_GLIBC:
@@ -88,18 +88,18 @@ class Machine:
 
 
 def _is_course_environment(prefix: str) -> bool:
-    """Tell whether a prefix is a course's own environment, whose variables its processes inherit."""
+    """Return True if a prefix is a course's own environment, whose variables its processes inherit."""
     return (Path(prefix) / RECORD).exists()
 
 
 def sourced_prefixes(environ: Mapping[str, str]) -> list[str]:
-    """Return the prefixes of the ROS 2 installations that are sourced, a course's environment not counted."""
+    """Return the prefixes of the sourced ROS 2 installations, without environments of the course."""
     prefixes = [prefix for prefix in environ.get("AMENT_PREFIX_PATH", "").split(":") if prefix]
     return [prefix for prefix in prefixes if holds_rclpy(prefix) and not _is_course_environment(prefix)]
 
 
 def _sourced_paths(environ: Mapping[str, str]) -> dict[str, tuple[str, ...]]:
-    """Return what belongs to the sourced ROS in its search paths: no workspace, no course's environment."""
+    """Return the folders of the sourced ROS in its search paths, without workspaces and course environments."""
     prefixes = sourced_prefixes(environ)
     found = {}
     for name in SOURCED_PATHS:
@@ -114,16 +114,16 @@ def decide(environ: Mapping[str, str], machine: Machine, imports_rclpy: Callable
     """Decide which ROS 2 to use.
 
     Args:
-        environ: the variables of the process.
-        machine: the machine.
-        imports_rclpy: tries whether this Python can import rclpy with these variables. Called for a Jazzy
+        environ: The variables of the process.
+        machine: The machine.
+        imports_rclpy: Tries whether this Python can import rclpy with these variables. Called for a Jazzy
         only.
 
     Raises:
-        NoRosError: no Jazzy can be used and the wheels do not run here.
+        NoRosError: No Jazzy can be used, and the wheels do not run here.
     """
     prefixes = sourced_prefixes(environ)
-    # A course's environment says "jazzy" too, and sourcing a second ROS does not always change the word.
+    # An environment of the course says "jazzy", too, and sourcing a second ROS does not always change this variable.
     distro = environ.get("ROS_DISTRO", "") if prefixes else ""
     if distro == DISTRO and imports_rclpy():
         conda = environ.get("CONDA_PREFIX")
@@ -158,7 +158,7 @@ def save(ros: Ros, prefix: Path) -> None:
 
 
 def load(prefix: Path) -> Ros | None:
-    """Return the recorded decision of the environment at `prefix`, or None if none can be read."""
+    """Return the recorded decision of the environment at `prefix`; None if none can be read."""
     try:
         record = json.loads((prefix / RECORD).read_text(encoding="utf-8"))
         paths = {name: tuple(entries) for name, entries in record["paths"].items()}
@@ -168,9 +168,9 @@ def load(prefix: Path) -> Ros | None:
 
 
 def with_recorded(environ: Mapping[str, str], recorded: Ros | None) -> dict[str, str]:
-    """Return the variables as they were when the recorded ROS was sourced, if none is sourced now.
+    """Return the variables from the time when the recorded ROS was sourced, if no ROS is sourced now.
 
-    So a set-up that was made with a sourced ROS keeps it in a terminal in which nothing is sourced.
+    So an environment that was set up with a sourced ROS keeps it in a terminal in which no ROS is sourced.
     """
     result = dict(environ)
     if recorded is None or not recorded.is_sourced or sourced_prefixes(environ):

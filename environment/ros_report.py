@@ -1,6 +1,6 @@
-"""A fresh Python process's report on its ROS, as one JSON object: ``python -m environment.ros_report``.
+"""Reports on the ROS that a new Python process finds, as one JSON object: ``python -m environment.ros_report``.
 
-A process of its own, because a broken ROS does not always raise an exception: a wrong library can end the
+This is a separate process, because a broken ROS does not always raise an exception: a wrong library may end the
 process.
 """
 
@@ -12,7 +12,7 @@ import re  # noqa: TID251  (not what a student handed in)
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-# The fields of the course text.
+# The fields that the course's text defines.
 INTERFACE_FIELDS = {
     "AddTwoInts.Request": {"a": "int64", "b": "int64"},
     "AddTwoInts.Response": {"sum": "int64"},
@@ -23,7 +23,7 @@ INTERFACE_FIELDS = {
 
 
 def rclpy_version() -> tuple[str, str]:
-    """Return the version of rclpy and the prefix it is installed in, or two empty texts if none is found."""
+    """Return the version of rclpy and the prefix in which it is installed; two empty texts if there is none."""
     for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
         package = Path(prefix) / "share/rclpy/package.xml"
         if prefix and package.exists():
@@ -33,7 +33,7 @@ def rclpy_version() -> tuple[str, str]:
 
 
 def _wheel_version() -> str:
-    # The wheel 7.1.6 has a package.xml that says 7.1.5; the lock file says what pip says.
+    # The wheel 7.1.6 contains a package.xml that says 7.1.5. The lock file has the version that pip reports.
     try:
         return version("ros-rclpy")
     except PackageNotFoundError:
@@ -41,7 +41,7 @@ def _wheel_version() -> str:
 
 
 def interface_fields() -> dict[str, dict[str, str]]:
-    """Return the fields of the interface package, in the form of `INTERFACE_FIELDS`."""
+    """Return the fields of the course's interfaces, in the form of `INTERFACE_FIELDS`."""
     from my_robot_interfaces.action import Fibonacci
     from my_robot_interfaces.srv import AddTwoInts
 
@@ -52,7 +52,7 @@ def interface_fields() -> dict[str, dict[str, str]]:
 
 
 def main() -> int:
-    """Print the report; what could not be found out is an ``error`` of its part."""
+    """Print the report. A part that could not be found out contains an ``error``."""
     report: dict[str, object] = {}
     report["version"], report["prefix"] = rclpy_version()
     try:

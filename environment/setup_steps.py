@@ -1,4 +1,4 @@
-"""The steps that make the environment of the course: what each does, and what it is made from.
+"""The steps that make the environment of the course, and the inputs of each step.
 
 Only the standard library is used: this runs before anything is installed.
 """
@@ -40,14 +40,14 @@ class SetupError(Exception):
 
 @dataclass(frozen=True)
 class Setup:
-    """One set-up.
+    """One run of the set-up.
 
     Attributes:
-        place: where everything is.
-        ros: the ROS 2 to set up with.
-        environ: the variables in which that ROS is sourced, or those of the user for the wheels.
-        log: takes the output of every command.
-        say: prints a line for the user.
+        place: The paths of the environment.
+        ros: The ROS 2 that is used.
+        environ: The variables in which that ROS is sourced; for the wheels, those of the user.
+        log: Receives the output of every command.
+        say: Prints a line for the user.
     """
 
     place: Place
@@ -57,10 +57,10 @@ class Setup:
     say: Callable[[str], None] = lambda _: None
 
     def steps(self, with_tests: bool, extras: Collection[str] = ()) -> list[Step]:
-        """Return the steps in their order; those of the tests and of extras only when they are asked for."""
+        """Return the steps in order. Those of the tests and of extras are included only if requested."""
         place = self.place
         locks = [place.lock("course")] if self.ros.is_sourced else [place.lock("course"), place.lock("ros")]
-        # The notice is for the user: it does not make another environment.
+        # The notice is only for the user. It must not cause a new environment.
         ros = repr(replace(self.ros, notice=""))
         kind = (str(place.root), str(place.base_python), sys.version, ros)
         repairs = (place.environment / "wheel_repairs.py",)
@@ -93,7 +93,7 @@ class Setup:
             extras = (
                 "dev",
                 *EXTRAS,
-            )  # each is installed together with them: a call of an installer takes seconds
+            )  # these are installed in one call, because each call of an installer takes seconds
             steps.append(self._extra("dev", "installing what the tests need", extras))
         else:
             steps += [self._extra(name, f"installing what the extra {name} needs", [name]) for name in extras]
@@ -111,15 +111,15 @@ class Setup:
         return "installing ROS 2 Jazzy, Jupyter and the build tools (a minute or two, longer if the computer is busy)"
 
     def _run(self, what: str, command: Command, **more: str) -> None:
-        """Run a command with its output in the log.
+        """Run a command, with its output in the log.
 
         Args:
-            what: what it is to do, for the message when it fails.
-            command: the program and its arguments.
-            more: variables that it gets besides.
+            what: The purpose of the command, for the message if it fails.
+            command: The program and its arguments.
+            more: More environment variables.
 
         Raises:
-            SetupError: it failed.
+            SetupError: The command failed.
         """
         words = [str(word) for word in command]
         print(f"\n$ {shlex.join(words)}", file=self.log, flush=True)
@@ -136,7 +136,7 @@ class Setup:
             raise SetupError(f"{what} failed")
 
     def _child_variables(self) -> dict[str, str]:
-        """Return the variables for the commands: the chosen ROS and this environment, no other ones."""
+        """Return the variables for the commands, which lead only to the chosen ROS and this environment."""
         paths = environment_paths(self.place, self.ros)
         values = environment_values(self.place)
         result = {**self.environ, **course_process.variables(paths, values, self.environ)}
@@ -150,7 +150,7 @@ class Setup:
             _empty(place.prefix, keep=place.notes)
             for name in ("build", "stamps"):
                 shutil.rmtree(place.notes / name, ignore_errors=True)
-        # A sourced ROS needs the system's Python packages (numpy, yaml, …) in the versions it was built with.
+        # A sourced ROS needs the system's Python packages (numpy, yaml, …) in the versions with which it was built.
         options = ["--system-site-packages"] if self.ros.is_sourced else []
         self._run("making .venv", [place.base_python, "-m", "venv", *options, place.prefix])
         ros_flavour.save(self.ros, place.prefix)
@@ -177,13 +177,13 @@ class Setup:
         self._uv_or_pip("--require-hashes", "--no-deps", "--only-binary=:all:", "--no-binary=empy", *files)
 
     def _uv_or_pip(self, *arguments: str) -> None:
-        """Install with options that pip and uv both have."""
+        """Install with options that both pip and uv have."""
         if os.access(self._uv_program, os.X_OK):
             try:
                 self._uv(*arguments)
             except SetupError:
                 self.say("uv could not install the packages: pip tries, which takes longer")
-                self._uv_program.unlink()  # a failure here would also happen in the next step
+                self._uv_program.unlink()  # a failure here would happen in the next step, too
             else:
                 return
         self._pip(*arguments)
@@ -193,7 +193,7 @@ class Setup:
         return self.place.prefix / "bin" / "uv"
 
     def _uv(self, *arguments: str) -> None:
-        """Install with uv, from the index that the user's pip would use."""
+        """Install with uv, from the package index that the user's pip would use."""
         asked: Command = [self.place.python, "-m", "pip", "config", "list"]
         listed = subprocess.run(
             asked, env=self._child_variables(), capture_output=True, text=True, check=False
@@ -203,27 +203,27 @@ class Setup:
         command += ["--python", self.place.python, "--no-build-isolation", "--compile-bytecode"]
         # Copied, not linked: a changed file in this environment must not change uv's cache. pip, too, takes the
         # best of all indexes; the hashes say which file that is.
-        options = [option for option in options if option not in arguments]  # uv takes none twice
+        options = [option for option in options if option not in arguments]  # uv accepts no option twice
         command += ["--link-mode=copy", "--index-strategy=unsafe-best-match", *options, *arguments]
         self._run("installing packages", command, **variables)
 
     def _pip(self, *arguments: str) -> None:
         command: list[str | Path] = [self.place.python, "-m", "pip", "install", "--disable-pip-version-check"]
         command += ["--progress-bar=off", "--no-build-isolation", "--use-pep517", *arguments]
-        # A user's setting that installs into the home folder would be refused inside an environment.
+        # If a user's setting makes pip install into the home folder, pip would refuse to do so inside an environment.
         self._run("installing packages", command, PIP_USER="0")
 
     def _make_imports_lighter(self) -> None:
         changed = make_imports_lighter(self.place.site_packages)
         if changed:
-            # For a user who may read this environment and not write to it.
+            # For a user who may read this environment but not write to it.
             self._run("compiling what was changed", [self.place.python, "-m", "compileall", "-q", *changed])
 
     def _build_interfaces(self) -> None:
         place = self.place
         if not self.ros.is_sourced:
             self._run("repairing the wheels", [place.python, "-m", "environment.wheel_repairs"])
-        # The cache of an interrupted build can name compilers that are gone.
+        # The cache of an interrupted build may name compilers that no longer exist.
         shutil.rmtree(place.notes / "build", ignore_errors=True)
         # Merged into the environment itself: its lib folder and its site-packages are searched already.
         # With a ROS that was sourced, programs in C++ may use them.
@@ -238,7 +238,7 @@ class Setup:
         return ", ".join(package.name for package in self.place.interfaces)
 
     def _install_start(self) -> None:
-        """Give every Python of the environment its start, see course_process.py."""
+        """Install the code that every Python of the environment runs at its start; see course_process.py."""
         site_packages = self.place.site_packages
         paths, values = environment_paths(self.place, self.ros), environment_values(self.place)
         shutil.copyfile(self.place.environment / "course_process.py", site_packages / "course_process.py")
@@ -246,7 +246,7 @@ class Setup:
         (site_packages / "course_paths.py").write_text(
             f"{written}\nPATHS = {paths!r}\nVALUES = {values!r}\n", "utf-8"
         )
-        # Its name sorts before ros_wheels_bootstrapper.pth, so it runs first.
+        # The name sorts before ros_wheels_bootstrapper.pth, so this file is run first.
         (site_packages / "course_process.pth").write_text(
             "import course_process; course_process.begin()\n", "utf-8"
         )
@@ -263,11 +263,11 @@ class Setup:
         self._run("registering the kernel", install)
 
     def compile_modules(self) -> None:
-        """Compile the course's own modules, those that have changed.
+        """Compile those of the course's own modules that have changed.
 
-        If a user's Python keeps no bytecode (``PYTHONDONTWRITEBYTECODE``), or the folder belongs to another user,
-        each process would compile its imports again. A module that is being edited may be broken: its importer will
-        report that.
+        If a user's Python writes no bytecode (``PYTHONDONTWRITEBYTECODE``), or the folder belongs to another user,
+        each process would compile its imports again. A module that is being edited may be broken; the code that
+        imports it will report that.
         """
         root = self.place.root
         labs = [file for name in ("solutions", "exercises") for file in sorted(root.glob(f"{name}/*/*/*.py"))]
@@ -282,7 +282,7 @@ class Setup:
 
 
 def _empty(folder: Path, keep: Path) -> None:
-    """Delete everything in a folder but one entry."""
+    """Delete everything in a folder except one entry."""
     for entry in folder.iterdir():
         if entry == keep:
             continue

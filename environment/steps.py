@@ -1,7 +1,7 @@
-"""Steps that are done once: each leaves a stamp of its inputs, and is skipped while they are the same.
+"""Runs steps only once: each leaves a stamp of its inputs, and is skipped as long as the inputs are the same.
 
-A step is also done again when one before it was. The stamp is removed before the step runs and written when
-it has succeeded, so an interrupted set-up goes on at the step it was in.
+A step is also repeated if an earlier one was. The stamp is removed before the step runs and written after it has
+succeeded, so an interrupted set-up continues with the step that was interrupted.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
 SIGN_OF_LIFE = 30.0
-"""Seconds after which a step that still runs says so, again and again."""
+"""Seconds after which the user is told that a step is still running; repeated after the same time."""
 
 
 @dataclass(frozen=True)
@@ -26,10 +26,10 @@ class Step:
     """One step of the set-up.
 
     Attributes:
-        name: the name of its stamp.
-        doing: what the user reads while it runs.
-        inputs: texts and files that it is made from; any change of one has it done again.
-        run: does it; an exception leaves it undone.
+        name: The name of the step's stamp.
+        doing: The text that the user sees while the step runs.
+        inputs: The texts and files from which the result is made. If any of them changes, the step is repeated.
+        run: Carries out the step. After an exception the step counts as not done.
     """
 
     name: str
@@ -39,12 +39,12 @@ class Step:
 
 
 def files_below(folder: Path) -> tuple[Path, ...]:
-    """Return every file below a folder, in a stable order."""
+    """Return every file below a folder, in a fixed order."""
     return tuple(sorted(path for path in folder.rglob("*") if path.is_file()))
 
 
 def digest(inputs: Iterable[str | Path], root: Path) -> str:
-    """Return the SHA-256 (hexadecimal) of texts and files: of a file, its path below `root` and content."""
+    """Return the SHA-256 (hexadecimal) of texts and files. A file counts with its path below `root` and its content."""
     total = hashlib.sha256()
     for item in inputs:
         if isinstance(item, Path):
@@ -63,13 +63,13 @@ def _stamped(stamp: Path) -> str:
 
 
 def run_steps(steps: Sequence[Step], stamps: Path, root: Path, say: Callable[[str], None]) -> list[str]:
-    """Run the steps that are not up to date, in order, and return their names.
+    """Run the steps that are not up to date, in order. Return their names.
 
     Args:
-        steps: all steps, first to last.
-        stamps: the folder of the stamps; made when it is missing.
-        root: the folder that the paths of the inputs are relative to.
-        say: prints a line for the user.
+        steps: All steps, in order.
+        stamps: The folder of the stamps, which is created if it does not exist.
+        root: The folder to which the paths of the inputs are relative.
+        say: Prints a line for the user.
     """
     done = []
     chain = ""
@@ -83,9 +83,9 @@ def run_steps(steps: Sequence[Step], stamps: Path, root: Path, say: Callable[[st
         say(step.doing)
         with _signs_of_life(say):
             step.run()
-        # After the run: the step that makes the environment empties the folder of the stamps.
+        # This comes after the run, because the step that makes the environment empties the folder of the stamps.
         stamps.mkdir(parents=True, exist_ok=True)
-        stamp.write_text(chain, encoding="ascii")  # one that is written in part fits no digest
+        stamp.write_text(chain, encoding="ascii")  # a stamp that is only partly written equals no digest
         say(f"  {time.monotonic() - started:.1f} s")
         done.append(step.name)
     return done
@@ -93,7 +93,7 @@ def run_steps(steps: Sequence[Step], stamps: Path, root: Path, say: Callable[[st
 
 @contextlib.contextmanager
 def _signs_of_life(say: Callable[[str], None]) -> Iterator[None]:
-    """Say now and then that a step is still at work: on a busy computer one can take many minutes."""
+    """Tell the user from time to time that a step is still running; on a busy computer it may take many minutes."""
     started = time.monotonic()
     ended = threading.Event()
 

@@ -1,7 +1,7 @@
-"""The course's needs of the operating system, and how to get them.
+"""What the course needs from the operating system, and how to install it.
 
-As root on Debian or Ubuntu a missing package is installed with apt-get. Everyone else is told the one command
-to type.
+As root on Debian or Ubuntu, a missing package is installed with apt-get. Any other user is told the one command to
+type.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from typing import IO, TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-# Each row has a purpose: the set-up itself, the tests (those that need a missing row are skipped), or the sandboxes
-# of submissions.
+# The purpose of a row: the set-up itself, the tests (tests that need a missing row are skipped), or the sandboxes of
+# submissions.
 Need = Literal["setup", "tests", "sandbox"]
 
 CHROMIUM_NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -27,14 +27,14 @@ CHROMIUM_NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrom
 
 @dataclass(frozen=True)
 class SystemPackage:
-    """One thing of the operating system.
+    """Something that the course needs from the operating system.
 
     Attributes:
-        title: what it is, as a reader of a message knows it.
-        reason: what the course does with it.
-        need: what needs it.
-        debian: the packages that bring it on Debian and Ubuntu.
-        is_there: tells whether it is there.
+        title: Its name in messages.
+        reason: What the course uses it for.
+        need: The purpose for which it is needed.
+        debian: The packages that contain it on Debian and Ubuntu.
+        is_there: Returns True if it exists.
     """
 
     title: str
@@ -45,16 +45,16 @@ class SystemPackage:
 
 
 class MissingPackagesError(Exception):
-    """Something that the set-up needs is not there and was not installed. The text says what to type."""
+    """Something that the set-up needs is missing and was not installed. The message says what to type."""
 
 
 def find_program(*names: str) -> str | None:
-    """Return the path of the first of these programs that exists, or None."""
+    """Return the path of the first of these programs that exists; None if none does."""
     return next((path for name in names if (path := shutil.which(name))), None)
 
 
 def find_compilers() -> tuple[str, str] | None:
-    """Return the C and the C++ compiler that CMake will take, or None if one of them is missing."""
+    """Return the C and C++ compilers that CMake will use; None if one of them is missing."""
     c = find_program(*_named_in("CC"), "cc", "gcc", "clang")
     cpp = find_program(*_named_in("CXX"), "c++", "g++", "clang++")
     return (c, cpp) if c and cpp else None
@@ -109,24 +109,24 @@ TABLE = (
 
 @dataclass(frozen=True)
 class Apt:
-    """The way to install packages here: `program` is apt-get or None, `as_root` whether we may run it."""
+    """How packages can be installed here: `program` is apt-get or None, `as_root` is True if this user may run it."""
 
     program: str | None
     as_root: bool
 
     @classmethod
     def here(cls) -> Apt:
-        """Return what this machine and this user have."""
+        """Return how this user can install packages on this machine."""
         return cls(shutil.which("apt-get"), os.geteuid() == 0)
 
 
 def missing(need: Need, table: Sequence[SystemPackage] = TABLE) -> list[SystemPackage]:
-    """Return the rows of one need that are not there."""
+    """Return the rows for one purpose that are missing."""
     return [row for row in table if row.need == need and not row.is_there()]
 
 
 def get_with(rows: Iterable[SystemPackage], apt: Apt) -> str:
-    """Return a line that tells a user how to get these rows: the command to type if it is known."""
+    """Return a line that tells a user how to get the things in these rows: the command to type, if it is known."""
     rows = list(rows)
     if apt.program:
         return "Get it with: sudo apt-get install -y " + " ".join(name for row in rows for name in row.debian)
@@ -134,7 +134,7 @@ def get_with(rows: Iterable[SystemPackage], apt: Apt) -> str:
 
 
 def _apt_install(rows: Sequence[SystemPackage], apt: Apt, log: IO[str]) -> bool:
-    """Install the rows with apt-get and return whether both of its commands succeeded."""
+    """Install the packages of the rows with apt-get. Return True if both of its commands succeeded."""
     environ: Mapping[str, str] = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
     names = [name for row in rows for name in row.debian]
     for arguments in (["update"], ["install", "-y", "--no-install-recommends", *names]):
@@ -154,14 +154,14 @@ def provide(
     apt: Apt | None = None,
     table: Sequence[SystemPackage] = TABLE,
 ) -> list[SystemPackage]:
-    """Install what is missing for one need if that is possible, and return the rows that are still missing.
+    """Install what is missing for one purpose if that is possible. Return the rows that are still missing.
 
     Args:
-        need: which rows to look at.
-        log: takes the output of apt-get.
-        say: prints a line for the user.
-        apt: how packages can be installed here; found out when it is None.
-        table: the rows.
+        need: The purpose.
+        log: Receives the output of apt-get.
+        say: Prints a line for the user.
+        apt: How packages can be installed here; None to find that out.
+        table: The rows.
     """
     apt = apt or Apt.here()
     absent = missing(need, table)
@@ -173,10 +173,10 @@ def provide(
 
 
 def require(need: Need, log: IO[str], say: Callable[[str], None], apt: Apt | None = None) -> None:
-    """Like `provide`, but what is still missing afterwards is an error.
+    """Like `provide`, but raise an error if something is still missing afterwards.
 
     Raises:
-        MissingPackagesError: with the one command to type.
+        MissingPackagesError: Something is missing. The message contains the one command to type.
     """
     apt = apt or Apt.here()
     absent = provide(need, log, say, apt)

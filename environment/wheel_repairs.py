@@ -1,4 +1,4 @@
-"""The repairs of what the wheels install: CMake files, imports, and Fast DDS.
+"""Repairs files of the installed wheels: CMake files, imports, and Fast DDS.
 
 * **CMake files.** The wheels were built in a container. What CMake exports for the Python part of a message package
   names that container's folders, ``/opt/python/cp311-cp311/include/python3.11`` and numpy's headers below it, and
@@ -40,7 +40,7 @@ _MARK = "# Changed by the set-up of the course (environment/wheel_repairs.py): "
 FOR_EVER = (2**63 - 1).to_bytes(8, "little")
 """``std::chrono::seconds::max()``."""
 YEARS_68 = (2**31 - 1).to_bytes(8, "little")
-"""So many seconds from now, in nanoseconds of either clock, stay below 2**63 until the year 2194."""
+"""This many seconds from now, in nanoseconds of either clock, stay below 2**63 until the year 2194."""
 _JUMP = rb"\xe9.{4}"
 _BOTH = re.compile(
     # set_listener(listener) and set_listener(listener, mask) of a DomainParticipant: each puts the default timeout
@@ -52,7 +52,7 @@ _BOTH = re.compile(
 
 
 class RepairError(Exception):
-    """A folder of the build container is named that has no known counterpart, or headers are missing."""
+    """The file names an unknown folder of the build container, or headers are missing."""
 
 
 @dataclass(frozen=True)
@@ -64,10 +64,10 @@ class HeaderFolders:
 
     @classmethod
     def here(cls) -> HeaderFolders:
-        """Return those of the interpreter that runs this.
+        """Return the folders of the interpreter that runs this.
 
         Raises:
-            RepairError: one of them is not installed.
+            RepairError: One of the folders does not exist.
         """
         import numpy
 
@@ -82,9 +82,9 @@ def repaired_cmake(text: str, headers: HeaderFolders) -> str:
     """Return the text of a CMake file with the container's header folders replaced by this interpreter's.
 
     Raises:
-        RepairError: another folder of the container is named.
+        RepairError: Another folder of the container is named.
     """
-    # By a function, for a backslash in a path must not be read as a group.
+    # Replaced by a function, because a backslash in a path must not be read as a reference to a group.
     text = _NUMPY_INCLUDE.sub(lambda _: headers.numpy.as_posix(), text)
     text = _PYTHON_INCLUDE.sub(lambda _: headers.python.as_posix(), text)
     left_over = _LEFT_OVER.search(text)
@@ -94,12 +94,12 @@ def repaired_cmake(text: str, headers: HeaderFolders) -> str:
 
 
 def repair_cmake(prefix: Path, headers: HeaderFolders) -> list[Path]:
-    """Repair every CMake file that the wheels installed below `prefix`, and return those that were changed.
+    """Repair every CMake file that the wheels installed below `prefix`. Return the files that were changed.
 
     Each file is replaced in one step: after an interruption, running again goes on from there.
 
     Raises:
-        RepairError: a file names a folder that this program does not know; the message says which file.
+        RepairError: A file names a folder that this program does not know; the message says which file.
     """
     changed = []
     for path in sorted(prefix.glob("share/*/cmake/**/*.cmake")):
@@ -120,9 +120,9 @@ class LaterImport:
     """A module that is to import something later.
 
     Attributes:
-        file: the module, below site-packages.
-        now: how it imports that now.
-        later: what takes its place.
+        file: The module, below site-packages.
+        now: How it imports that now.
+        later: What takes its place.
     """
 
     file: str
@@ -202,7 +202,7 @@ def repair_fast_dds(prefix: Path) -> list[Path]:
     """Repair the libraries of the wheels that are not repaired yet, each in one step, and return them.
 
     Args:
-        prefix: the environment, such as ``.venv``.
+        prefix: The environment, such as ``.venv``.
     """
     changed = []
     for path in sorted((prefix / "lib").glob("libfastrtps.so*")):

@@ -61,7 +61,7 @@ def read_check(master: Path, cell: MasterCell) -> CheckCall:
             master,
             cell.line,
             f"The grade_id '{cell.grade_id}' does not match check(\"{exercise}\", …).",
-            f"Leave the grade_id out: the cell then gets '{expected}'.",
+            f"Leave the grade_id out: it is '{expected}' by itself.",
         )
     return CheckCall(master, cell.line, exercise, subject, is_path)
 

@@ -1,4 +1,4 @@
-"""`python -m environment.ros2_command` is `ros2`."""
+"""Makes `python -m environment.ros2_command` run `ros2`."""
 
 import sys
 

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from rclpy.node import Node
     from rclpy.task import Future
 
-_POLL = 0.05  # seconds between two looks for Ctrl-C
-# Names of action_msgs/msg/GoalStatus, by their numbers.
+_POLL = 0.05  # seconds between two checks for Ctrl-C
+# The names of the status numbers of action_msgs/msg/GoalStatus.
 _STATUS = ("UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCELED", "ABORTED")
 _ACCEPTED, _EXECUTING = 1, 2
 
@@ -38,36 +38,36 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
 
 
 class _Feedback:
-    """Shows feedback, but none before it was said that the goal is accepted: that answer may come later."""
+    """Shows feedback, but only after the line that the goal is accepted, because that answer may come later."""
 
     def __init__(self) -> None:
         self._early: list[Any] | None = []
 
     def __call__(self, message: Any) -> None:
-        """Show one message, or keep it."""
+        """Show one feedback message, or keep it for later."""
         if self._early is None:
             print(f"Feedback:\n    {to_yaml(message.feedback)}")
         else:
             self._early.append(message)
 
     def begin(self) -> None:
-        """Show what was kept, and from now on everything at once."""
+        """Show the feedback that was kept. From now on, show feedback at once."""
         early, self._early = self._early or [], None
         for message in early:
             self(message)
 
 
 class _Turns:
-    """Turns of the executor, with Ctrl-C between two of them and never within one.
+    """Runs the executor turn by turn. Ctrl-C takes effect between two turns and never within one.
 
-    rclpy waits for nothing more from an action client whose message was being taken when an exception came
-    (`_executor_event` in rclpy/executors.py): the answer to the cancel request would not be heard.
+    If an exception comes while a message for an action client is being taken, rclpy waits for no further message of
+    that client (`_executor_event` in rclpy/executors.py). The answer to the cancel request would then be lost.
     """
 
     def __init__(self, node: Node) -> None:
         self._node = node
         self._interrupted = False
-        # Where Ctrl-C is ignored, as in a background job of a script, it stays ignored.
+        # If Ctrl-C is ignored, as in a background job of a script, it stays ignored.
         if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
             signal.signal(signal.SIGINT, self._interrupt)
 
@@ -82,19 +82,20 @@ class _Turns:
         rclpy.spin_once(self._node, timeout_sec=_POLL)
 
     def heed(self) -> None:
-        """Do what Python does at Ctrl-C.
+        """Do what Python does at Ctrl-C, if Ctrl-C was pressed.
 
         Raises:
-            KeyboardInterrupt: Ctrl-C was pressed since this was last asked.
+            KeyboardInterrupt: Ctrl-C was pressed since the last call.
         """
         if self._interrupted:
             self._interrupted = False
             raise KeyboardInterrupt
 
     def until_done(self, future: Future) -> Any:
-        """Spin until a future is done and give its result.
+        """Spin until a future is done, and return its result.
 
-        Ctrl-C in the turn that brings the result is heard in the next wait: a goal that was just accepted is canceled.
+        If Ctrl-C comes in the turn that brings the result, it takes effect in the next wait, so a goal that was just
+        accepted is canceled.
         """
         while not future.done():
             self.take_one()
@@ -105,7 +106,7 @@ def _cancel(turns: _Turns, handle: Any) -> None:
     """Cancel a goal whose result is no longer awaited.
 
     Raises:
-        RuntimeError: the server did not cancel it.
+        RuntimeError: The server did not cancel the goal.
     """
     print("Canceling goal...")
     response = turns.until_done(handle.cancel_goal_async())
@@ -127,7 +128,7 @@ def _send_goal(args: argparse.Namespace) -> Outcome:
     except Exception as error:
         return f"Failed to populate message fields: {error!r}"
     name = f"{NAME_PREFIX}_send_goal_{args.action_type.replace('/', '_')}"
-    # ROS must survive Ctrl-C here, or the goal could not be canceled.
+    # ROS must continue after Ctrl-C, or the goal could not be canceled.
     with graph_node(name=name, handle_interrupt=False) as node:
         from rclpy.action.client import ActionClient
 

@@ -1,6 +1,6 @@
-"""The table of all words: which module answers a verb, and which words only the full ros2cli knows.
+"""The table of all words: the module for each verb, and the words that only the full ros2cli has.
 
-Looking a word up imports nothing, so `ros2 -h` costs no more than a Python start.
+Finding a word imports nothing, so `ros2 -h` takes no longer than Python's start.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Callable, Mapping
 
-# What a verb returns, as in ros2cli: None or 0 is success, a number is the exit code, a text is an error
+# The result of a verb, as in ros2cli: None or 0 for success, another number for an exit code, a text for an error
 # that is printed on stderr with exit code 1.
 Outcome = int | str | None
 # The exit code of ros2cli after SIGTERM: the number of the signal.
@@ -30,26 +30,26 @@ class Verb:
 
 @dataclass(frozen=True)
 class Word:
-    """One verb in the table: its help line and the module that holds it in `VERBS`."""
+    """A row of the table: the help line of a verb, and the module whose `VERBS` contains the verb."""
 
     summary: str
     module: str
 
     def load(self, name: str) -> Verb:
-        """Import the module and return its verb called `name`."""
+        """Import the module, and return its verb with this name."""
         module = importlib.import_module(f"environment.ros2_command.{self.module}")
         return cast("dict[str, Verb]", module.VERBS)[name]
 
 
 @dataclass(frozen=True)
 class Command:
-    """A command: a group of verbs, or (with `itself`) one that does something on its own.
+    """A command: a group of verbs or, with `itself`, a command without verbs.
 
     Attributes:
-        summary: its line in `ros2 -h`.
-        verbs: the verbs that work here.
-        elsewhere: verbs that Jazzy's ros2cli has and this command does not.
-        option: a flag of the command that its verbs also take, with its help.
+        summary: The line in `ros2 -h`.
+        verbs: The verbs that work here.
+        elsewhere: The verbs that Jazzy's ros2cli has and this command does not.
+        option: An option of the command that its verbs also accept, with its help.
     """
 
     summary: str

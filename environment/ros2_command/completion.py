@@ -1,6 +1,6 @@
 """Completion of a command line in bash and zsh, by argcomplete, as Jazzy's ros2cli has it.
 
-The shell asks again at each Tab, so only the parsers of the words that are typed already are made.
+The shell asks again each time Tab is pressed, so only the parsers of words that are already typed are made.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def complete() -> None:
-    """Answer the shell's question and end this process; without argcomplete, return."""
+    """Answer the shell's question and end this process. Without argcomplete, return."""
     try:
         import argcomplete
     except ImportError:
@@ -33,7 +33,7 @@ def complete() -> None:
 
 
 def parser_for(typed: list[str]) -> argparse.ArgumentParser:
-    """Return a parser that knows all words, and the arguments of the command that is typed."""
+    """Return a parser that knows all words, and the arguments of the command that has been typed."""
     root = argparse.ArgumentParser("ros2")
     root.add_argument("--version", action="store_true")
     commands = root.add_subparsers()
@@ -62,7 +62,7 @@ def _add_completers(parser: argparse.ArgumentParser) -> None:
 
 
 def _on_graph(names: Callable[[Node], Iterable[str]]) -> Completer:
-    """Return a completer that asks the graph."""
+    """Return a completer that gets names from the ROS graph."""
 
     def completer(**_: Any) -> list[str]:
         with graph_node() as node:
@@ -142,4 +142,4 @@ _COMPLETERS: dict[str, Completer] = {
     "topic_type": _types("msg"),
     "type": _types("msg", "srv", "action"),
 }
-"""By the names of the arguments, which are those of ros2cli."""
+"""The completers by the names of arguments, which are those of ros2cli."""

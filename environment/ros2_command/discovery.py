@@ -1,12 +1,13 @@
-"""Decides when the graph is known: by the answers of all participants, not by the time that has passed.
+"""Decides when the ROS graph is completely known: by the answers of all participants, and not by the elapsed time.
 
-The real command asks a daemon that has been listening all the time, or waits half a second. There is no daemon here.
-The graph is known when
+The real command asks a daemon that has been listening all the time, or waits half a second. Here there is no daemon.
+The graph counts as known when
 
-* each participant of this machine has answered a roll call: as many as ports of the domain are in use;
-* the endpoints of each have begun to come, and every endpoint's node has a name, or goes on having none;
-* a whole further roll call has brought nothing new. A participant answers what came first first, so its answer
-  says that it has read whatever was asked before; on a busy machine a roll call takes as long as that does.
+* each participant of this machine has answered a roll call; their number is that of the domain's ports in use;
+* the endpoints of each participant have begun to arrive, and the node of every endpoint has a name or is known to
+  have none;
+* one more roll call has brought nothing new. A participant answers requests in order, so its answer shows that it has
+  read all earlier ones. On a busy machine a roll call takes as long as that needs.
 """
 
 from __future__ import annotations
@@ -23,39 +24,37 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
 
-# All in seconds.
+# All of these are in seconds.
 _POLL = 0.005
-_ROUND = (
-    0.06  # a roll call takes at least this long: an idle machine needs less, and endpoints come in a burst
-)
-_CALL_AGAIN = 0.3  # for those that were still being made
-_OTHER_MACHINES = 0.4  # where other machines may answer, wait at least this long for them
-_WITHOUT_TABLES = 0.5  # if the participants are unknown: the real command's own wait without a daemon
+_ROUND = 0.06  # the minimum for a roll call: an idle machine needs less, and endpoints come in a burst
+_CALL_AGAIN = 0.3  # call again after this time, for participants that were still being made
+_OTHER_MACHINES = 0.4  # the minimum wait if other machines may answer
+_WITHOUT_TABLES = 0.5  # the wait if the participants are unknown: that of the real command without a daemon
 PATIENCE = 15.0
 """Seconds after which a participant that does not answer is given up, with a warning."""
 
-# rmw_dds_common: every participant of ROS tells and hears the names of nodes here.
+# The topic on which all ROS participants announce and receive the names of nodes (rmw_dds_common).
 _PARTICIPANTS_TOPIC = "ros_discovery_info"
-_GUID_PREFIX = 12  # bytes of an endpoint's GID that name its participant
+_GUID_PREFIX = 12  # the number of bytes of an endpoint's GUID that identify its participant
 _UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"
-# A node of rclpy 7.1 that was destroyed leaves this service behind as long as its context lives (it is made past the
-# node's own services, rclpy/type_description_service.py), and no name is told for it any more.
+# A destroyed node of rclpy 7.1 leaves this service on the graph as long as its context exists
+# (rclpy/type_description_service.py does not make it through the node). No name is announced for it any more.
 _LEFT_BEHIND = "/get_type_description"
 _NAMELESS = 40
-"""Rounds without any change after which an endpoint without a name is taken to have none.
+"""The number of rounds without a change after which an endpoint without a node name counts as nameless.
 
-rmw forgets whose endpoints are whose when one of two nodes of the same name is destroyed.
+If two nodes have the same name and one is destroyed, rmw no longer knows to which node an endpoint belongs.
 """
 
 
 @dataclass(frozen=True)
 class Graph:
-    """The graph as it is known at one moment.
+    """The ROS graph as it is known at one moment.
 
     Attributes:
-        met: The participants of ROS of which writers and readers are known, by their GUID prefixes.
-        named: Whether the node of every endpoint has a name.
-        content: All that is known.
+        met: The GUID prefixes of the ROS participants whose writers and readers are known.
+        named: True if the node of every endpoint has a name.
+        content: Everything that is known.
     """
 
     met: frozenset[bytes]
@@ -64,7 +63,7 @@ class Graph:
 
 
 def look(node: Node) -> Graph:
-    """Return what a node knows of the graph now."""
+    """Return what a node knows about the graph now."""
     names = [name for name, _ in node.get_topic_names_and_types(no_demangle=True)]
     publishers, subscriptions = (
         {name: ask(name, no_mangle=True) for name in names}
@@ -97,22 +96,22 @@ def wait_until_settled(
     clock: Callable[[], float] = time.monotonic,
     sleep: Callable[[float], None] = time.sleep,
 ) -> int:
-    """Return when the graph is settled; how many participants of this machine have not been met by then.
+    """Wait until the graph is settled. Return the number of this machine's participants that are then still unknown.
 
     Args:
-        look: returns what is known now.
-        roll_call: asks the participants of this machine.
-        ports: returns the ports in use now, None if unknown.
-        shortest: seconds to wait at the least.
-        longest: seconds after which to give up those who do not answer.
-        clock: the present time in seconds.
-        sleep: waits for a number of seconds.
+        look: Returns what is known now.
+        roll_call: Asks the participants of this machine.
+        ports: Returns the ports in use now; None if unknown.
+        shortest: The minimum number of seconds to wait.
+        longest: Seconds after which participants that do not answer are given up.
+        clock: Returns the current time in seconds.
+        sleep: Waits for a number of seconds.
     """
     start = clock()
     before: Graph | None = None
     unchanged = 0
     while True:
-        # One round. Looks are not cheap where many notebooks are open: one a round.
+        # This is one round. A query is slow if many notebooks are open, so each round has only one.
         called, here = clock(), ports()
         roll_call.call(here.others if here else ())
         while True:
@@ -135,11 +134,11 @@ def wait_until_settled(
 
 
 def discover(node: Node, spin_time: float | None) -> int:
-    """Wait until a node knows the graph; return how many participants of this machine it could not meet.
+    """Wait until a node knows the graph. Return the number of this machine's participants that did not answer.
 
     Args:
-        node: looks at the graph.
-        spin_time: seconds to listen at least; by default as long as other machines may need to answer.
+        node: The node that queries the graph.
+        spin_time: The minimum number of seconds to listen; by default as long as other machines may need to answer.
     """
     domain = domain_id()
     if spin_time is None:
@@ -152,7 +151,7 @@ def discover(node: Node, spin_time: float | None) -> int:
 
 
 def _least_wait(*, known: bool) -> float:
-    """Return how many seconds to listen, by whether it is known who is on this machine."""
+    """Return the minimum seconds to listen, which depends on whether this machine's participants are known."""
     if not known:
         return _WITHOUT_TABLES
     return 0.0 if only_this_machine() else _OTHER_MACHINES

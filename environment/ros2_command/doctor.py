@@ -1,7 +1,7 @@
 """`ros2 doctor`: checks of the environment, the network and the graph, and a report.
 
-The real command also compares the versions of all packages with those of the distribution's index, for which
-it needs the Internet. That check is not here.
+The real command also compares the versions of all packages with the distribution's index, for which it needs the
+Internet. This check is missing here.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
 
-# Topics of every node: a publisher without a subscriber is usual there.
+# Every node has these topics, so a publisher without a subscriber is normal there.
 _EVERYBODYS = frozenset({"/parameter_events", "/rosout"})
 
 
@@ -35,7 +35,7 @@ class Findings:
 
 @dataclass(frozen=True)
 class Section:
-    """A part of the report: its title and its lines, each a name and a text."""
+    """A part of the report: its title, and its lines as pairs of a name and a text."""
 
     title: str
     lines: list[tuple[str, str]]
@@ -72,7 +72,7 @@ def check_platform() -> Findings:
 
 
 def check_network() -> Findings:
-    """Check that there is more than loopback."""
+    """Check that the machine has a network in addition to the loopback interface."""
     names = [name for _, name in socket.if_nameindex()]
     if "lo" not in names:
         return Findings(errors=["No loopback IP address is found."])
@@ -82,7 +82,7 @@ def check_network() -> Findings:
 
 
 def check_topics(node: Node) -> Findings:
-    """Look for topics that have only one side."""
+    """Find topics that have only publishers or only subscriptions."""
     found = Findings()
     for name in _topics(node):
         publishers, subscribers = node.count_publishers(name), node.count_subscribers(name)
@@ -94,7 +94,7 @@ def check_topics(node: Node) -> Findings:
 
 
 def check_quality(node: Node) -> Findings:
-    """Look for pairs whose quality of service does not match."""
+    """Find pairs of endpoints whose quality of service does not match."""
     from rclpy.qos import QoSCompatibility, qos_check_compatible
 
     found = Findings()
@@ -115,7 +115,7 @@ def _topics(node: Node) -> list[str]:
 
 
 def report(node: Node) -> dict[str, list[Section]]:
-    """Return the sections of the report by the categories of the checks."""
+    """Return the sections of the report, by the categories of the checks."""
     from rclpy.utilities import get_rmw_implementation_identifier
 
     topics = [

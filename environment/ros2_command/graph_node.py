@@ -1,4 +1,4 @@
-"""The node with which a verb looks at the graph and takes part in it."""
+"""The node with which a verb queries the graph and takes part in it."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
 
-# Names that begin with this are hidden from the lists, so that the command does not list itself.
+# Names with this prefix are hidden from lists, so that the command does not list itself.
 NAME_PREFIX = "_ros2cli"
 _PROFILE = Path(__file__).with_name("fastdds_profile.xml")
-_LOOK, _GRACE = 0.2, 2.0  # seconds: between two looks, and for a verb to end by itself
+_LOOK, _GRACE = 0.2, 2.0  # seconds between two checks, and seconds for a verb to end by itself
 _PROFILE_VARIABLES = ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE")
 
 
 def add_graph_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of all verbs that look at the graph."""
+    """Add the options that all verbs have that query the graph."""
     parser.add_argument(
         "--spin-time",
         type=float,
@@ -42,16 +42,16 @@ def add_graph_arguments(parser: argparse.ArgumentParser) -> None:
 def graph_node(
     args: argparse.Namespace | None = None, *, name: str | None = None, handle_interrupt: bool = True
 ) -> Iterator[Node]:
-    """Start ROS with one node that knows the graph, and stop it again.
+    """Start ROS with one node that knows the graph. At the end of the block, stop ROS.
 
     Args:
-        args: the parsed command line; `spin_time` and `use_sim_time` are looked at.
-        name: the node's name; hidden and unique by default.
-        handle_interrupt: let rclpy shut down on Ctrl-C; without it Ctrl-C is a KeyboardInterrupt and ROS
+        args: The parsed command line, of which `spin_time` and `use_sim_time` are used.
+        name: The name of the node; by default hidden and unique.
+        handle_interrupt: True to let rclpy shut down at Ctrl-C. If False, Ctrl-C raises a KeyboardInterrupt, and ROS
             still works while it is handled.
 
     Raises:
-        RuntimeError: ROS_DOMAIN_ID is not a domain.
+        RuntimeError: ROS_DOMAIN_ID is not a valid domain.
     """
     domain_id()
     if not any(os.environ.get(variable) for variable in _PROFILE_VARIABLES):
@@ -80,10 +80,10 @@ def graph_node(
 
 
 def _end_without_ros(node: Node, ended: threading.Event) -> None:
-    """End this process if a signal has shut ROS down and the verb does not return from a wait.
+    """End this process if a signal has shut down ROS and the verb does not return from a wait.
 
-    rclpy answers SIGTERM by shutting ROS down, which is to wake every wait. Now and then one is not woken, and
-    `timeout 8 ros2 ...` would then never end.
+    rclpy reacts to SIGTERM by shutting down ROS, which should end every wait. Sometimes one wait does not end, and
+    then `timeout 8 ros2 ...` would never end.
     """
     while not ended.wait(_LOOK):
         if not node.context.ok():
@@ -97,7 +97,7 @@ def _create(name: str | None, *, use_sim_time: bool) -> Node:
     from rclpy.node import Node
     from rclpy.parameter import Parameter
 
-    # Services that are never called here would cost half of the start-up time.
+    # These services are never called, and would take half of the start-up time.
     return Node(
         name or f"{NAME_PREFIX}_{os.getpid()}",
         start_parameter_services=False,

@@ -1,12 +1,11 @@
-"""Put `ros2`, `launch` and `launch_ros` into a virtual environment, behind any real installation.
+"""Puts `ros2`, `launch` and `launch_ros` into a virtual environment. A real installation takes precedence.
 
-The set-up calls `install` once; calling it again changes nothing. Neither thing ever hides a real one:
+The set-up calls `install` once; a second call changes nothing. A real installation is never hidden:
 
-* the program `ros2` hands over to the one of the ROS installation in use, if that has one
-  (`real_installation`);
-* `launch` is found by a finder that first asks all others, so that every installed `launch` comes first, wherever
-  anywhere in the search path it is. A folder without `__init__.py` does not count: a package has its launch files
-  there, and `colcon build --symlink-install` puts it into the search path.
+* the program `ros2` starts the `ros2` of the ROS installation in use, if there is one (`real_installation`);
+* `launch` is found by a finder that asks all other finders first, so any installed `launch` takes precedence,
+  wherever it is in the search path. A folder without `__init__.py` does not count, because a package keeps its launch
+  files in such a folder, and `colcon build --symlink-install` puts it into the search path.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ LAUNCH_FRONT = ROOT / "environment" / "launch_front"
 
 _HOOK = "course_launch_front"
 _PTH = f"{_HOOK}.pth"
-_LONGEST_SHEBANG = 120  # bytes: older kernels cut a longer first line
+_LONGEST_SHEBANG = 120  # bytes: older kernels cut a first line that is longer
 
 _PROGRAM = '''\
 """The course's own ros2 (environment.ros2_command). A real one, where there is one, runs instead."""
@@ -80,16 +79,16 @@ def begin():
 
 
 def _shebang(python: Path) -> str:
-    """Return the first lines of a program that this Python runs."""
+    """Return the first lines of a program that this Python will run."""
     line = f"#!{python}"
     if " " not in line and len(line.encode()) <= _LONGEST_SHEBANG:
         return f"{line}\n"
-    # A path that the kernel can not take: a shell starts Python, which sees these lines as a text.
+    # For a path that the kernel cannot use, a shell starts Python, which reads these lines as a string.
     return f"#!/bin/sh\n'''exec' \"{python}\" \"$0\" \"$@\"\n' '''\n"
 
 
 def _write(path: Path, text: str, *, executable: bool = False) -> None:
-    """Write a file, unless it is there already with that text."""
+    """Write a file, unless it already has this text."""
     if not path.exists() or path.read_text(encoding="utf-8") != text:
         path.write_text(text, encoding="utf-8")
     if executable:
@@ -97,10 +96,10 @@ def _write(path: Path, text: str, *, executable: bool = False) -> None:
 
 
 def _site_packages(venv: Path) -> Path:
-    """Return the folder of a virtual environment's packages.
+    """Return the folder for packages of a virtual environment.
 
     Raises:
-        FileNotFoundError: the folder is not a virtual environment.
+        FileNotFoundError: The folder is not a virtual environment.
     """
     found = sorted(venv.glob("lib/python3*/site-packages"))
     if not found:
@@ -112,10 +111,10 @@ def install(venv: Path) -> None:
     """Make `ros2` a program of a virtual environment, and `launch` and `launch_ros` importable in it.
 
     Args:
-        venv: its folder.
+        venv: The folder of the virtual environment.
 
     Raises:
-        FileNotFoundError: the folder is not a virtual environment.
+        FileNotFoundError: The folder is not a virtual environment.
     """
     packages = _site_packages(venv)
     _write(packages / f"{_HOOK}.py", _HOOK_CODE.format(folder=str(LAUNCH_FRONT)))

@@ -24,7 +24,7 @@ def _kind_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _chosen(args: argparse.Namespace) -> list[tuple[str, str]]:
-    """Return the kinds that were asked for, each with its title; all when none was named."""
+    """Return the requested kinds of interfaces, each with its title; all kinds if none was requested."""
     chosen = [(kind, title) for kind, title, option in _KINDS if getattr(args, option)]
     return chosen or [(kind, title) for kind, title, _ in _KINDS]
 

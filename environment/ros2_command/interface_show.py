@@ -23,7 +23,7 @@ _QUOTED_OR_COMMENT = re.compile(r"""("(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*')|(\s*#.
 
 
 def nested_type(line: str, package: str) -> str | None:
-    """Return the interface that a field of this line has as its type, None for a basic type or no field."""
+    """Return the interface type of the field on this line; None for a basic type or a line without a field."""
     match = _FIELD.match(line)
     if match is None or match["type"] in _BASIC:
         return None
@@ -35,15 +35,15 @@ def nested_type(line: str, package: str) -> str | None:
 
 
 def without_comment(line: str) -> str:
-    """Return a line without its comment; a `#` inside quotes is none."""
+    """Return a line without its comment. A `#` inside quotes does not begin a comment."""
     return _QUOTED_OR_COMMENT.sub(lambda match: match[1] or "", line).strip()
 
 
 def definition(name: str, *, comments: bool, nested_comments: bool, level: int = 0) -> list[str]:
-    """Return the lines of an interface with those of its nested types, indented by tabs.
+    """Return the lines of an interface and of its nested types, indented by tabs.
 
     Raises:
-        ValueError, LookupError: the interface does not exist.
+        ValueError, LookupError: The interface does not exist.
     """
     lines: list[str] = []
     for raw in interface_file(name).read_text(encoding="utf-8").splitlines():
@@ -60,7 +60,7 @@ def definition(name: str, *, comments: bool, nested_comments: bool, level: int =
 
 
 class _TypeOrStdin(argparse.Action):
-    """Take the type from the command line, or with `-` from a pipe."""
+    """Reads the type from the command line or, if it is `-`, from a pipe."""
 
     def __call__(
         self,

@@ -1,4 +1,4 @@
-"""Find interfaces: their classes by name, and the packages and files that hold them."""
+"""Finds interfaces: the classes by name, and the packages and files that contain them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 _SUFFIXES = {"msg": (".msg", ".idl"), "srv": (".srv", ".idl"), "action": (".action", ".idl")}
-# By these attributes a generated class shows its kind.
+# The attributes by which the kind of a generated class is recognized.
 _PARTS = {"msg": ("SLOT_TYPES",), "srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
 
 
@@ -15,11 +15,11 @@ def load_type(name: str, kind: str) -> Any:
     """Import the class of an interface.
 
     Args:
-        name: as `std_msgs/msg/String` or, shorter, `std_msgs/String`.
-        kind: msg, srv or action, which also stands for a missing middle part.
+        name: The name, such as `std_msgs/msg/String` or, shorter, `std_msgs/String`.
+        kind: msg, srv or action. It replaces a missing middle part of the name.
 
     Raises:
-        ValueError: there is none of that name and kind.
+        ValueError: There is no interface of this name and kind.
     """
     *package, last = name.split("/")
     if len(package) == 1:
@@ -34,10 +34,10 @@ def load_type(name: str, kind: str) -> Any:
 
 
 def interfaces_of(package: str, kind: str) -> list[str]:
-    """Return the interfaces of a package, as `msg/String`, in order.
+    """Return the interfaces of a package, such as `msg/String`, in order.
 
     Raises:
-        LookupError: the package is not known.
+        LookupError: The package does not exist.
     """
     from ament_index_python import get_resource, has_resource
 
@@ -50,7 +50,7 @@ def interfaces_of(package: str, kind: str) -> list[str]:
         {
             line.rpartition(".")[0]
             for line in content.splitlines()
-            # A name with an underscore is part of another interface, as Fibonacci_Goal is of an action.
+            # A name with an underscore is a part of another interface, such as Fibonacci_Goal of an action.
             if line.startswith(f"{kind}/") and line.endswith(_SUFFIXES[kind]) and "_" not in line
         }
     )
@@ -67,11 +67,11 @@ def interface_file(name: str) -> Path:
     """Return the file that defines an interface.
 
     Args:
-        name: as `std_msgs/msg/String`.
+        name: The name, such as `std_msgs/msg/String`.
 
     Raises:
-        ValueError: the name has not three parts.
-        LookupError: the package or the interface is not known.
+        ValueError: The name does not have three parts.
+        LookupError: The package or the interface does not exist.
     """
     from ament_index_python import get_resource
 

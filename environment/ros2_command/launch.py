@@ -74,7 +74,7 @@ def launch_file_in_package(package: str, file_name: str | None) -> str:
     """Return the path of a launch file that a package has installed.
 
     Raises:
-        RuntimeError: the package or file does not exist, or several files have that name.
+        RuntimeError: The package or the file does not exist, or several files have this name.
     """
     from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
 
@@ -98,10 +98,10 @@ def launch_file_in_package(package: str, file_name: str | None) -> str:
 
 
 def parse_launch_arguments(given: list[str]) -> dict[str, str]:
-    """Return values by the names of launch arguments.
+    """Return the values of launch arguments by name.
 
     Raises:
-        RuntimeError: one is not of the form `name:=value`.
+        RuntimeError: An argument does not have the form `name:=value`.
     """
     values = {}
     for argument in given:
@@ -113,7 +113,7 @@ def parse_launch_arguments(given: list[str]) -> dict[str, str]:
 
 
 def show_arguments(description: LaunchDescription) -> None:
-    """Print the arguments that a launch file takes."""
+    """Print the arguments that a launch file accepts."""
     from launch.launch_description import declared_arguments
 
     print("Arguments (pass arguments as '<name>:=<value>'):")
@@ -130,11 +130,12 @@ def show_arguments(description: LaunchDescription) -> None:
 
 
 def _find_launch_package() -> None:
-    """Make `launch` importable even if the environment was set up without it."""
+    """Make `launch` importable, even if the environment was set up without it."""
     import importlib.util
 
     spec = importlib.util.find_spec("launch")
-    # A folder launch/ of launch files, which a package has in the search path, is a namespace: it has no origin.
+    # A package may have a folder launch/ with launch files in the search path. Python takes it for a namespace
+    # package, which has no origin.
     if spec is None or spec.origin is None:
         from environment.ros2_command.install import LAUNCH_FRONT
 
@@ -146,7 +147,7 @@ def _launch(args: argparse.Namespace) -> Outcome:
     if Path(args.package_name).is_file():
         path = args.package_name
         if args.launch_file_name is not None:
-            # With a path there is no second name, so this word is the first argument.
+            # If a path is given, there is no second name, so this word is the first argument.
             given.insert(0, args.launch_file_name)
     else:
         path = launch_file_in_package(args.package_name, args.launch_file_name)

@@ -1,4 +1,4 @@
-"""From the command line to a verb and back to an exit code."""
+"""Runs a command line: finds the verb, and returns its exit code."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ _EPILOG = (
     "This is the course's own ros2. It knows the words above as Jazzy's ros2cli does; everything else needs\n"
     f"{FULL}."
 )
-# The exit code of ros2cli after Ctrl-C: the number of the signal.
+# The exit code of ros2cli after Ctrl-C, which is the number of the signal.
 _INTERRUPTED = 2
 _NEEDED = ("rclpy", "ament_index_python", "yaml")
 
 
 class _Parser(argparse.ArgumentParser):
-    """An argument parser that says first what is wrong, and then how to write it."""
+    """An argument parser whose errors first say what is wrong, and then what to write."""
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """Parse a command line; words too many are an error that names them and how to quote them."""
+        """Parse a command line. If there are too many words, the error names them and says how to quote them."""
         words = list(args)
         found, extra = self.parse_known_args(words, namespace)
         if extra:
@@ -41,12 +41,12 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _about_extra(prog: str, words: Sequence[str], extra: Sequence[str]) -> Iterator[str]:
-    """Say what is wrong with words that no argument takes."""
+    """Return what is wrong with words that no argument takes."""
     options = [word for word in extra if word.startswith("-")]
     rest = [word for word in extra if word not in options]
     if rest:
         yield f"too many words: {' '.join(rest)}"
-        # A shell cuts `{data: Hello you}` into three words.
+        # A shell splits `{data: Hello you}` into three words.
         at = words.index(rest[0])
         whole = " ".join(words[max(at - 1, 0) : at + len(rest)])
         if ":" in whole or whole.startswith(("{", "[")):
@@ -77,7 +77,7 @@ def _needs_full(words: str, hint: str = "") -> int:
 
 
 def _add_words(parser: argparse.ArgumentParser, summaries: dict[str, str], prog: str) -> None:
-    """Give a parser its sub-commands, for its help and for the error about a wrong word."""
+    """Add sub-commands to a parser, for its help and for the error about a wrong word."""
     words = parser.add_subparsers(
         title="Commands",
         description=_listing(summaries),
@@ -94,24 +94,24 @@ def _parse(prog: str, summary: str, verb: Verb, argv: list[str]) -> argparse.Nam
 
 
 def _word_in(argv: list[str]) -> int:
-    """Return the position of the first word that is not an option, or the length of the list."""
+    """Return the index of the first word that is not an option; the length of the list if there is none."""
     return next((i for i, word in enumerate(argv) if not word.startswith("-")), len(argv))
 
 
 def _at(argv: list[str], position: int) -> str:
-    """Return the word at a position, an empty one behind the end."""
+    """Return the word at an index; an empty word after the end."""
     return argv[position] if position < len(argv) else ""
 
 
 def _group(prog: str, command: Command, argv: list[str]) -> Outcome:
-    """Run a command that is a group of verbs."""
+    """Run a command that consists of verbs."""
     at = _word_in(argv)
     name = _at(argv, at)
     if name in command.elsewhere:
         return _needs_full(f"{prog} {name}")
     if name in command.verbs and not {"-h", "--help"} & set(argv[:at]):
         word = command.verbs[name]
-        # Options may be before the verb (`ros2 topic --include-hidden-topics list`).
+        # Options may come before the verb (`ros2 topic --include-hidden-topics list`).
         args = _parse(f"{prog} {name}", word.summary, verb := word.load(name), argv[:at] + argv[at + 1 :])
         return verb.main(args)
     parser = _parser(prog, command.summary)
@@ -125,7 +125,7 @@ def _group(prog: str, command: Command, argv: list[str]) -> Outcome:
 
 
 def _check_word(parser: _Parser, name: str, known: Iterable[str]) -> None:
-    """End with an error if a word is not known, with the one that was probably meant."""
+    """End with an error if a word is unknown. The error suggests a similar word."""
     if name and name not in known:
         close = difflib.get_close_matches(name, known, n=1)
         meant = f"Did you mean `{parser.prog} {close[0]}`? " if close else ""
@@ -159,7 +159,7 @@ def _dispatch(argv: list[str]) -> Outcome:
 
 
 def _version() -> str:
-    """Return which ros2 this is, and the version of the rclpy that it uses."""
+    """Return which ros2 this is, with the version of rclpy that it uses."""
     from ament_index_python import get_resource
 
     _, prefix = get_resource("packages", "rclpy")
@@ -169,25 +169,25 @@ def _version() -> str:
 
 
 def _line_buffered() -> None:
-    """Show each line at once, also in a pipe or in a notebook's cell."""
+    """Write each line at once, even to a pipe or in a notebook's cell."""
     reconfigure = getattr(sys.stdout, "reconfigure", None)
     if reconfigure:
         reconfigure(line_buffering=True)
 
 
 def _find_packages_here() -> None:
-    """Put this environment's own packages behind those of the sourced workspaces, if they are missing."""
+    """Add this environment's own packages, if missing, after those of the sourced workspaces."""
     prefixes = [p for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
     if sys.prefix not in prefixes:
         os.environ["AMENT_PREFIX_PATH"] = os.pathsep.join([*prefixes, sys.prefix])
 
 
 def run(argv: list[str]) -> int:
-    """Run one command and return its exit code, as ros2cli does.
+    """Run one command, and return its exit code, which is that of ros2cli.
 
     Returns:
-        0 for success; 1 for an error, which is then on stderr; 2 for words or options that are not known
-        here, and after Ctrl-C; 15 after SIGTERM; or the exit code of the program that was run.
+        0 for success; 1 for an error, which is printed on stderr; 2 for unknown words or options, and after Ctrl-C;
+        15 after SIGTERM; or the exit code of the program that was run.
     """
     _find_packages_here()
     try:
@@ -195,7 +195,7 @@ def run(argv: list[str]) -> int:
     except KeyboardInterrupt:
         return _INTERRUPTED
     except BrokenPipeError:
-        # The reader has gone (`ros2 topic echo … | head`): end quietly, and keep Python from flushing again.
+        # The reader has ended (`ros2 topic echo … | head`). End quietly, and keep Python from flushing again.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
     except RuntimeError as error:
@@ -207,7 +207,7 @@ def run(argv: list[str]) -> int:
             f"ros2: {error.name} is not installed in this environment ({sys.prefix}): run ./course setup"
         )
     except Exception as error:
-        # rclpy is not imported for every command, so its exception is known by name only.
+        # Not every command imports rclpy, so its exception is recognized by name.
         if type(error).__name__ != "ExternalShutdownException":
             raise
         return TERMINATED
@@ -218,7 +218,7 @@ def run(argv: list[str]) -> int:
 
 
 def main() -> int:
-    """Run `ros2`: hand over to a real one if it exists, else run the command here."""
+    """Run `ros2`: start the real one if it exists, else run the command here."""
     from environment.ros2_command.real_installation import run_real_command
 
     run_real_command()

@@ -1,4 +1,4 @@
-"""From YAML to the fields of a message, and from a message to YAML or CSV, in the form of ros2cli."""
+"""Converts YAML to the fields of a message, and a message to YAML or CSV, in the form of ros2cli."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-# A generated message class has no common base class with types.
+# Generated message classes have no common base class with types.
 Message = Any
 StampSetter = Callable[[Any], None]
 
@@ -19,12 +19,12 @@ _NESTED = re.compile(r"^sequence<(?P<item>[^,]+)(?:, (?P<bound>\d+))?>$|^(?P<fix
 
 @dataclass(frozen=True)
 class Shortening:
-    """The way in which shown values are shortened.
+    """The limits with which values are shortened.
 
     Attributes:
-        length: elements or characters after which a value is cut; None for no limit.
-        no_arrays: show the type and length of arrays instead of their elements.
-        no_strings: show the length of strings instead of their text.
+        length: The maximum number of elements or characters of a value; None for no limit.
+        no_arrays: True to show the type and length of arrays instead of their elements.
+        no_strings: True to show the length of strings instead of their text.
     """
 
     length: int | None = None
@@ -39,7 +39,7 @@ def parse_values(text: str | bytes) -> Mapping[str, Any]:
     """Read the values that were given on the command line.
 
     Raises:
-        RuntimeError: the text is not a dictionary in YAML.
+        RuntimeError: The text is not a dictionary in YAML.
     """
     import yaml
 
@@ -56,12 +56,12 @@ def fill(message: Message, values: Mapping[str, Any]) -> list[StampSetter]:
     """Set fields of a message from plain values, converting a value to its field's type.
 
     Returns:
-        a function for each field that was given as `now` (a Time) or `auto` (a Header): call it with the
-        present time before each publishing.
+        A function for each field that was given as `now` (a Time) or `auto` (a Header). Call it with the current time
+        before each publishing.
 
     Raises:
-        AttributeError: the message does not have a field of a given name.
-        TypeError, ValueError: a value does not fit its field.
+        AttributeError: The message does not have a field with a given name.
+        TypeError, ValueError: A value does not fit its field.
     """
     if not isinstance(values, Mapping):
         raise TypeError(f"Value '{values}' is expected to be a dictionary but is a {type(values).__name__}")
@@ -101,7 +101,7 @@ def _converted(field: Any, slot_type: Any, given: Any, setters: list[StampSetter
 
 
 def _abbreviation(declared: str, value: Any) -> str | None:
-    """Return the short text for an array when arrays are not shown, None for other values."""
+    """Return the short text for an array if arrays are not shown; None for any other value."""
     match = _NESTED.match(declared)
     if match is None:
         return None

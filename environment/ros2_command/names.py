@@ -1,4 +1,4 @@
-"""Names on the graph: which are hidden, and how a node is called in full."""
+"""Names on the ROS graph: hidden ones, and full names of nodes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def is_hidden(name: str) -> bool:
-    """Tell whether a part of a topic's, service's or action's name begins with an underscore."""
+    """Return True if a part of the name of a topic, service or action begins with an underscore."""
     return any(part.startswith("_") for part in name.split("/"))
 
 
@@ -23,17 +23,17 @@ class NodeName:
 
     @property
     def full(self) -> str:
-        """The name with its namespace, as `/robot1/talker`."""
+        """The name with its namespace, such as `/robot1/talker`."""
         return f"{self.namespace.rstrip('/')}/{self.name}"
 
     @property
     def hidden(self) -> bool:
-        """True if lists leave it out (the command's own node is such a one)."""
+        """True if lists leave the node out, as the node of this command."""
         return not self.name or self.name.startswith("_")
 
 
 def show(found: Iterable[tuple[str, list[str]]], *, count: bool, types: bool = False) -> None:
-    """Print names, with their types if requested, or only their number."""
+    """Print names, with their types or only their number if requested."""
     if count:
         print(len(list(found)))
         return
@@ -42,5 +42,5 @@ def show(found: Iterable[tuple[str, list[str]]], *, count: bool, types: bool = F
 
 
 def absolute(node_name: str) -> str:
-    """Return the name of a node with a leading slash."""
+    """Return the name of a node, with a slash at its beginning."""
     return node_name if node_name.startswith("/") else f"/{node_name}"

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def node_names(node: Node, *, hidden: bool) -> list[NodeName]:
-    """Return the nodes of the graph, in order of their full names."""
+    """Return the nodes on the graph, in the order of their full names."""
     nodes = [NodeName(*pair) for pair in node.get_node_names_and_namespaces()]
     return sorted((n for n in nodes if hidden or not n.hidden), key=lambda n: n.full)
 
@@ -90,7 +90,7 @@ def _info(args: argparse.Namespace) -> Outcome:
                 for name, types in ask(found[0].name, found[0].namespace)
                 if args.include_hidden or not is_hidden(name)
             ]
-            # An empty section is one empty line, as in ros2cli.
+            # As in ros2cli, an empty section is a single empty line.
             print(*lines, sep="\n")
     return None
 

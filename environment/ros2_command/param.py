@@ -1,4 +1,4 @@
-"""`ros2 param list`, `describe`, `get` and `set`: they call the parameter services of a node."""
+"""`ros2 param list`, `describe`, `get` and `set`, which call the parameter services of a node."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _POLL = 0.01
 _SERVICE_LIMIT = 5.0
 _ASK_AGAIN = 1.0
 
-# By the numbers of rcl_interfaces/msg/ParameterType: its name, the words before its value, the value's field.
+# For each number of rcl_interfaces/msg/ParameterType: its name, the words before a value, and the field of the value.
 _TYPES = (
     ("not set", "Parameter not set.", None),
     ("boolean", "Boolean value is:", "bool_value"),
@@ -38,10 +38,10 @@ _TYPES = (
 
 
 def ask(node: Node, node_name: str, service: str, request: Any, kind: Any) -> Any | None:
-    """Call a parameter service; return None when the service does not appear.
+    """Call a parameter service. Return None if the service does not appear.
 
-    A server drops its answer if it does not know the client yet (rmw_fastrtps waits 0.1 s), so a client without an
-    answer asks again: a second request changes nothing more.
+    A server drops its answer if it does not know the client yet (rmw_fastrtps waits 0.1 s). So a client that gets no
+    answer asks again; a second request changes nothing.
     """
     import rclpy
 
@@ -59,7 +59,7 @@ def ask(node: Node, node_name: str, service: str, request: Any, kind: Any) -> An
 
 
 def plain_value(given: Any) -> Any:
-    """Return the value in an ``rcl_interfaces/msg/ParameterValue``, None if it is not set."""
+    """Return the value in an ``rcl_interfaces/msg/ParameterValue``; None if it is not set."""
     value_field = _TYPES[given.type][2]
     value: Any = getattr(given, value_field) if value_field else None
     return value.tolist() if hasattr(value, "tolist") else value
@@ -71,7 +71,7 @@ def timed_out(node_name: str) -> str:
 
 
 def find_node(node: Node, args: argparse.Namespace) -> bool:
-    """Wait, as long as --timeout says, until the node is there."""
+    """Wait until the node exists, at most for the time of --timeout."""
     limit = time.monotonic() + args.timeout
     name = absolute(args.node_name)
     while name not in {n.full for n in node_names(node, hidden=args.include_hidden_nodes)}:
@@ -82,12 +82,12 @@ def find_node(node: Node, args: argparse.Namespace) -> bool:
 
 
 def hidden_option(parser: argparse.ArgumentParser) -> None:
-    """Add the option that finds nodes whose names begin with an underscore."""
+    """Add the option to find nodes whose names begin with an underscore."""
     parser.add_argument("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
 
 
 def node_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add what every verb takes that asks one node: the options about the graph, and the node."""
+    """Add the arguments of all verbs that ask one node: the options for the graph, and the node."""
     add_graph_arguments(parser)
     parser.add_argument("node_name", help="Name of the ROS node")
     hidden_option(parser)
@@ -99,7 +99,7 @@ def _parameter_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def timeout_option(parser: argparse.ArgumentParser) -> None:
-    """Add the option that says how long to wait for the node."""
+    """Add the option for the time to wait for the node."""
     parser.add_argument(
         "--timeout",
         metavar="N",

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def package_prefix(package: str) -> Path | None:
-    """Return the install folder of a package, None when no sourced workspace has it."""
+    """Return the install folder of a package; None if no sourced workspace has the package."""
     from ament_index_python.packages import PackageNotFoundError, get_package_prefix
 
     try:
@@ -26,7 +26,7 @@ def executable_paths(package: str) -> list[Path]:
     """Return the programs that `ros2 run` can start, in order.
 
     Raises:
-        RuntimeError: no sourced workspace has the package.
+        RuntimeError: No sourced workspace has the package.
     """
     prefix = package_prefix(package)
     if prefix is None:

@@ -19,7 +19,7 @@ _LICENSES = Path(__file__).with_name("licenses")
 
 
 def known_licenses() -> list[str]:
-    """Return the SPDX names of the licences whose text can be written into a package."""
+    """Return the SPDX names of the licenses whose text can be written into a package."""
     return sorted(path.stem for path in _LICENSES.glob("*.txt"))
 
 
@@ -67,7 +67,7 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _email(args: argparse.Namespace) -> str:
-    """Return the maintainer's address: as given, else git's, else one to fill in."""
+    """Return the maintainer's address: the given one, or git's, or else one that has to be replaced."""
     if args.maintainer_email:
         return str(args.maintainer_email)
     git = shutil.which("git")
@@ -147,7 +147,7 @@ def _create(args: argparse.Namespace) -> Outcome:
     if name != Path(name).name or name in (".", ".."):
         return f"'{name}' is not a package name: give the folder with --destination-directory"
     if args.build_type == "ament_python" and name == "test":
-        # The folder of the source and the folder of the tests would be one.
+        # The folder of the source and the folder of the tests would be the same.
         return (
             "Aborted since 'ament_python' packages can't be named 'test'. "
             "Please choose a different package name."

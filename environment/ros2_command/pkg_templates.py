@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from xml.sax.saxutils import escape, quoteattr
 
-# The linters here are not on the package index: if they are missing, the generated tests are skipped.
+# These linters are not on the package index. If they are missing, the generated tests are skipped.
 PYTHON_TEST_DEPENDENCIES = ("ament_copyright", "ament_flake8", "ament_pep257", "python3-pytest")
 CMAKE_TEST_DEPENDENCIES = ("ament_lint_auto", "ament_lint_common")
 
@@ -93,7 +93,7 @@ setup(
 
 
 def setup_cfg(package: Package) -> str:
-    """Return setup.cfg: where `ros2 run` looks for the programs."""
+    """Return setup.cfg, which says where `ros2 run` finds the programs."""
     folder = f"$base/lib/{package.name}"
     return f"[develop]\nscript_dir={folder}\n[install]\ninstall_scripts={folder}\n"
 
@@ -136,7 +136,7 @@ _LINTERS = {
 def linter_test(linter: str) -> str:
     """Return the test that runs one of the linters: copyright, flake8 or pep257."""
     module, call, subject = _LINTERS[linter]
-    # As on Jazzy, a package without copyright headers does not fail at once.
+    # As on Jazzy, a package without copyright headers does not fail right away.
     skip = (
         "# Remove this mark when the files of the package have a copyright header.\n"
         "@pytest.mark.skip(reason='The generated files have no copyright header.')\n"

@@ -1,6 +1,6 @@
-"""The participants of a domain on this machine, as the operating system knows it.
+"""Finds the participants of a domain on this machine, by asking the operating system.
 
-Each DDS participant holds a UDP port of its domain, so the participants are known before any is discovered.
+Each DDS participant uses a UDP port of its domain, so the participants are known before they are discovered.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 # participant on a machine is number 10 + 2n.
 _BASE, _PER_DOMAIN, _FIRST_UNICAST = 7400, 250, 10
 _SOCKET_TABLES = ("/proc/net/udp", "/proc/net/udp6")
-_STOPPED = frozenset("TtZX")  # proc(5), states of a process that does not answer
+_STOPPED = frozenset("TtZX")  # the states (proc(5)) of a process that does not answer because it is stopped
 
 
 @dataclass(frozen=True)
@@ -25,8 +25,8 @@ class Ports:
     """The discovery ports of a domain that are in use on this machine.
 
     Attributes:
-        own: Those of this process.
-        others: Those of all other processes, but for those that are stopped.
+        own: The ports of this process.
+        others: The ports of all other processes, except stopped ones.
     """
 
     own: frozenset[int]
@@ -34,10 +34,10 @@ class Ports:
 
 
 def domain_id() -> int:
-    """Return ROS_DOMAIN_ID, 0 when unset.
+    """Return the value of ROS_DOMAIN_ID; 0 if it is not set.
 
     Raises:
-        RuntimeError: it is not a number from 0 to 232.
+        RuntimeError: The value is not a number from 0 to 232.
     """
     text = os.environ.get("ROS_DOMAIN_ID", "").strip()
     if not text:
@@ -50,14 +50,14 @@ def domain_id() -> int:
 
 
 def only_this_machine() -> bool:
-    """Tell whether ROS_AUTOMATIC_DISCOVERY_RANGE keeps discovery on this machine."""
+    """Return True if ROS_AUTOMATIC_DISCOVERY_RANGE limits discovery to this machine."""
     return os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper() in {"LOCALHOST", "OFF"}
 
 
 def ports_in_use(
     domain: int, tables: Iterable[str] = _SOCKET_TABLES, processes: Path = Path("/proc")
 ) -> Ports | None:
-    """Return the discovery ports of a domain, or None where Linux's tables are missing."""
+    """Return the discovery ports of a domain that are in use; None if Linux's tables are missing."""
     sockets = _sockets(domain, tables)
     if sockets is None:
         return None
@@ -68,7 +68,7 @@ def ports_in_use(
 
 
 def _sockets(domain: int, tables: Iterable[str]) -> dict[int, int] | None:
-    """Return the ports by the inodes of their sockets."""
+    """Return ports by the inodes of their sockets."""
     start = _BASE + _PER_DOMAIN * domain
     wanted = range(start + _FIRST_UNICAST, start + _PER_DOMAIN, 2)
     found: dict[int, int] = {}
@@ -90,13 +90,14 @@ def _sockets(domain: int, tables: Iterable[str]) -> dict[int, int] | None:
 
 
 def _held_by_stopped(sockets: dict[int, int], processes: Path) -> frozenset[int]:
-    """Return the ports of processes that are stopped (Ctrl-Z, a debugger): they answer when they go on."""
+    """Return the ports of processes that are stopped (Ctrl-Z, a debugger). They answer once they continue."""
     held: set[int] = set()
-    # A longer glob would check that the rest of the path exists, which raises an error for a process that just ended.
+    # A longer pattern would also check that the rest of the path exists, which raises an error for a process that has
+    # just ended.
     for process in processes.glob("[0-9]*"):
         try:
             said = (process / "stat").read_text(encoding="utf-8", errors="replace")
-        except OSError:  # it has ended
+        except OSError:  # the process has ended
             continue
         if said.rpartition(")")[2].split()[0] in _STOPPED:
             held.update(sockets[inode] for inode in _inodes(process) & sockets.keys())
@@ -110,7 +111,7 @@ def _inodes(process: Path) -> set[int]:
         for link in (process / "fd").iterdir():
             try:
                 target = link.readlink().name
-            except OSError:  # it was closed meanwhile
+            except OSError:  # the descriptor was closed meanwhile
                 continue
             if target.startswith("socket:["):
                 found.add(int(target[len("socket:[") : -1]))

@@ -1,4 +1,4 @@
-"""The quality of service options of `topic echo` and `topic pub`."""
+"""The options of `topic echo` and `topic pub` for the quality of service."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ if TYPE_CHECKING:
     from rclpy.node import Node
     from rclpy.qos import QoSProfile
 
-# Short names of rclpy's policies and profiles, spelt out because help must not wait for rclpy.
+# The short names of rclpy's policies and profiles. They are repeated here, because the help must not wait for the
+# import of rclpy.
 _PROFILES = (
     "unknown",
     "default",
@@ -29,12 +30,12 @@ _LIVELINESS = ("system_default", "automatic", "manual_by_topic", "unknown", "bes
 
 
 def add_qos_arguments(parser: argparse.ArgumentParser, verb: str, default: str) -> None:
-    """Add the options.
+    """Add the options for the quality of service.
 
     Args:
-        parser: the parser of the verb.
-        verb: subscribe or publish, for the help.
-        default: short name of the profile that is used without options.
+        parser: The parser of the verb.
+        verb: The verb for the help: subscribe or publish.
+        default: The short name of the profile that is used without options.
     """
     parser.add_argument(
         "--qos-profile",
@@ -102,7 +103,7 @@ def given_profile(args: argparse.Namespace) -> QoSProfile:
 
 
 def matching_profile(node: Node, args: argparse.Namespace, topic: str) -> QoSProfile:
-    """Return the profile for a subscription: as the options say, else one that hears all publishers."""
+    """Return the profile for a subscription: the one of the options, or else one that receives from all publishers."""
     from rclpy.qos import QoSDurabilityPolicy, QoSReliabilityPolicy
 
     profile = given_profile(args)

@@ -1,4 +1,4 @@
-"""The real ros2cli, which runs if it is installed."""
+"""Finds the real ros2cli, which takes precedence if it is installed."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-# Stands in every `ros2` that `install` writes, so that one never hands over to another.
+# Every `ros2` that `install` writes contains this text, so that none of them starts another one.
 OWN_MARK = b"environment.ros2_command"
-_HEAD = 1024  # bytes: a script names what it starts well before this
+_HEAD = 1024  # the number of bytes to read of a script: the name of what it starts comes well before this
 
 
 def find_real_command(environ: Mapping[str, str]) -> Path | None:
-    """Return the `ros2` of the ROS installation in use, None when that has none.
+    """Return the path of the `ros2` of the ROS installation in use; None if it has none.
 
-    The real one is on PATH, is not one of the course's own, and belongs to a prefix of AMENT_PREFIX_PATH: the `ros2`
-    of another distribution that happens to be on PATH would not fit this process's libraries.
+    The real one is on PATH, is not the course's own, and belongs to a prefix of AMENT_PREFIX_PATH. A `ros2` of
+    another distribution that is on PATH by chance would not fit this process's libraries.
     """
     prefixes = environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
     for folder in environ.get("PATH", "").split(os.pathsep):
@@ -35,7 +35,7 @@ def find_real_command(environ: Mapping[str, str]) -> Path | None:
 
 
 def run_real_command() -> None:
-    """Become the real `ros2` if there is one; return otherwise."""
+    """Become the real `ros2` if there is one; otherwise return."""
     real = find_real_command(os.environ)
     if real is not None:
         os.execv(real, [str(real), *sys.argv[1:]])

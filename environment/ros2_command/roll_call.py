@@ -1,14 +1,14 @@
-"""Ask every DDS participant of this machine who it is, and hand the answers to a participant of one's own.
+"""Asks every DDS participant of this machine who it is, and passes the answers to a participant of this process.
 
 Fast DDS (2.14) announces a new participant before it has registered who receives. A participant that was
 there already answers at once, and once only: an answer that is read too early is lost, and the next chance
 comes with the periodic announcement, up to 3 s later (RTPSParticipantImpl::enable, PDPStatelessWriter). Of
 seven participants on an idle machine one or two were met that late, more on a busy one.
 
-A participant answers every participant that is new to it. So a new one is announced here, under a unique GUID. It has
-no endpoints and a plain socket that is open before the question is sent, and it is withdrawn at the end. The answers
-are announcements in their wire format; passed on to the process's own participant, they are the ones that it has
-missed. A participant that does not answer, because it was still being made, is asked again.
+A participant answers each participant that is new to it. So a new participant is announced here, under a unique GUID.
+It has no endpoints, and a plain socket that is open before the question is sent; at the end it is withdrawn. The
+answers are announcements in their wire format, and they are passed on to this process's own participant, which missed
+them. A participant that does not answer, because it was still being made, is asked again.
 
 The bytes are those of RTPS (OMG DDSI-RTPS 2.3): 8.3.3 and 9.4.5 for messages, 9.6.2 for parameters.
 """
@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 LOOPBACK = "127.0.0.1"
-_PREFIX = 12  # bytes of a GUID that name its participant
-_HEADER = 20  # bytes of a message before its first submessage
-_LONGEST = 65536  # bytes of a datagram
-_LEASE = 10  # seconds after which participants forget one that was not withdrawn
+_PREFIX = 12  # the number of bytes of a GUID that identify its participant
+_HEADER = 20  # the number of bytes of a message before its first submessage
+_LONGEST = 65536  # the maximum number of bytes of a datagram
+_LEASE = 10  # seconds after which participants forget an announced one that was not withdrawn
 
 _VENDOR = b"\x01\x0f"
 _VERSION = b"\x02\x03"
@@ -37,16 +37,17 @@ _DATA = 0x15
 _LITTLE_ENDIAN, _INLINE_QOS, _PAYLOAD = 0x01, 0x02, 0x04
 _PARTICIPANT = b"\x00\x00\x01\xc1"
 _ANNOUNCER, _DETECTOR = b"\x00\x01\x00\xc2", b"\x00\x01\x00\xc7"
-_ANNOUNCER_AND_DETECTOR = 0x3  # its only endpoints, so others send it no endpoint data
-_ROS = b"enclave="  # rmw_fastrtps gives it to each of its participants as user data
+# The announced participant has only these endpoints, so others send it no data about endpoints.
+_ANNOUNCER_AND_DETECTOR = 0x3
+_ROS = b"enclave="  # rmw_fastrtps gives this user data to each of its participants
 
 
 class RollCall:
-    """Somebody new to all participants of a machine, and what they answer.
+    """An announced participant that is new to all participants of a machine, and their answers.
 
     Attributes:
-        answered: The participants of ROS that answered the last call, by their GUID prefixes.
-        strangers: Those that answered and are not of ROS.
+        answered: The GUID prefixes of the ROS participants that answered the last call.
+        strangers: The GUID prefixes of those that answered and do not belong to ROS.
     """
 
     def __init__(self) -> None:
@@ -62,7 +63,7 @@ class RollCall:
         self._socket.setblocking(False)
 
     def call(self, ports: Iterable[int]) -> None:
-        """Ask who listens on these ports for participants' announcements, and begin a new list."""
+        """Ask all participants that listen for announcements on these ports, and begin a new list of answers."""
         self.close()
         self._open()  # late answers to an earlier call go to the old socket
         self.answered, self.strangers = set(), set()
@@ -71,7 +72,7 @@ class RollCall:
         self._send(_announcement(self._prefix, self._socket.getsockname()[1]), self._asked)
 
     def listen(self, own_ports: Iterable[int]) -> None:
-        """Note who has answered by now, and hand each answer on to one's own participant."""
+        """Record the answers so far, and pass each on to this process's own participant."""
         for message in self._received():
             prefix = message[_HEADER - _PREFIX : _HEADER]
             if message.startswith(_MAGIC) and _ANNOUNCER in message:
@@ -79,7 +80,7 @@ class RollCall:
                 self._send(message, own_ports)
 
     def close(self) -> None:
-        """Take back who was announced."""
+        """Withdraw the announced participant."""
         self._send(_disposal(self._prefix), self._asked)
         self._socket.close()
 
@@ -90,7 +91,7 @@ class RollCall:
 
     def _send(self, message: bytes, ports: Iterable[int]) -> None:
         for port in ports:
-            # A participant that is gone, or whose socket is full, is asked again in the next call.
+            # A participant that has ended, or whose socket is full, is asked again in the next call.
             with contextlib.suppress(OSError):
                 self._socket.sendto(message, (LOOPBACK, port))
 

@@ -18,19 +18,19 @@ if TYPE_CHECKING:
 
 
 class Process(Protocol):
-    """A program that runs, as :class:`subprocess.Popen` is one."""
+    """A running program, with the interface of :class:`subprocess.Popen`."""
 
     def send_signal(self, number: int, /) -> None:
-        """Send it a signal."""
+        """Send a signal to the program."""
         ...
 
     def wait(self) -> int:
-        """Wait for its end; its exit code, negative for a signal."""
+        """Wait for the program to end. Return its exit code, negative if a signal ended it."""
         ...
 
 
 start: Callable[[list[str]], Process] = subprocess.Popen
-"""Starts a program. The grader replaces this by a function that starts the same program faster."""
+"""The function that starts a program. The grader replaces it by one that starts the same program faster."""
 
 
 def _arguments(parser: argparse.ArgumentParser) -> None:
@@ -48,7 +48,7 @@ def find_executable(package: str, executable: str) -> Path:
     """Return the program of a package.
 
     Raises:
-        RuntimeError: the package, or its program, is not there, or there are several of that name.
+        RuntimeError: The package or its program does not exist, or several programs have this name.
     """
     found = [path for path in executable_paths(package) if path.name == executable]
     if not found:
@@ -60,15 +60,15 @@ def find_executable(package: str, executable: str) -> Path:
 
 def _run(args: argparse.Namespace) -> Outcome:
     program = find_executable(args.package_name, args.executable_name)
-    # The terminal sends Ctrl-C to the program as well, at any moment from its start on, and it ends in its own way.
-    # As an exception it would come between the program's start or end and what is learnt of it.
+    # The terminal also sends Ctrl-C to the program, which ends in its own way. As an exception in this process,
+    # Ctrl-C could come just after the program's start or end, before this is recorded.
     signal.signal(signal.SIGINT, lambda *_: None)
     process = start([*shlex.split(args.prefix or ""), str(program), *args.argv])
 
     def pass_on(number: int, _frame: FrameType | None) -> None:
         process.send_signal(number)
 
-    # SIGTERM reaches this process alone; without this the program would go on without it.
+    # Only this process gets SIGTERM; if it did not pass it on, the program would continue without it.
     signal.signal(signal.SIGTERM, pass_on)
     code = process.wait()
     if code < 0 and -code in signal.valid_signals():

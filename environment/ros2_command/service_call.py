@@ -14,7 +14,7 @@ from environment.ros2_command.values_argument import add_values_argument, given_
 if TYPE_CHECKING:
     import argparse
 
-_POLL = 0.01  # seconds; rclpy's own wait looks four times a second only
+_POLL = 0.01  # seconds between two checks; rclpy's own wait checks only four times a second
 
 
 def _arguments(parser: argparse.ArgumentParser) -> None:

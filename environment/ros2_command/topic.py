@@ -17,12 +17,12 @@ NamesAndTypes = list[tuple[str, list[str]]]
 
 
 def add_hidden_option(parser: argparse.ArgumentParser) -> None:
-    """Add the option that shows topics such as those of actions."""
+    """Add the option to show hidden topics, such as those of actions."""
     parser.add_argument("--include-hidden-topics", action="store_true", help="Consider hidden topics as well")
 
 
 def names_and_types(node: Node, *, hidden: bool) -> NamesAndTypes:
-    """Return each topic of the graph with its types, in order of the names."""
+    """Return each topic on the graph with its types, in the order of the names."""
     return [(n, t) for n, t in node.get_topic_names_and_types() if hidden or not is_hidden(n)]
 
 

@@ -23,7 +23,7 @@ _TRUNCATE_LENGTH = 128
 
 
 def positive_float(text: str) -> float:
-    """Read a number that must be above 0."""
+    """Return a text as a number that is greater than 0."""
     try:
         value = float(text)
     except ValueError:
@@ -34,18 +34,18 @@ def positive_float(text: str) -> float:
 
 
 def unsigned_int(text: str) -> int:
-    """Read a whole number, 0 or more."""
+    """Return a text as a whole number of at least 0."""
     if not text.isdecimal():
         raise argparse.ArgumentTypeError("value must be non-negative integer")
     return int(text)
 
 
 def message_filter(expression: str | None) -> Callable[[Any], Any]:
-    """Return a function that evaluates a Python expression about the message `m` (None: all pass)."""
+    """Return a function that evaluates a Python expression about the message `m`; for None, all messages pass."""
     if expression is None:
         return lambda _: True
     code = compile(expression, "--filter", "eval")
-    # The expression is the user's own, typed on the command line, as in ros2cli.
+    # The user typed the expression on the command line, as in ros2cli.
     return lambda message: eval(code, {"m": message})
 
 
@@ -102,7 +102,7 @@ def _field_of(message: Any, path: str | None) -> Any:
 
 
 def _text(shown: Any, info: dict[str, Any], args: argparse.Namespace) -> str:
-    """Return what is printed for one message, or for the field of it that is looked at."""
+    """Return the text to print for one message, or for the chosen field of it."""
     shorten = Shortening(None if args.full_length else args.truncate_length, args.no_arr, args.no_str)
     details = args.include_message_info
     if not hasattr(shown, "get_fields_and_field_types"):
@@ -129,7 +129,7 @@ def _listen(node: Node, message_type: Any, args: argparse.Namespace, done: Futur
 
     passes = message_filter(args.filter_expr)
 
-    # rclpy sees by the two arguments that the message's info is wanted too. Its type hints do not know that.
+    # rclpy recognizes by the two parameters that the message's info is wanted, too. Its type hints do not allow that.
     def received(msg: Any, info: dict[str, Any]) -> None:
         shown = msg if args.raw else _field_of(msg, args.field)
         if passes(shown):

@@ -81,7 +81,7 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _wait_for_subscriptions(publisher: Any, wanted: int, longest: float | None) -> str | None:
-    """Wait until enough subscriptions match; return an error when they do not in time."""
+    """Wait until enough subscriptions match. Return an error if they do not in time."""
     start = time.monotonic()
     told = -_TELL_EVERY
     while publisher.get_subscription_count() < wanted:
@@ -123,7 +123,7 @@ def _publish(
         node.create_timer(1 / args.rate, publish)
         while times == 0 or count < times:
             rclpy.spin_once(node)
-    # The last message must reach the subscribers before this node ends; reliable ones confirm that.
+    # The last message must reach the subscribers before this node ends. Reliable subscribers confirm it.
     publisher.wait_for_all_acked(Duration(seconds=_ACKNOWLEDGED))
     time.sleep(args.keep_alive)
 

@@ -1,4 +1,4 @@
-"""`ros2 topic hz`, `bw` and `delay`: what arrives on a topic, measured."""
+"""`ros2 topic hz`, `bw` and `delay`, which measure the messages on a topic."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Intervals:
     intervals: deque[int] = field(default_factory=deque)
 
     def add(self, now: int) -> None:
-        """Note a message. Begin again when the clock has gone back."""
+        """Record a message. If the clock has gone back, begin again."""
         if self.last is None or now < self.last:
             self.intervals.clear()
             self.shown_at = None
@@ -41,7 +41,7 @@ class Intervals:
             self.intervals.popleft()
 
     def report(self) -> str | None:
-        """Return the text that is due once a second of the topic's own time, None before."""
+        """Return the report, which is due once a second of the topic's own time; None before that."""
         if not self.intervals or self.last is None:
             return None
         if self.shown_at is None:
@@ -68,13 +68,13 @@ class Sizes:
     found: deque[tuple[int, int]] = field(default_factory=deque)
 
     def add(self, now: int, size: int) -> None:
-        """Note a message."""
+        """Record a message."""
         self.found.append((now, size))
         while len(self.found) > self.window:
             self.found.popleft()
 
     def report(self, now: int) -> str | None:
-        """Return what has arrived until now; None if that is less than two messages."""
+        """Return a report on the messages so far; None if there are fewer than two."""
         if len(self.found) < 2 or now <= self.found[0][0]:
             return None
         sizes = [size for _, size in self.found]
@@ -88,7 +88,7 @@ class Sizes:
 
 
 _UNITS = (("B", 1, 0), ("KB", 1000, 2), ("MB", 1_000_000, 2))
-"""The units of ros2cli: each with its bytes, and the digits behind the point."""
+"""The units of ros2cli, each with its number of bytes and the number of decimals to show."""
 
 
 def _summary(nanoseconds: Sequence[int]) -> str:
@@ -146,7 +146,7 @@ def _hz(args: argparse.Namespace) -> Outcome:
         clock = Clock(clock_type=ClockType.SYSTEM_TIME) if args.use_wtime else node.get_clock()
 
         def received(message: Any) -> None:
-            # A clock that shows 0 waits for the first /clock message.
+            # A simulated clock shows 0 until the first /clock message.
             if passes(message) and (now := clock.now().nanoseconds):
                 intervals.add(now)
 

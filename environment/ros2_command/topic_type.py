@@ -1,4 +1,4 @@
-"""The message class of a topic, as the graph tells it."""
+"""Finds the message class of a topic on the ROS graph."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ _POLL = 0.02  # seconds
 
 
 def type_on_graph(node: Node, topic: str) -> Any | None:
-    """Return the message class of a topic, None if the topic does not exist.
+    """Return the message class of a topic; None if the topic does not exist.
 
     Raises:
-        RuntimeError: the name is not valid, or the topic has several types or one that is not installed.
+        RuntimeError: The name is not valid, or the topic has several types or one that is not installed.
     """
     from rclpy.exceptions import InvalidTopicNameException
     from rclpy.expand_topic_name import expand_topic_name
@@ -42,7 +42,7 @@ def type_on_graph(node: Node, topic: str) -> Any | None:
 
 
 def message_class(node: Node, topic: str, *, wait: bool = False) -> Any | None:
-    """Return the message class of a topic; warn when it is not there, and wait for it if told to."""
+    """Return the message class of a topic. If the topic does not exist, warn and, if requested, wait for it."""
     found = type_on_graph(node, topic)
     if found is not None:
         return found

@@ -17,5 +17,5 @@ def add_values_argument(parser: argparse.ArgumentParser, name: str, text: str, s
 
 
 def given_values(args: argparse.Namespace, name: str) -> str | bytes:
-    """Return the text of the values, from the place that the user chose."""
+    """Return the text of the values, from the command line or from standard input."""
     return sys.stdin.buffer.read() if args.stdin else str(getattr(args, name))

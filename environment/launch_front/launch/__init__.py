@@ -1,7 +1,7 @@
 """The course's own `launch`, used if the real one is not installed.
 
-This package reads the launch files that the chapter teaches, in Python, XML and YAML, as Jazzy's launch does. What it
-does not have raises an error that names it. `docs/ros2-command.md` lists what is there.
+This package reads launch files in Python, XML and YAML as Jazzy's launch does, as far as the chapter teaches them.
+Anything else raises an error that names it. `docs/ros2-command.md` lists what works.
 """
 
 from . import (
@@ -25,7 +25,7 @@ from .substitution import SomeSubstitutionsType, SomeSubstitutionsType_types_tup
 
 
 def _frontend(path: str) -> LaunchDescription:
-    from .frontend.loader import load  # only now: most launch files are written in Python
+    from .frontend.loader import load  # imported late, because most launch files are written in Python
 
     return load(path)
 

@@ -13,19 +13,19 @@ if TYPE_CHECKING:
 
 
 class LaunchDescriptionEntity:
-    """An entity of a launch description. Visiting it makes it happen."""
+    """An entity of a launch description. Visiting it carries it out."""
 
     def visit(self, context: LaunchContext) -> Iterable[LaunchDescriptionEntity] | None:
-        """Do what it stands for, and return the entities to visit next."""
+        """Carry the entity out, and return the entities to visit next."""
         del context
         return None
 
     def sub_entities(self) -> Iterable[LaunchDescriptionEntity]:
-        """Return the entities inside, as far as they are known beforehand."""
+        """Return the entities inside this one, as far as they are known before the launch."""
         return ()
 
     def conditional_sub_entities(self) -> Iterable[LaunchDescriptionEntity]:
-        """Return the entities inside that are visited only if something happens."""
+        """Return the entities inside this one that are visited only at an event."""
         return ()
 
 
@@ -42,7 +42,7 @@ class Action(LaunchDescriptionEntity):
         self.condition = condition
 
     def describe(self) -> str:
-        """Return the line for `--print`."""
+        """Return the text of the action for `--print`."""
         return f"Action('{self}')"
 
     def visit(self, context: LaunchContext) -> Iterable[LaunchDescriptionEntity] | None:
@@ -52,20 +52,20 @@ class Action(LaunchDescriptionEntity):
         return None
 
     def execute(self, context: LaunchContext) -> Iterable[LaunchDescriptionEntity] | None:
-        """Do it. Each action has its own."""
+        """Execute the action. Each kind of action defines this."""
         del context
         return None
 
 
 class ProcessAction(Action):
-    """The base of the actions that start a process: what an event of a process is about."""
+    """The base class of actions that start a process, to which events of processes refer."""
 
 
 def as_entities(value: Any) -> list[LaunchDescriptionEntity]:
-    """Return what a handler or a function gave as a list of entities.
+    """Return the result of a handler or a function as a list of entities.
 
     Raises:
-        RuntimeError: there is something else among it.
+        RuntimeError: The result contains something else.
     """
     if value is None:
         return []

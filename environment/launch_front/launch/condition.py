@@ -17,5 +17,5 @@ class Condition:
         self._predicate = predicate
 
     def evaluate(self, context: LaunchContext) -> bool:
-        """Return whether it holds now."""
+        """Return True if the condition holds now."""
         return self._predicate is None or self._predicate(context)

@@ -21,27 +21,27 @@ __all__ = [
 
 
 class IfCondition(Condition):
-    """Holds when an expression is true or 1."""
+    """A condition that holds if an expression is true or 1."""
 
     def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
         super().__init__()
         self._expression = normalize(predicate_expression)
 
     def evaluate(self, context: LaunchContext) -> bool:
-        """Return whether it holds now."""
+        """Return True if the condition holds now."""
         return truth(perform(context, self._expression))
 
 
 class UnlessCondition(IfCondition):
-    """Holds when an expression is false or 0."""
+    """A condition that holds if an expression is false or 0."""
 
     def evaluate(self, context: LaunchContext) -> bool:
-        """Return whether it holds now."""
+        """Return True if the condition holds now."""
         return not super().evaluate(context)
 
 
 class LaunchConfigurationEquals(Condition):
-    """Holds when a launch argument has a value."""
+    """A condition that holds if a launch argument has the given value."""
 
     def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
         super().__init__()
@@ -49,14 +49,14 @@ class LaunchConfigurationEquals(Condition):
         self._expected = None if expected_value is None else normalize(expected_value)
 
     def evaluate(self, context: LaunchContext) -> bool:
-        """Return whether it holds now."""
+        """Return True if the condition holds now."""
         expected = None if self._expected is None else perform(context, self._expected)
         return context.launch_configurations.get(self._name) == expected
 
 
 class LaunchConfigurationNotEquals(LaunchConfigurationEquals):
-    """Holds when a launch argument has another value."""
+    """A condition that holds if a launch argument does not have the given value."""
 
     def evaluate(self, context: LaunchContext) -> bool:
-        """Return whether it holds now."""
+        """Return True if the condition holds now."""
         return not super().evaluate(context)

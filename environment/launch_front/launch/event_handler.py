@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class EventHandler:
-    """Says what to do at an event."""
+    """Decides what to do at an event."""
 
     def __init__(
         self,
@@ -33,11 +33,11 @@ class EventHandler:
         self.handle_once = handle_once
 
     def matches(self, event: Event) -> bool:
-        """Return whether this handler is for the event."""
+        """Return True if this handler applies to the event."""
         return self._matcher(event)
 
     def handle(self, event: Event, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """Return what is to be done."""
+        """Return the entities to visit at the event."""
         if self.handle_once:
             context.handlers.remove(self)
         return self.entities if self._function is None else as_entities(self._function(event, context))

@@ -22,10 +22,10 @@ __getattr__ = names_elsewhere(
 
 
 def _about(kind: type, target: Any) -> Callable[[Any], bool]:
-    """Return a function that recognizes events of a kind about one action, or about those it accepts.
+    """Return a function that recognizes events of one kind about one action, or about those that the target accepts.
 
     Raises:
-        TypeError: the target is not a process.
+        TypeError: The target is not a process.
     """
     if target is not None and not isinstance(target, ProcessAction) and not callable(target):
         raise TypeError(f"target_action must be a process such as a Node, got '{target}'")
@@ -56,7 +56,7 @@ class OnProcessExit(EventHandler):
 
 
 class OnProcessIO(EventHandler):
-    """The handler for output of a process. The functions get the event alone."""
+    """The handler for output of a process. Its functions get only the event."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""A launch description as a tree of text, for `--print`."""
+"""Shows a launch description as a tree of text, for `--print`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class LaunchIntrospector:
-    """Looks into launch descriptions."""
+    """Formats launch descriptions."""
 
     def format_launch_description(self, launch_description: LaunchDescription) -> str:
         """Return a line for the description and one for each entity, those of event handlers below them."""

@@ -1,4 +1,4 @@
-"""The state of a running launch: arguments, environment, handlers, and who does the work."""
+"""The state of a running launch: arguments, environment, handlers, and the entities to visit."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class _Scope:
-    """The settings that a scoped group gives back at its end."""
+    """The settings that are restored at the end of a scoped group."""
 
     configurations: dict[str, str]
     environment: dict[str, str]
@@ -34,13 +34,13 @@ class LaunchContext:
     """The state of a launch.
 
     Attributes:
-        argv: the arguments of the launch, as `name:=value`.
-        launch_configurations: values by the names of launch arguments, and what launch itself keeps there.
-        environment: the environment variables for processes that are started.
-        current_launch_file: the path of the launch file that is being read.
-        remappings: rules for all nodes of the present scope (SetRemap).
-        parameters: parameters for all nodes of the present scope (SetParameter).
-        is_shutdown: the launch is ending: nothing new is started.
+        argv: The arguments of the launch, such as `name:=value`.
+        launch_configurations: The values of launch arguments by name, and values that launch itself stores there.
+        environment: The environment variables for processes that are started.
+        current_launch_file: The path of the launch file that is being read.
+        remappings: The remapping rules for all nodes of the current scope (SetRemap).
+        parameters: The parameters for all nodes of the current scope (SetParameter).
+        is_shutdown: True if the launch is ending. Nothing new is started then.
     """
 
     argv: Sequence[str] = ()
@@ -52,7 +52,7 @@ class LaunchContext:
     is_shutdown: bool = False
     screen: Screen = field(default_factory=Screen)
     event: Event | None = None
-    # Work for the service, in order.
+    # The entities that the service has to visit, in order.
     to_visit: deque[LaunchDescriptionEntity] = field(default_factory=deque)
     events: deque[Event] = field(default_factory=deque)
     to_start: deque[RunningProcess] = field(default_factory=deque)
@@ -64,7 +64,7 @@ class LaunchContext:
     _scopes: list[_Scope] = field(default_factory=list)
 
     def push_scope(self) -> None:
-        """Begin a scope: what is set from now on is forgotten at its end."""
+        """Begin a scope. Everything that is set from now on is reset at its end."""
         self._scopes.append(
             _Scope(
                 dict(self.launch_configurations),
@@ -77,7 +77,8 @@ class LaunchContext:
     def pop_scope(self) -> None:
         """End a scope."""
         scope = self._scopes.pop()
-        # The dictionaries themselves stay the same ones: a function of a launch file may hold them.
+        # The dictionaries are changed and not replaced, because a function of a launch file may have a reference to
+        # them.
         self.launch_configurations.clear()
         self.launch_configurations.update(scope.configurations)
         self.environment.clear()
@@ -85,11 +86,11 @@ class LaunchContext:
         self.remappings, self.parameters = scope.remappings, scope.parameters
 
     def emit_event_sync(self, event: Event) -> None:
-        """Let an event be handled when its turn comes."""
+        """Put an event into the queue of events to handle."""
         self.events.append(event)
 
     def register_event_handler(self, handler: EventHandler) -> None:
-        """Add a handler. The newest is asked first."""
+        """Add a handler. The handler that was added last is asked first."""
         self.handlers.insert(0, handler)
 
     def perform_substitution(self, substitution: Any) -> str:

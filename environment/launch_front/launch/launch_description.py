@@ -28,10 +28,10 @@ class LaunchDescription(LaunchDescriptionEntity):
             self.add_entity(entity)
 
     def add_entity(self, entity: LaunchDescriptionEntity) -> None:
-        """Add one at the end.
+        """Add an entity at the end.
 
         Raises:
-            TypeError: the object is not an entity.
+            TypeError: The object is not an entity.
         """
         if not isinstance(entity, LaunchDescriptionEntity):
             raise TypeError(
@@ -46,7 +46,7 @@ class LaunchDescription(LaunchDescriptionEntity):
         return self.entities
 
     def visit(self, context: LaunchContext) -> Iterable[LaunchDescriptionEntity]:
-        """Return the entities, and warn if the file is an old one."""
+        """Return the entities, and warn if the launch file is deprecated."""
         if self.deprecated_reason is not None:
             context.screen.log(
                 "WARNING",
@@ -56,18 +56,18 @@ class LaunchDescription(LaunchDescriptionEntity):
         return self.entities
 
     def get_launch_arguments(self) -> list[DeclareLaunchArgument]:
-        """Return the arguments that are declared, here and in included files; each name once."""
+        """Return the declared arguments, including those of included files; each name once."""
         return [argument for argument, _ in declared_arguments(self)]
 
 
 def declared_arguments(
     description: LaunchDescription, *, closed: tuple[type[Action], ...] = ()
 ) -> list[tuple[DeclareLaunchArgument, bool]]:
-    """Return each argument of a launch description, with whether only a condition declares it.
+    """Return each declared argument of a launch description, with True if its declaration depends on a condition.
 
     Args:
-        description: Where to look.
-        closed: Kinds of actions that are not looked into.
+        description: The launch description to search.
+        closed: The kinds of actions whose content is not searched.
     """
     from .actions.configuration import DeclareLaunchArgument
 

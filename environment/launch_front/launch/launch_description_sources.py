@@ -1,4 +1,4 @@
-"""Read launch files: Python, XML and YAML."""
+"""Reads launch files in Python, XML and YAML."""
 
 from __future__ import annotations
 
@@ -25,14 +25,15 @@ __all__ = [
     "get_launch_description_from_python_launch_file",
 ]
 
-# The reader of XML and YAML makes actions, and one of these actions reads launch files: so the package sets it here.
+# The reader of XML and YAML makes actions, and one of these actions reads launch files. So the package sets this
+# reader here.
 frontend: Callable[[str], LaunchDescription] | None = None
 
 _FUNCTION = "generate_launch_description"
 
 
 class InvalidLaunchFileError(Exception):
-    """A launch file can not be read."""
+    """A launch file cannot be read."""
 
     def __init__(self, extension: str = "", *, likely_errors: list[Exception] | None = None) -> None:
         errors = likely_errors or []
@@ -51,7 +52,7 @@ class InvalidPythonLaunchFileError(Exception):
 
 
 def _with_place(error: Exception) -> str:
-    """Return the text of an error with the line of the launch file that raised it."""
+    """Return the text of an error, with the line of the launch file that raised it."""
     import traceback
 
     frames = [f for f in traceback.extract_tb(error.__traceback__) if f.name != "_load_python"]
@@ -80,8 +81,8 @@ def get_launch_description_from_python_launch_file(path: str) -> LaunchDescripti
     """Return what `generate_launch_description()` of a Python file returns.
 
     Raises:
-        InvalidPythonLaunchFileError: the function does not exist, or returns something different.
-        Exception: whatever the file itself raises.
+        InvalidPythonLaunchFileError: The function does not exist, or does not return a launch description.
+        Exception: Any exception that the file itself raises.
     """
     from .launch_description import LaunchDescription
 
@@ -99,16 +100,16 @@ def get_launch_description_from_python_launch_file(path: str) -> LaunchDescripti
 
 
 def get_launch_description_from_frontend_launch_file(path: str) -> LaunchDescription:
-    """Return what an XML or YAML file describes."""
+    """Return the launch description of an XML or YAML file."""
     assert frontend is not None
     return frontend(path)
 
 
 def get_launch_description_from_any_launch_file(path: str) -> LaunchDescription:
-    """Read a launch file of any kind, told by the end of its name.
+    """Read a launch file of any kind. The extension of its name decides the kind.
 
     Raises:
-        InvalidLaunchFileError: it can not be read.
+        InvalidLaunchFileError: The file cannot be read.
     """
     extension = os.path.splitext(path)[1].lstrip(".")  # noqa: PTH122
     readers: list[Callable[[str], LaunchDescription]] = [
@@ -146,14 +147,14 @@ class LaunchDescriptionSource:
 
     @property
     def location(self) -> str:
-        """The path, or before it is known what it will be made of."""
+        """The path of the launch file; while it is unknown, a description of how it will be made."""
         return describe(self._location) if self._path is None else self._path
 
     def _read(self, path: str) -> LaunchDescription:
         raise RuntimeError(f"nothing is known of how to read '{path}'")
 
     def get_launch_description(self, context: LaunchContext) -> LaunchDescription:
-        """Return the description, reading it the first time."""
+        """Return the launch description. The first call reads it."""
         if self._path is None:
             self._path = perform(context, self._location)
         if self._description is None:
@@ -167,7 +168,7 @@ class LaunchDescriptionSource:
         try:
             return self.get_launch_description(LaunchContext())
         except Exception:
-            # What is wrong shows when the launch runs.
+            # An error will be reported when the launch runs.
             return None
 
 

@@ -1,4 +1,4 @@
-"""The loop that runs a launch."""
+"""Runs a launch."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _WATCHED = (signal.SIGINT, signal.SIGCHLD, *_END_SIGNALS)
 
 
 class LaunchService:
-    """Runs launch descriptions until nothing is left to do, or until it is told to stop."""
+    """Runs launch descriptions until nothing is left to do, or until a shutdown is requested."""
 
     def __init__(
         self, *, argv: Iterable[str] | None = None, noninteractive: bool = False, debug: bool = False
@@ -48,18 +48,18 @@ class LaunchService:
         self._selector = selectors.DefaultSelector()
 
     def include_launch_description(self, launch_description: LaunchDescriptionEntity) -> None:
-        """Add a launch description to what is to be run."""
+        """Add a launch description to those that will be run."""
         self.context.to_visit.append(launch_description)
 
     def run(self, *, shutdown_when_idle: bool = True) -> int:
         """Run until everything has ended.
 
         Returns:
-            0, or 1 if the launch itself failed or was terminated. How a process ended does not count here:
-            it is reported on the screen.
+            0; or 1 if the launch itself failed or was terminated. The exit codes of processes do not count here; they
+            are shown on the screen.
 
         Raises:
-            RuntimeError: the log folder can not be made.
+            RuntimeError: The log folder cannot be made.
         """
         screen = self.context.screen
         screen.open_log()
@@ -76,7 +76,7 @@ class LaunchService:
                     if idle and (shutdown_when_idle or self.context.is_shutdown):
                         if self.context.is_shutdown:
                             return self._code
-                        # Handlers of the shutdown may have something left to do.
+                        # Handlers of the shutdown may start further work.
                         self._shutdown("idle", due_to_sigint=False)
                         continue
                     self._wait(left)
@@ -87,10 +87,10 @@ class LaunchService:
         """End the launch."""
         self._shutdown("LaunchService.shutdown() called", due_to_sigint=False)
 
-    # The work to do at once.
+    # Methods for the work that can be done at once.
 
     def _work(self) -> None:
-        """Visit, handle and start until nothing of that is left."""
+        """Visit entities, handle events and start processes until none is left."""
         context = self.context
         while True:
             try:
@@ -185,17 +185,18 @@ class LaunchService:
                 self.context.emit_event_sync(event)
 
     def _reap(self) -> None:
-        """Look for processes that have ended."""
+        """Find the processes that have ended."""
         for process in [p for p in self._running if p.poll() is not None]:
             for source in tuple(process.streams):
-                # The last output; a child process may keep the stream open, so do not wait for its end.
+                # This is the last output. A child process may keep the stream open, so do not wait for the end of the
+                # stream.
                 self._show(process, source, process.drain(source))
                 self._selector.unregister(process.streams[source])
             for source in ("stdout", "stderr"):
                 self._show(process, source, process.rest(source))
             self._running.remove(process)
             self._report_end(process, process.poll() or 0)
-            # Processes that it left behind must not outlive an ending launch.
+            # Processes that the ended process left behind must not outlive a launch that is ending.
             if self.context.is_shutdown:
                 process.send(signal.SIGKILL)
             process.close()
@@ -218,7 +219,7 @@ class LaunchService:
         process.send(number)
 
     def _end(self, process: RunningProcess, *, silently: bool) -> None:
-        """Ask a process to end, and less kindly if it does not."""
+        """Ask a process to end, with stronger signals if it does not."""
         if process.escalation:
             return
         plan = process.plan
@@ -270,7 +271,7 @@ class LaunchService:
         self._shutdown(number.name, due_to_sigint=False)
 
     def _clean_up(self) -> None:
-        """Leave nothing behind, however the launch ended."""
+        """End everything that is left, however the launch ended."""
         for process in self._running:
             process.send(signal.SIGKILL)
             process.close()
@@ -284,7 +285,7 @@ class LaunchService:
 
     @contextlib.contextmanager
     def _signals(self) -> Iterator[None]:
-        """Turn signals into bytes that wake the loop."""
+        """Make each signal write a byte that wakes the loop."""
         reading, writing = os.pipe()
         for end in (reading, writing):
             os.set_blocking(end, False)
@@ -302,7 +303,7 @@ class LaunchService:
             os.close(writing)
 
     def _wait(self, seconds: float | None) -> None:
-        """Wait for output, a signal, the end of a process or the next timer, and deal with it."""
+        """Wait for output, a signal, the end of a process or the next timer, and handle it."""
         for key, _ in self._selector.select(seconds):
             if key.data is not None:
                 process, source = key.data

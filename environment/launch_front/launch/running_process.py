@@ -1,4 +1,4 @@
-"""A process of a launch: start it, read what it writes, end it."""
+"""A process of a launch: it is started, its output is read, and it is ended."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ if TYPE_CHECKING:
     from .screen import OutputPlan
     from .timers import Timer
 
-_CHUNK = 65536  # bytes read at once
+_CHUNK = 65536  # the maximum number of bytes to read at once
 
 
 @dataclass(frozen=True)
 class Plan:
-    """Everything that is decided before a process starts.
+    """All settings that are decided before a process starts.
 
     Attributes:
-        name: as `talker-1`.
-        cmd: the command line.
-        shell: run it by a shell.
-        cwd: the folder to start it in, None for that of the launch.
-        env: its environment.
-        output: where its lines go.
-        output_format: how a line is shown; `line` and `this` (the action) can be used in it.
-        emulate_tty: let it believe that it writes to a terminal, so that Python does not hold back lines.
-        sigterm_timeout: seconds from SIGINT to SIGTERM.
-        sigkill_timeout: seconds from SIGTERM to SIGKILL.
+        name: The name of the process, such as `talker-1`.
+        cmd: The command line.
+        shell: True to run the command in a shell.
+        cwd: The folder in which the process starts; None for the folder of the launch.
+        env: The environment of the process.
+        output: The destinations of its lines.
+        output_format: The template of a shown line. It may use `line` and `this` (the action).
+        emulate_tty: True to connect the output to a pseudo-terminal, so that Python does not hold back lines.
+        sigterm_timeout: Seconds from SIGINT to SIGTERM.
+        sigkill_timeout: Seconds from SIGTERM to SIGKILL.
     """
 
     name: str
@@ -48,7 +48,7 @@ class Plan:
 
 
 class RunningProcess:
-    """One run of a process. It has a process group of its own, so that what it starts itself ends with it."""
+    """One run of a process. It leads a process group, so that everything that it starts ends with it."""
 
     def __init__(self, action: Any, plan: Plan) -> None:
         self.action = action
@@ -63,17 +63,17 @@ class RunningProcess:
         """The process id.
 
         Raises:
-            RuntimeError: it has not been started.
+            RuntimeError: The process has not been started.
         """
         if self._process is None:
             raise RuntimeError(f"process {self.plan.name} has not been started")
         return self._process.pid
 
     def start(self) -> None:
-        """Start it.
+        """Start the process.
 
         Raises:
-            OSError: the program can not be started.
+            OSError: The program cannot be started.
         """
         command: Any = " ".join(self.plan.cmd) if self.plan.shell else list(self.plan.cmd)
         ends = {name: os.openpty() if self.plan.emulate_tty else os.pipe() for name in self._partial}
@@ -84,7 +84,8 @@ class RunningProcess:
                 shell=self.plan.shell,
                 cwd=self.plan.cwd,
                 env=dict(self.plan.env),
-                # Nothing is ever written to it, but a program that reads must not see an end.
+                # Nothing is ever written to this pipe, but a program that reads its standard input must not see an
+                # end.
                 stdin=subprocess.PIPE,
                 stdout=ends["stdout"][1],
                 stderr=ends["stderr"][1],
@@ -108,15 +109,15 @@ class RunningProcess:
             os.killpg(self.pid, number)
 
     def poll(self) -> int | None:
-        """Return the exit code, None while it runs."""
+        """Return the exit code; None while the process runs."""
         return None if self._process is None else self._process.poll()
 
     def _data(self, source: str) -> bytes | None:
-        """Return the available output: None for nothing yet, an empty text at the end of the stream."""
+        """Return the available output: None if there is none yet, an empty text at the end of the stream."""
         try:
             return self.streams[source].read(_CHUNK)
         except OSError:
-            # A terminal without a process behind it says EIO instead of an end.
+            # At its end, a pseudo-terminal raises EIO instead of returning an empty text.
             return b""
 
     def _lines(self, source: str, data: bytes) -> list[bytes]:
@@ -124,10 +125,10 @@ class RunningProcess:
         return [line.removesuffix(b"\r") for line in lines] if self.plan.emulate_tty else lines
 
     def read(self, source: str) -> tuple[list[bytes], bool]:
-        """Read once.
+        """Read the available output of a stream once.
 
         Returns:
-            the complete lines, without their ends; and whether the stream goes on.
+            The complete lines, without their ends; and False at the end of the stream.
         """
         data = self._data(source)
         return self._lines(source, data or b""), data != b""
@@ -140,12 +141,12 @@ class RunningProcess:
         return lines
 
     def rest(self, source: str) -> list[bytes]:
-        """Return a last line that has no end."""
+        """Return the last line if it has no line end."""
         rest, self._partial[source] = self._partial[source], b""
         return [rest] if rest else []
 
     def close(self) -> None:
-        """Close the streams and stop what was to happen if it did not end."""
+        """Close the streams, and cancel the signals that were planned in case the process did not end."""
         for stream in self.streams.values():
             stream.close()
         self.streams.clear()
@@ -156,7 +157,7 @@ class RunningProcess:
 
 
 def _end_with_parent() -> Callable[[], None] | None:
-    """Return what a new process does so that the kernel ends it when the launch is killed."""
+    """Return a function that a new process calls, so that the kernel ends the process if the launch is killed."""
     try:
         import ctypes
 

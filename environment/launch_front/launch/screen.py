@@ -1,4 +1,4 @@
-"""The output of a launch, on the screen and in its log folder, in the form of Jazzy's launch."""
+"""Shows the output of a launch on the screen and in its log folder, in the form of Jazzy's launch."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ class OutputPlan:
     """The destinations of a process's lines.
 
     Attributes:
-        places: for stdout and stderr, which of screen and log get a line.
-        files: for stdout and stderr, the names of the files of its own that get a line.
+        places: The places that get each line, the screen and the log, for stdout and stderr.
+        files: The names of the process's own log files that get each line, for stdout and stderr.
     """
 
     places: Mapping[str, frozenset[str]]
@@ -39,14 +39,14 @@ class OutputPlan:
 
 
 def output_plan(process_name: str, output: str | Mapping[str, object]) -> OutputPlan:
-    """Read the `output` of a process.
+    """Return the destinations that the `output` option of a process names.
 
     Args:
-        process_name: as `talker-1`, which names its own log files.
+        process_name: The name of the process, such as `talker-1`, which is also the name of its own log files.
         output: screen, log, both, own_log or full; or a dictionary with the keys stdout, stderr and both.
 
     Raises:
-        ValueError: it is none of these.
+        ValueError: The option has none of these values.
     """
     if isinstance(output, str):
         if output not in _ALIASES:
@@ -81,7 +81,7 @@ def _destinations(source: str, given: object) -> set[str]:
 
 
 def _log_base() -> str:
-    """Return the folder for all logs: ROS_LOG_DIR, else log in ROS_HOME, which is ~/.ros by default."""
+    """Return the folder for all logs: ROS_LOG_DIR, or else log in ROS_HOME, whose default is ~/.ros."""
     folder = os.environ.get("ROS_LOG_DIR")
     if not folder:
         folder = os.path.join(os.environ.get("ROS_HOME") or os.path.join("~", ".ros"), "log")  # noqa: PTH118
@@ -90,7 +90,7 @@ def _log_base() -> str:
 
 @dataclass
 class Screen:
-    """The screen and the log files of one launch. Without `open_log` there are no files."""
+    """The screen and the log files of one launch. Log files exist only after `open_log`."""
 
     debug: bool = False
     folder: str | None = None
@@ -100,7 +100,7 @@ class Screen:
         """Make the log folder of this launch, and the link `latest` to it.
 
         Raises:
-            RuntimeError: the folder can not be made.
+            RuntimeError: The folder cannot be made.
         """
         base = _log_base()
         stamp = datetime.datetime.now().strftime("%Y-%m-%d-%H-%M-%S-%f")
@@ -115,7 +115,7 @@ class Screen:
         self._link_latest(base)
 
     def _link_latest(self, base: str) -> None:
-        """Point `latest` at this launch; another one may do so just now, which is not worth an error."""
+        """Let the link `latest` lead to this launch. Ignore an error: another launch may do the same right now."""
         link = f"{base}/latest"
         try:
             if os.path.islink(link):  # noqa: PTH114
@@ -134,12 +134,12 @@ class Screen:
         self._files[file_name].flush()
 
     def log(self, level: str, name: str, message: str) -> None:
-        """Show a message of launch itself.
+        """Show a message of the launch itself.
 
         Args:
             level: DEBUG, INFO, WARNING or ERROR.
-            name: the author of the line: launch, launch.user or the name of a process.
-            message: what is said.
+            name: The source of the line: launch, launch.user or the name of a process.
+            message: The text of the message.
         """
         if level == "DEBUG" and not self.debug:
             return
@@ -151,10 +151,10 @@ class Screen:
         """Show or write one line of a process.
 
         Args:
-            plan: the destinations.
+            plan: The destinations.
             source: stdout or stderr.
-            line: the line as the process wrote it.
-            shown: the line as it is shown, with the name of the process before it.
+            line: The line as the process wrote it.
+            shown: The line in the form in which it is shown, with the name of the process before it.
         """
         places = plan.places[source]
         if "screen" in places:

@@ -14,7 +14,7 @@ class SubstitutionFailure(Exception):
 
 
 class Substitution:
-    """Something that `perform` turns into a text."""
+    """An object that `perform` turns into a text when the launch runs."""
 
     def describe(self) -> str:
         """Return a short form for `--print` and `--show-args`."""
@@ -24,7 +24,7 @@ class Substitution:
         """Return the value.
 
         Raises:
-            SubstitutionFailure: there is none.
+            SubstitutionFailure: There is no value.
         """
         raise NotImplementedError
 
@@ -46,16 +46,16 @@ class TextSubstitution(Substitution):
         return self.text
 
 
-# The values that launch files may pass for a text: a text, a substitution, or a list of them to be joined.
+# The values that launch files may pass as a text: a text, a substitution, or a list of these to be joined.
 SomeSubstitutionsType = str | Substitution | Iterable[str | Substitution]
 SomeSubstitutionsType_types_tuple = (str, Substitution, Iterable)
 
 
 def normalize(value: SomeSubstitutionsType) -> list[Substitution]:
-    """Return a text, a substitution or a mixed list of both as a list of substitutions.
+    """Return a text, a substitution or a mixed list of these as a list of substitutions.
 
     Raises:
-        TypeError: it is something else.
+        TypeError: The value is something else.
     """
     if isinstance(value, str):
         return [TextSubstitution(text=value)]

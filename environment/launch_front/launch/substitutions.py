@@ -242,7 +242,7 @@ class ThisLaunchFileDir(Substitution):
 
 
 class AnonName(Substitution):
-    """A name that no other launch uses: the same one each time the same id is given."""
+    """A name that no other launch uses. The same id always gives the same name."""
 
     def __init__(self, name: SomeSubstitutionsType) -> None:
         self._name = normalize(name)
@@ -324,7 +324,7 @@ class NotEqualsSubstitution(_Pair):
 
 
 class IfElseSubstitution(Substitution):
-    """One of two texts, by a condition."""
+    """One of two texts, chosen by a condition."""
 
     def __init__(
         self,

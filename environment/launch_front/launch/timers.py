@@ -1,4 +1,4 @@
-"""Things that are to happen later."""
+"""Timers for what a launch has to do later."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(order=True)
 class Timer:
-    """One thing to do at a time. Times are in seconds of the monotonic clock."""
+    """A function to call at a certain time, in seconds of the monotonic clock."""
 
     deadline: float
     number: int
@@ -23,7 +23,7 @@ class Timer:
     canceled: bool = field(compare=False, default=False)
 
     def cancel(self) -> None:
-        """Forget it; nothing happens if it is too late for that."""
+        """Cancel the timer. If it has already fired, do nothing."""
         self.canceled = True
 
 
@@ -46,16 +46,16 @@ class Timers:
             heapq.heappop(self._heap)
 
     def seconds_left(self) -> float | None:
-        """Return the seconds until the next one is due, None if there is none."""
+        """Return the seconds until the next timer fires; None if there is none."""
         self._drop_canceled()
         return max(0.0, self._heap[0].deadline - self._clock()) if self._heap else None
 
     def fire_due(self) -> None:
-        """Call what is due."""
+        """Call the functions whose time has come."""
         while self.seconds_left() == 0.0:
             heapq.heappop(self._heap).action()
 
     def cancel_for_shutdown(self) -> None:
-        """Forget those that do not hold up the end of a launch."""
+        """Cancel the timers that need not delay the end of a launch."""
         for timer in self._heap:
             timer.canceled = timer.canceled or timer.cancel_on_shutdown

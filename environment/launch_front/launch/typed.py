@@ -1,4 +1,4 @@
-"""Texts of a launch file that stand for numbers and truth values."""
+"""Converts texts of a launch file to numbers and truth values."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def truth(text: str) -> bool:
     """Read a truth value.
 
     Raises:
-        InvalidConditionExpressionError: it is not true, false, 1 or 0.
+        InvalidConditionExpressionError: The text is not true, false, 1 or 0.
     """
     word = text.strip().lower()
     if word in ("true", "1"):
@@ -33,11 +33,11 @@ def value_of_text(text: str, value_type: Any = None) -> Any:
     """Return the value that a text stands for.
 
     Args:
-        text: as YAML writes it.
-        value_type: bool, int, float, str or a List of one of them; None takes what YAML sees in it.
+        text: The text, in YAML.
+        value_type: bool, int, float, str or a List of one of these; None for the type that YAML finds.
 
     Raises:
-        ValueError: the text is not a valid value.
+        ValueError: The text is not a valid value.
     """
     import yaml
 
@@ -67,7 +67,7 @@ def number(context: LaunchContext, value: Any) -> float:
     """Return a number that was given as such, as a text or as a substitution.
 
     Raises:
-        ValueError: the text is not a number.
+        ValueError: The text is not a number.
     """
     from .substitution import normalize, perform
 

@@ -1,4 +1,4 @@
-"""Say clearly what only the full launch has."""
+"""Reports clearly what only the full launch has."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ FULL = "the full launch of a ROS 2 Jazzy installation"
 
 
 def names_elsewhere(module: str, names: tuple[str, ...]) -> Callable[[str], NoReturn]:
-    """Return a module's `__getattr__` for names that Jazzy's module of that name has and this one has not."""
+    """Return a module's `__getattr__` for names that exist in Jazzy's module and not in this one."""
 
     def missing(name: str) -> NoReturn:
         if name in names:
@@ -25,12 +25,12 @@ def refuse_arguments(owner: str, given: dict[str, Any], elsewhere: tuple[str, ..
     """Raise an error for keyword arguments that were not used.
 
     Args:
-        owner: the name of the class.
-        given: the arguments that are left over.
-        elsewhere: names that Jazzy's class takes.
+        owner: The name of the class.
+        given: The arguments that were not used.
+        elsewhere: The names of arguments that Jazzy's class accepts.
 
     Raises:
-        TypeError: there is at least one.
+        TypeError: There is such an argument.
     """
     for name in given:
         if name in elsewhere:

@@ -8,10 +8,10 @@ _PART = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
 def check_node_name(name: str) -> None:
-    """Make sure that a text is the name of a node.
+    """Check that a text is a valid name of a node.
 
     Raises:
-        ValueError: it is none.
+        ValueError: It is not.
     """
     if not _PART.fullmatch(name):
         raise ValueError(
@@ -20,10 +20,10 @@ def check_node_name(name: str) -> None:
 
 
 def check_namespace(namespace: str) -> None:
-    """Make sure that a text is an absolute namespace.
+    """Check that a text is an absolute namespace.
 
     Raises:
-        ValueError: it is none.
+        ValueError: It is not.
     """
     parts = namespace[1:].split("/")
     if namespace != "/" and (namespace[:1] != "/" or not all(_PART.fullmatch(part) for part in parts)):
@@ -34,9 +34,9 @@ def check_namespace(namespace: str) -> None:
 
 
 def inner_namespace(outer: str | None, namespace: str | None) -> str | None:
-    """Return a namespace inside another one, as an absolute one; None when both are None.
+    """Return a namespace inside another one as an absolute namespace; None if both are None.
 
-    A namespace that begins with a slash stays what it is.
+    A namespace that begins with a slash stays unchanged.
     """
     if namespace is None:
         return outer

@@ -25,7 +25,7 @@ class ParameterValue:
         """Return the value.
 
         Raises:
-            ValueError: it is not of the type.
+            ValueError: The value does not have this type.
         """
         if not _has_substitution(self.value):
             if isinstance(self.value, str) and self.value_type not in (None, str):
@@ -56,7 +56,7 @@ class ParameterFile:
         self._allow_substs = allow_substs
 
     def evaluate(self, context: LaunchContext) -> str:
-        """Return the path of the file, of a copy with the substitutions performed if they are allowed."""
+        """Return the path of the file; if substitutions are allowed, of a copy in which they are performed."""
         path = perform(context, normalize(self._file))
         if not flag(context, self._allow_substs):
             return path
@@ -67,7 +67,7 @@ class ParameterFile:
 
 
 def write_temporary(context: LaunchContext, text: str) -> str:
-    """Write a file for a node that is removed at the end of the launch, and return its path."""
+    """Write a file for a node, which is removed at the end of the launch. Return its path."""
     import tempfile  # noqa: TID251  (stands in for a package of ROS, which knows nothing of the autograder)
 
     with tempfile.NamedTemporaryFile("w", prefix="launch_params_", delete=False, encoding="utf-8") as file:
@@ -87,12 +87,12 @@ def _has_substitution(value: Any) -> bool:
 
 
 def evaluate_dictionary(context: LaunchContext, given: Mapping[Any, Any], before: str = "") -> dict[str, Any]:
-    """Return the parameters of a dictionary, with dots between the names of nested ones.
+    """Return the parameters in a dictionary. The names of nested ones are joined by dots.
 
-    A plain text stays a text. What a substitution gives is read as YAML: `5` becomes a number.
+    A plain text stays a text. The result of a substitution is read as YAML: `5` becomes a number.
 
     Raises:
-        TypeError: a value is nothing that a parameter can be.
+        TypeError: A value cannot be a parameter.
     """
     found: dict[str, Any] = {}
     for key, value in given.items():

@@ -37,7 +37,7 @@ class FindPackagePrefix(Substitution):
         """Return the folder.
 
         Raises:
-            SubstitutionFailure: no sourced workspace has the package.
+            SubstitutionFailure: No sourced workspace has the package.
         """
         from ament_index_python.packages import PackageNotFoundError, get_package_prefix
 
@@ -71,7 +71,7 @@ class ExecutableInPackage(FindPackagePrefix):
         """Return the path.
 
         Raises:
-            SubstitutionFailure: the package does not exist, or has no such program.
+            SubstitutionFailure: The package does not exist, or has no such program.
         """
         prefix = super().perform(context)
         package, executable = perform(context, self.package), perform(context, self.executable)

@@ -51,7 +51,7 @@ def _node(entity: Entity) -> Action:
 
 
 def _parameter(entity: Entity) -> Any:
-    """Return what a `param` tag of a node stands for."""
+    """Return the parameters that a `param` tag of a node describes."""
     path = entity.text("from")
     if path is None:
         if entity.text("name") is None:
@@ -82,7 +82,7 @@ def _named_parameter(entity: Entity) -> dict[Any, Any]:
 
 
 def _typed(value: Any, value_type: Any) -> ParameterValue:
-    """Return a value of XML, where everything is text, with the type it stands for."""
+    """Return a value from XML, where everything is text, converted to the type that it seems to have."""
     if isinstance(value, str):
         value = value_of_text(value, value_type)
     elif isinstance(value, list) and all(isinstance(item, str) for item in value):

@@ -1,4 +1,4 @@
-"""Launch arguments: declare them, set them, forget them."""
+"""Actions for launch arguments: declare, set and unset them."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class DeclareLaunchArgument(Action):
         return f"{description.removesuffix('.')}. Valid choices are: {self.choices}"
 
     def execute(self, context: LaunchContext) -> None:
-        """Take the value that was given, or the default."""
+        """Set the argument to the given value, or to its default."""
         values = context.launch_configurations
         if self.name not in values:
             if self.default_value is None:
@@ -76,7 +76,7 @@ class SetLaunchConfiguration(Action):
         return perform(context, self._name), perform(context, self._value)
 
     def execute(self, context: LaunchContext) -> None:
-        """Set it."""
+        """Set the argument."""
         name, value = self.evaluated(context)
         context.launch_configurations[name] = value
 
@@ -89,21 +89,21 @@ class UnsetLaunchConfiguration(Action):
         self._name = normalize(name)
 
     def execute(self, context: LaunchContext) -> None:
-        """Forget it."""
+        """Remove the argument."""
         context.launch_configurations.pop(perform(context, self._name), None)
 
 
 class PushLaunchConfigurations(Action):
-    """Begin a scope."""
+    """Begins a scope of launch arguments."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Begin it."""
+        """Begin the scope."""
         context.push_scope()
 
 
 class PopLaunchConfigurations(Action):
-    """End the scope that was begun last."""
+    """Ends the scope that was begun last."""
 
     def execute(self, context: LaunchContext) -> None:
-        """End it."""
+        """End the scope."""
         context.pop_scope()

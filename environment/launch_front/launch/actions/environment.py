@@ -21,7 +21,7 @@ class SetEnvironmentVariable(Action):
         self._name, self._value = normalize(name), normalize(value)
 
     def execute(self, context: LaunchContext) -> None:
-        """Set it."""
+        """Set the variable."""
         context.environment[perform(context, self._name)] = perform(context, self._value)
 
 
@@ -33,7 +33,7 @@ class UnsetEnvironmentVariable(Action):
         self._name = normalize(name)
 
     def execute(self, context: LaunchContext) -> None:
-        """Remove it."""
+        """Remove the variable."""
         context.environment.pop(perform(context, self._name), None)
 
 
@@ -53,7 +53,7 @@ class AppendEnvironmentVariable(Action):
         self._prepend = prepend
 
     def execute(self, context: LaunchContext) -> None:
-        """Add to it, or set it when there is none."""
+        """Append to the variable; set it if it does not exist."""
         name, value = perform(context, self._name), perform(context, self._value)
         parts = [context.environment[name], value] if name in context.environment else [value]
         if flag(context, self._prepend):

@@ -1,4 +1,4 @@
-"""Actions that emit events and that say what to do at one."""
+"""Actions that emit events, and actions that say what to do at an event."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class EmitEvent(Action):
-    """Let something happen."""
+    """Emits an event."""
 
     def __init__(self, *, event: Event, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -27,7 +27,7 @@ class EmitEvent(Action):
         self.event = event
 
     def describe(self) -> str:
-        """Return the line for `--print`."""
+        """Return the text of the action for `--print`."""
         return f"EmitEvent(event='{self.event.name}')"
 
     def execute(self, context: LaunchContext) -> None:
@@ -42,7 +42,7 @@ class Shutdown(EmitEvent):
         super().__init__(event=ShutdownEvent(reason=reason), **kwargs)
 
     def execute(self, context: LaunchContext) -> None:
-        """End it, and name the process whose end was the reason."""
+        """End the launch. Name the process whose end was the reason."""
         if isinstance(context.event, ProcessExited):
             name = context.event.process_name
             context.screen.log(
@@ -52,18 +52,18 @@ class Shutdown(EmitEvent):
 
 
 class RegisterEventHandler(Action):
-    """From now on, do something at an event."""
+    """Adds a handler for an event."""
 
     def __init__(self, event_handler: EventHandler, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.event_handler = event_handler
 
     def describe(self) -> str:
-        """Return the line for `--print`."""
+        """Return the text of the action for `--print`."""
         return f"RegisterEventHandler('{type(self.event_handler).__name__}'):"
 
     def conditional_sub_entities(self) -> Iterable[LaunchDescriptionEntity]:
-        """Return what is done at the event."""
+        """Return the entities that are visited at the event."""
         return self.event_handler.entities
 
     def execute(self, context: LaunchContext) -> None:
@@ -72,7 +72,7 @@ class RegisterEventHandler(Action):
 
 
 class UnregisterEventHandler(RegisterEventHandler):
-    """Do no longer what a handler says."""
+    """Removes an event handler."""
 
     def execute(self, context: LaunchContext) -> None:
         """Remove the handler."""

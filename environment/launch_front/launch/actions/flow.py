@@ -1,4 +1,4 @@
-"""Actions that group others, put them off, say something, or call a function."""
+"""Actions that group or delay other actions, print a message, or call a function."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ if TYPE_CHECKING:
 
 
 class LogInfo(Action):
-    """Say something on the screen."""
+    """Prints a message on the screen."""
 
     def __init__(self, *, msg: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.msg = normalize(msg)
 
     def describe(self) -> str:
-        """Return the line for `--print`."""
+        """Return the text of the action for `--print`."""
         return f"LogInfo({describe(self.msg)})"
 
     def execute(self, context: LaunchContext) -> None:
-        """Say it."""
+        """Print the message."""
         context.screen.log("INFO", "launch.user", perform(context, self.msg))
 
 
 class GroupAction(Action):
-    """Several actions. What they set is forgotten at the end of the group, unless `scoped` is False."""
+    """A group of actions. Settings made in it end with the group, unless `scoped` is False."""
 
     def __init__(
         self,
@@ -55,7 +55,7 @@ class GroupAction(Action):
         return self._actions
 
     def execute(self, context: LaunchContext) -> Iterable[LaunchDescriptionEntity]:  # noqa: ARG002
-        """Return the actions, inside a scope of their own."""
+        """Return the actions, inside a separate scope."""
         if not self._scoped:
             return [*self._sets, *self._actions]
         clean = [] if self._forwarding else [OpaqueFunction(function=_forget_outside, args=[self._sets])]
@@ -68,7 +68,7 @@ class GroupAction(Action):
 
 
 def _forget_outside(context: LaunchContext, sets: Iterable[SetLaunchConfiguration]) -> None:
-    """Keep nothing of what was set outside but the values that the group names."""
+    """Remove all launch arguments set outside, except those that the group names."""
     kept = dict(action.evaluated(context) for action in sets)
     context.launch_configurations.clear()
     context.launch_configurations.update(kept)
@@ -92,7 +92,7 @@ class TimerAction(Action):
         self._timer: Any = None
 
     def describe(self) -> str:
-        """Return the line for `--print`."""
+        """Return the text of the action for `--print`."""
         return f"TimerAction(period={self._period}, actions=<actions>)"
 
     def conditional_sub_entities(self) -> Iterable[LaunchDescriptionEntity]:
@@ -100,7 +100,7 @@ class TimerAction(Action):
         return self._actions
 
     def cancel(self) -> None:
-        """Let the actions not happen, if they have not yet."""
+        """Cancel the actions if they have not happened yet."""
         if self._timer is not None:
             self._timer.cancel()
 
@@ -138,5 +138,5 @@ class OpaqueFunction(Action):
         self._function, self._args, self._kwargs = function, list(args or ()), dict(kwargs or {})
 
     def execute(self, context: LaunchContext) -> Iterable[LaunchDescriptionEntity]:
-        """Call it."""
+        """Call the function."""
         return as_entities(self._function(context, *self._args, **self._kwargs))

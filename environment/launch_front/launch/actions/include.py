@@ -1,4 +1,4 @@
-"""Include another launch file."""
+"""The action that includes another launch file."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class IncludeLaunchDescription(Action):
-    """All that another launch file describes, with arguments for it."""
+    """Everything that another launch file describes, with arguments for that file."""
 
     def __init__(
         self,
@@ -44,10 +44,10 @@ class IncludeLaunchDescription(Action):
         return [] if found is None else [found]
 
     def execute(self, context: LaunchContext) -> Iterable[LaunchDescriptionEntity]:
-        """Read the file and return what it describes.
+        """Read the file, and return its launch description.
 
         Raises:
-            RuntimeError: an argument without a default is missing.
+            RuntimeError: An argument without a default value is missing.
         """
         source = self.launch_description_source
         outside = context.current_launch_file
@@ -72,7 +72,7 @@ class IncludeLaunchDescription(Action):
 
 
 def _required_arguments(description: LaunchDescription) -> list[DeclareLaunchArgument]:
-    """Return the arguments without a default that are surely declared by the description itself.
+    """Return the arguments without a default value that this description itself always declares.
 
     An included file, at any depth, checks its own arguments when it is included.
     """

@@ -1,4 +1,4 @@
-"""Start a process."""
+"""The action that starts a process."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ from ..unsupported import refuse_arguments
 if TYPE_CHECKING:
     from ..launch_context import LaunchContext
 
-_SECONDS = "5"  # between SIGINT and SIGTERM, and between SIGTERM and SIGKILL
+_SECONDS = "5"  # seconds from SIGINT to SIGTERM, and from SIGTERM to SIGKILL
 _ELSEWHERE = ("cached_output", "process_description")
 
 Variables = Mapping[SomeSubstitutionsType, SomeSubstitutionsType]
 
 
 class _Described:
-    """The facts of a process that `output_format` can use, as `this.process_description.final_name`."""
+    """The facts about a process that `output_format` can use, such as `this.process_description.final_name`."""
 
     final_name = ""
     final_cmd: list[str] = []  # noqa: RUF012 (replaced, never changed)
 
 
 class ExecuteProcess(ProcessAction):
-    """Start a program."""
+    """Starts a program."""
 
     def __init__(
         self,
@@ -79,16 +79,16 @@ class ExecuteProcess(ProcessAction):
 
     @property
     def name(self) -> str:
-        """The name of the process, as `talker-1`; empty before it is known."""
+        """The name of the process, such as `talker-1`; empty if not known yet."""
         return self.process_description.final_name
 
     @property
     def return_code(self) -> int | None:
-        """The exit code, None while it runs."""
+        """The exit code; None while the process runs."""
         return self._returned
 
     def describe(self) -> str:
-        """Return the line for `--print`."""
+        """Return the text of the action for `--print`."""
         cmd = ", ".join(describe(part) for part in self.cmd)
         cwd = None if self.cwd is None else f"'{describe(self.cwd)}'"
         env = None
@@ -97,7 +97,7 @@ class ExecuteProcess(ProcessAction):
         return f"ExecuteProcess(cmd=[{cmd}], cwd={cwd}, env={env}, shell={self.shell})"
 
     def sub_entities(self) -> Iterable[LaunchDescriptionEntity]:
-        """Return what happens when it ends, if that is known."""
+        """Return the entities that are visited when the process ends, as far as they are known."""
         return [] if self._on_exit is None or callable(self._on_exit) else as_entities(self._on_exit)
 
     def command(self, context: LaunchContext) -> list[str]:
@@ -105,10 +105,10 @@ class ExecuteProcess(ProcessAction):
         return [perform(context, part) for part in self.cmd]
 
     def execute(self, context: LaunchContext) -> None:
-        """Decide everything about the process; it starts when the whole description has been read.
+        """Decide everything about the process. It starts when the whole description has been read.
 
         Raises:
-            RuntimeError: this action has been executed before.
+            RuntimeError: This action has already been executed.
         """
         if self._executed:
             raise RuntimeError(f"ExecuteProcess action '{self.name}': executed more than once")
@@ -118,7 +118,7 @@ class ExecuteProcess(ProcessAction):
         plan = self._plan(context)
         self.process_description.final_name = plan.name
         self.process_description.final_cmd = list(plan.cmd)
-        # What is wrong with it is said here, and not at the first line.
+        # A wrong format is reported here, and not at the first line of output.
         plan.output_format.format(line="", this=self)
         if self._log_cmd:
             context.screen.log(
@@ -166,14 +166,14 @@ class ExecuteProcess(ProcessAction):
         return [*shlex.split(configured.get("launch-prefix", "")), *cmd] if wanted else cmd
 
     def process_started(self, process: RunningProcess) -> None:
-        """Remember the process that runs."""
+        """Record the running process."""
         self._process, self._returned = process, None
 
     def process_ended(self, process: RunningProcess, context: LaunchContext, code: int) -> None:
-        """Run what was requested for its end, and start it again if that was requested."""
+        """Run what was requested for the end of the process. Start the process again if that was requested."""
         self._returned = code
         if self._on_exit is not None:
-            # Before other handlers, and once for each run of the process.
+            # This handler comes before other handlers, and applies once to each run of the process.
             handler = OnProcessExit(target_action=self, on_exit=self._on_exit, handle_once=True)
             context.register_event_handler(handler)
         if not self._respawn or context.is_shutdown or self._retries_left == 0 or context.timers is None:

@@ -16,7 +16,7 @@ __all__ = ["Event", "Shutdown", "TimerEvent", "matches_action", "process"]
 
 
 class Shutdown(Event):
-    """The launch ends."""
+    """The event that the launch ends."""
 
     name = "launch.events.Shutdown"
 
@@ -26,7 +26,7 @@ class Shutdown(Event):
 
 
 class TimerEvent(Event):
-    """A timer has fired."""
+    """The event that the time of a timer has come."""
 
     name = "launch.events.TimerEvent"
 

@@ -1,4 +1,4 @@
-"""Events about a process, and events that ask for something to be done with one."""
+"""Events about a process, and events that request something of a process."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ class RunningProcessEvent(Event):
     """Something that happened to a process.
 
     Attributes:
-        action: the action that started it.
-        process_name: as `talker-1`.
-        cmd: its command line.
-        cwd: the folder it was started in, None for that of the launch.
-        env: its environment.
-        pid: its process id.
+        action: The action that started the process.
+        process_name: The name of the process, such as `talker-1`.
+        cmd: The command line of the process.
+        cwd: The folder in which the process was started; None for the folder of the launch.
+        env: The environment of the process.
+        pid: The process id.
     """
 
     action: Any
@@ -84,7 +84,7 @@ class ProcessStderr(ProcessIO):
 
 
 class ShutdownProcess(Event):
-    """Asks for a process to end."""
+    """Requests that a process ends."""
 
     name = "launch.events.process.ShutdownProcess"
 
@@ -93,7 +93,7 @@ class ShutdownProcess(Event):
 
 
 class SignalProcess(Event):
-    """Asks for a signal to a process."""
+    """Requests that a signal is sent to a process."""
 
     name = "launch.events.process.SignalProcess"
 

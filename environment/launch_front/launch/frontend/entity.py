@@ -1,4 +1,4 @@
-"""One tag of an XML file or one entry of a YAML file, read alike."""
+"""A tag of an XML file or an entry of a YAML file, in a common form."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ if TYPE_CHECKING:
 
 
 class FrontendError(Exception):
-    """An XML or YAML launch file is not as it should be."""
+    """An XML or YAML launch file is not valid."""
 
 
 @dataclass
 class Entity:
-    """A tag, its attributes and what is inside.
+    """A tag, its attributes and its content.
 
     Each access is recorded, so that a misspelled attribute is not silently ignored.
 
     Attributes:
-        tag: its name, as `node`.
-        attributes: text in XML; text, numbers, truth values and lists in YAML.
-        children: the entities inside, in order.
+        tag: The name of the tag, such as `node`.
+        attributes: The attributes: text in XML; text, numbers, truth values and lists in YAML.
+        children: The entities inside, in order.
     """
 
     tag: str
@@ -33,7 +33,7 @@ class Entity:
     _read_children: set[str] = field(default_factory=set)
 
     def get(self, name: str) -> Any | None:
-        """Return an attribute, None when it is not there."""
+        """Return an attribute; None if it does not exist."""
         self._read.add(name)
         value = self.attributes.get(name)
         separator = self.attributes.get(f"{name}-sep")
@@ -43,18 +43,18 @@ class Entity:
         return value
 
     def text(self, name: str) -> str | None:
-        """Return an attribute as text, None when it is not there."""
+        """Return an attribute as text; None if it does not exist."""
         value = self.get(name)
         if value is None or isinstance(value, str):
             return value
-        # A number or a truth value of YAML, written as XML would.
+        # A number or a truth value of YAML becomes the text that XML would contain.
         return json.dumps(value)
 
     def need(self, name: str) -> str:
         """Return an attribute as text.
 
         Raises:
-            FrontendError: it is not there.
+            FrontendError: The attribute does not exist.
         """
         value = self.text(name)
         if value is None:
@@ -62,7 +62,7 @@ class Entity:
         return value
 
     def inside(self, tag: str) -> list[Entity]:
-        """Return the entities inside with a name."""
+        """Return the entities inside that have this name."""
         self._read_children.add(tag)
         return [child for child in self.children if child.tag == tag]
 
@@ -72,10 +72,10 @@ class Entity:
         return self.children
 
     def check_all_read(self) -> None:
-        """Check that every attribute and tag was used.
+        """Check that every attribute and tag was read.
 
         Raises:
-            FrontendError: there is such an attribute or tag.
+            FrontendError: An attribute or tag was not read.
         """
         attributes = sorted(set(self.attributes) - self._read)
         if attributes:
@@ -89,7 +89,7 @@ def from_xml(text: str) -> Entity:
     """Read XML.
 
     Raises:
-        FrontendError: it is not well-formed.
+        FrontendError: The text is not well-formed XML.
     """
     import xml.etree.ElementTree as ElementTree
 
@@ -106,7 +106,7 @@ def from_yaml(text: str) -> Entity:
     """Read YAML.
 
     Raises:
-        FrontendError: the text is not YAML, or does not have the format of a launch file.
+        FrontendError: The text is not YAML, or does not have the format of a launch file.
     """
     import yaml
 
@@ -133,7 +133,7 @@ def _from_content(tag: str, content: Any) -> Entity:
         if name == "children":
             children += [_from_item(tag, item) for item in value]
         elif isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
-            # As `param:` of a node: a list of entities with that name.
+            # A list, as for `param:` of a node, becomes several entities with that name.
             children += [_from_content(name, item) for item in value]
         else:
             attributes[str(name)] = value

@@ -1,4 +1,4 @@
-"""From the text of an XML or YAML launch file to a launch description."""
+"""Turns the text of an XML or YAML launch file into a launch description."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ def load(path: str) -> LaunchDescription:
     """Read a launch file.
 
     Raises:
-        FrontendError: it is not as it should be.
+        FrontendError: The file is not valid.
     """
-    # The tags of nodes are launch_ros's.
+    # This import defines the tags of nodes, which belong to launch_ros.
     import launch_ros.tags  # noqa: F401
 
     with open(path, encoding="utf-8") as file:  # noqa: PTH123 (pathlib costs start-up time)
@@ -33,7 +33,7 @@ def load(path: str) -> LaunchDescription:
 
 
 def _reader(path: str, text: str) -> Callable[[str], Entity]:
-    """Return the function that reads the format, by the end of the file's name or else by its first sign."""
+    """Return the reader of a file's format, decided by the file's extension or else by the text's first character."""
     if path.endswith((".yaml", ".yml")):
         return from_yaml
     if path.endswith(".xml"):

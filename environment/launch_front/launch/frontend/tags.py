@@ -51,10 +51,10 @@ def expose_tag(*names: str) -> Callable[[Maker], Maker]:
 
 
 def parse_entity(entity: Entity) -> Action:
-    """Return the action that a tag stands for.
+    """Return the action that a tag describes.
 
     Raises:
-        FrontendError: the tag is not known, or has something that it can not have.
+        FrontendError: The tag is unknown, or contains something that is not allowed in it.
     """
     if entity.tag in _ELSEWHERE:
         raise FrontendError(f"`{entity.tag}` needs {FULL}: the course's own launch does not have it")
@@ -66,7 +66,7 @@ def parse_entity(entity: Entity) -> Action:
 
 
 def condition(entity: Entity) -> dict[str, Any]:
-    """Return the condition of a tag as a keyword argument, none when it has no `if` and no `unless`."""
+    """Return the condition of a tag as a keyword argument; none if the tag has neither `if` nor `unless`."""
     holds, not_holds = entity.text("if"), entity.text("unless")
     if holds is not None and not_holds is not None:
         raise FrontendError("if and unless conditions can't be used simultaneously")
@@ -76,7 +76,7 @@ def condition(entity: Entity) -> dict[str, Any]:
 
 
 def optional(entity: Entity, **attributes: str) -> dict[str, Any]:
-    """Return those keyword arguments whose attributes are there, as texts with substitutions."""
+    """Return the existing ones of these attributes as keyword arguments, as texts with substitutions."""
     given = {keyword: entity.text(attribute) for keyword, attribute in attributes.items()}
     return {keyword: parse_text(value) for keyword, value in given.items() if value is not None}
 
@@ -87,7 +87,7 @@ def name_and_value(entity: Entity) -> tuple[Any, Any]:
 
 
 def pairs(entity: Entity, tag: str, first: str, second: str) -> list[tuple[Any, Any]]:
-    """Return two attributes of each tag of a name inside another, as `from` and `to` of `remap`."""
+    """Return two attributes of each tag with this name inside another tag, such as `from` and `to` of `remap`."""
     found = []
     for child in entity.inside(tag):
         found.append((parse_text(child.need(first)), parse_text(child.need(second))))
@@ -96,7 +96,7 @@ def pairs(entity: Entity, tag: str, first: str, second: str) -> list[tuple[Any, 
 
 
 def truth_attribute(entity: Entity, name: str) -> dict[str, bool]:
-    """Return an attribute that is true or false as a keyword argument, none when it is not there."""
+    """Return an attribute that is true or false as a keyword argument; none if it does not exist."""
     value = entity.text(name)
     if value is None:
         return {}
@@ -108,7 +108,7 @@ def truth_attribute(entity: Entity, name: str) -> dict[str, bool]:
 
 
 def number_attribute(entity: Entity, keyword: str, kind: type[int] | type[float]) -> dict[str, Any]:
-    """Return an attribute that is a number of 0 or more as a keyword argument, none when it is not there."""
+    """Return an attribute that is a number of at least 0 as a keyword argument; none if it does not exist."""
     value = entity.text(keyword)
     if value is None:
         return {}

@@ -1,4 +1,4 @@
-"""Texts with substitutions in them, as `$(var name)`."""
+"""Texts that contain substitutions, such as `$(var name)`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 Parts = list[Substitution]
 
-# By the names of XML and YAML: the class, and how many arguments it takes.
+# The class of each substitution and its number of arguments, by its name in XML and YAML.
 _KNOWN: dict[str, tuple[Callable[..., Substitution], int, int]] = {
     "and": (substitutions.AndSubstitution, 2, 2),
     "anon": (substitutions.AnonName, 1, 1),
@@ -40,7 +40,7 @@ def expose_substitution(name: str, kind: Callable[..., Substitution], fewest: in
 
 
 def _joined(words: tuple[Parts, ...]) -> Parts:
-    """Put the words of an expression together again."""
+    """Join the words of an expression again."""
     joined: Parts = []
     for word in words:
         joined += [TextSubstitution(text=" "), *word] if joined else word
@@ -51,14 +51,14 @@ def parse_text(text: str) -> Parts:
     """Return the parts of a text, at least one.
 
     Raises:
-        FrontendError: a substitution is not closed, not known, or has a wrong number of arguments.
+        FrontendError: A substitution is not closed, is unknown, or has a wrong number of arguments.
     """
     reader = _Reader(text)
     return reader.parts(end="") or [TextSubstitution(text="")]
 
 
 def parse_value(value: Any) -> Any:
-    """Return a text without substitutions as it is, one with some as their parts, other values unchanged."""
+    """Return a text with substitutions as a list of its parts; any other value unchanged."""
     if isinstance(value, list):
         return [parse_value(item) for item in value]
     if not isinstance(value, str):

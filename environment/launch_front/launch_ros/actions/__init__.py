@@ -1,11 +1,11 @@
-"""The actions about ROS that a launch file can use."""
+"""The actions for ROS that a launch file can use."""
 
 from launch.unsupported import names_elsewhere
 
 from .node import Node
 from .scope import PushROSNamespace, SetParameter, SetRemap
 
-# Both spellings are in use.
+# Launch files use both spellings.
 PushRosNamespace = PushROSNamespace
 
 __all__ = ["Node", "PushROSNamespace", "PushRosNamespace", "SetParameter", "SetRemap"]

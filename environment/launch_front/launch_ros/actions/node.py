@@ -53,8 +53,8 @@ class Node(ExecuteProcess):
         """Return the command line with all ROS arguments.
 
         Raises:
-            ValueError: the name or the namespace is not valid.
-            SubstitutionFailure: the package or the program does not exist.
+            ValueError: The name or the namespace is not valid.
+            SubstitutionFailure: The package or the program does not exist.
         """
         ros: list[str] = []
         name = None if self._node_name is None else perform(context, self._node_name)
@@ -78,7 +78,8 @@ class Node(ExecuteProcess):
         self, context: LaunchContext, name: str | None, namespace: str | None
     ) -> list[str]:
         arguments: list[str] = []
-        # Without both the full name is not known, and the parameters are for whatever node the program makes.
+        # Without a name and a namespace the full name of the node is unknown. So the parameters are for any node that
+        # the program makes.
         full = f"{namespace.rstrip('/')}/{name}" if name and namespace else "/**"
         for given in self._parameters:
             if isinstance(given, Mapping):
@@ -101,7 +102,7 @@ class Node(ExecuteProcess):
         return arguments
 
     def execute(self, context: LaunchContext) -> None:
-        """Start the node, and warn when its full name is taken already."""
+        """Start the node. Warn if another node already has its full name."""
         super().execute(context)
         words = self.process_description.final_cmd
         named = {word.partition(":=")[0]: word.partition(":=")[2] for word in words if word.startswith("__")}
@@ -119,7 +120,7 @@ class Node(ExecuteProcess):
 
 
 def _flow_yaml(value: Any) -> str:
-    """Return a value in one line of YAML."""
+    """Return a value as one line of YAML."""
     import yaml
 
     return str(yaml.dump(value, default_flow_style=True)).removesuffix("\n").removesuffix("\n...")

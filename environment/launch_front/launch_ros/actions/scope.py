@@ -13,22 +13,22 @@ from ..parameter_descriptions import evaluate_dictionary
 if TYPE_CHECKING:
     from launch.launch_context import LaunchContext
 
-# The variable with the namespace of the present scope, as in the real launch: included files can read it.
+# The variable that contains the namespace of the current scope, as in the real launch. Included files can read it.
 NAMESPACE = "ros_namespace"
 
 
 class PushROSNamespace(Action):
-    """Put the nodes that follow into a namespace."""
+    """Puts the following nodes into a namespace."""
 
     def __init__(self, namespace: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self._namespace = normalize(namespace)
 
     def execute(self, context: LaunchContext) -> None:
-        """Set it, inside the namespace that holds already.
+        """Set the namespace, inside the current namespace.
 
         Raises:
-            ValueError: the text is not a namespace.
+            ValueError: The text is not a namespace.
         """
         outer = context.launch_configurations.get(NAMESPACE)
         namespace = inner_namespace(outer, perform(context, self._namespace)) or "/"
@@ -37,7 +37,7 @@ class PushROSNamespace(Action):
 
 
 class SetRemap(Action):
-    """Remap a name in the nodes that follow."""
+    """Remaps a name in the following nodes."""
 
     def __init__(self, src: SomeSubstitutionsType, dst: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -52,7 +52,7 @@ class SetRemap(Action):
 
 
 class SetParameter(Action):
-    """Set a parameter in the nodes that follow."""
+    """Sets a parameter in the following nodes."""
 
     def __init__(self, name: SomeSubstitutionsType, value: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
