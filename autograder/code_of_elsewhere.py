@@ -26,8 +26,8 @@ class Elsewhere:
     """One kind of code from other sources, with its exception.
 
     Attributes:
-        pattern: Searched in the traceback (multi-line); both texts may name its groups. ``{here}`` stands
-            in them for the package with this course's types.
+        pattern: The pattern to search for in the traceback (multi-line). Both texts may use its named groups.
+            ``{here}`` in them stands for the package with this course's types.
         text: The source of the code, in a sentence.
         next_step: What to write here.
         key: The diagnosis key.
@@ -62,7 +62,7 @@ _HERE = {
     "ROSInterruptException|signal_shutdown|on_shutdown": "Leave it out. A program ends with rclpy.shutdown().",
     "spin|spinOnce|spin_some": "Write rclpy.spin(your_node) in a program, `with spinning(your_node):` in a notebook.",
 }
-"""Names in ROS 1's module rospy (and C++'s rclcpp): pattern of the name -> what to write here."""
+"""Names in ROS 1's module rospy (and C++'s rclcpp): for the pattern of each name, what to write here."""
 _TYPES = r"\w*Ints|SetBool|Trigger|Empty|Fibonacci|WalkTo"
 _PARTS = "Request|Response|Goal|Result|Feedback"
 

@@ -23,10 +23,10 @@ class Wait:
 
     Attributes:
         noun: The word for the server, as in the name of the wait: ``"service"`` or ``"server"``.
-        role: The client's endpoint: ``"client"`` or ``"action_client"``.
+        role: The role of the client's endpoint: ``"client"`` or ``"action_client"``.
         asks: The kind of event with which it asks its server: ``"request"`` or ``"goal"``.
         absent: The name of the run without a server.
-        served: The names of the runs with one; in the first it comes late.
+        served: The names of the runs with a server. In the first of them the server comes late.
     """
 
     noun: str
@@ -57,7 +57,7 @@ class Wait:
         return [*found, late] if without else found
 
     def _looks_elsewhere(self, evidence: Evidence) -> bool:
-        """Return True if the client was seen to look for a server with another name than the task's.
+        """Return True if the client was seen to look for a server with a name other than the task's.
 
         If the client ended both with and without a server, it must have looked for another name. If it kept waiting,
         it may have used the right name with another type.
@@ -68,11 +68,11 @@ class Wait:
         return any(other != name or (waits_on and its_type != kind) for other, its_type in looked_for)
 
     def fault(self, evidence: Evidence) -> str:
-        """Return the fault in the way it gives up without a server, in words; empty if it gives up well."""
+        """Return the fault in how the client gives up without a server, in words; empty if there is none."""
         return giving_up.objection(evidence.part(self.absent), self.had_server(evidence), self.role)
 
     def gives_up(self, evidence: Evidence, wrong: str = "") -> Finding:
-        """Decide whether, without a server, it ends by itself and reports that, or says repeatedly that it waits.
+        """Decide whether the client, without a server, ends by itself and says so, or says repeatedly that it waits.
 
         Args:
             evidence: All runs of the client.

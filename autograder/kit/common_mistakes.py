@@ -31,7 +31,7 @@ _KEY = {"topic": "topic_name", "service": "service_name", "action": "action_name
 
 
 def _wanted(evidence: Evidence, role: str) -> Mapping[str, str]:
-    """Return the reference's endpoints of a role, of which there is at least one: name -> type."""
+    """Return the names and types of the reference's endpoints of a role, of which there is at least one."""
     evidence.reference.only(role)
     return evidence.reference.interface[role]
 
@@ -190,17 +190,17 @@ def spinning(role: str) -> tuple[Mistake, ...]:
 
 
 def _was_spun(part: Part, role: str) -> bool:
-    # The subject's first actions may come before the judge can see them; a spinning node is always on the graph.
+    # The subject's first actions may come before the judge can see them, but a spinning node is always on the graph.
     return worked(part, role) or something_spins(part)
 
 
 def _awaits_in_vain(evidence: Evidence) -> bool:
-    """True if the subject spins and never used the last answer, in a run that did not end."""
+    """True if the subject spins but never used the last answer, in a run that did not end."""
     return any(part.ending is None and something_spins(part) and _left_an_answer(part) for part in evidence)
 
 
 def _left_an_answer(part: Part) -> bool:
-    # A client that only sends a goal may spin on without a fault while its node answers.
+    # A client that only sends a goal may rightly spin on while its node answers.
     answers = part.of("response") + (part.of("goal_answered") if part.of("unanswered") else [])
     if not answers:
         return False
@@ -221,7 +221,7 @@ AWAITS_IN_VAIN = mistake(
     "(ReentrantCallbackGroup or another MutuallyExclusive one), or go on in a function that you give to the "
     "add_done_callback(...) of the future.",
 )
-"""Checked after the hangs, and before the mistakes of a node that is not spun."""
+"""These mistakes are checked after the hangs, and before the mistakes of a node that is not spun."""
 
 
 def _silent_node(evidence: Evidence, role: str) -> bool:

@@ -69,7 +69,7 @@ class Publisher:
 
     @cached_property
     def greetings(self) -> int:
-        """The number of messages before it begins to count. Their text differs, and their numbers do not lead on.
+        """The number of messages before the publisher begins to count. They have other texts and no counting numbers.
 
         Whether such a message is heard depends on chance if it is published as soon as the publisher exists, so it
         must not change the result.

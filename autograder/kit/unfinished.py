@@ -1,4 +1,4 @@
-"""Mistakes of a subject that is not written yet, did not begin, or ended before its work was done."""
+"""Mistakes of a subject that is not written yet, did not begin, or ended before its work was finished."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _BEGIN_AT_TODO = "If your code still has its TODO, begin there."
 
 
 def _what_main_does(evidence: Evidence) -> str:
-    """Return what main() has to do, for a server, a client or both, as the task asks."""
+    """Return in words what main() has to do for the task: for a server, a client or both."""
     roles = evidence.reference.interface.keys()
     clients = roles & {"client", "action_client"}
     return " ".join([_SPINS] * (roles != clients or not roles) + [_CALLS] * bool(clients))
@@ -79,7 +79,7 @@ _WORK = ("message", "request", "answered", "goal", "goal_answer", "matched")
 
 
 def ended_too_early(evidence: Evidence) -> Advice | None:
-    """The subject ended by itself with work left, after it had said or done something."""
+    """The subject ended by itself before its work was finished, after it had said or done something."""
     ending = evidence.main.ending
     if ending is None or traceback_of(evidence) or _main_guard(evidence):
         return None
@@ -104,7 +104,7 @@ def ended_too_early(evidence: Evidence) -> Advice | None:
 
 
 def _not_written(evidence: Evidence) -> str:
-    """Return what no node does yet although the code runs; empty if each expected endpoint is there."""
+    """Return in words what no node does yet, although the code runs; empty if each expected endpoint exists."""
     part = evidence.main
     if part.ending is not None and part.ending.name == "exited" and part.had_node:
         return ""  # a program may end before the graph shows its endpoints
@@ -128,7 +128,7 @@ def _returned_silently(evidence: Evidence) -> bool:
 
 
 def _returned_at_once(evidence: Evidence) -> bool:
-    """The same, and the function did not wait either, although it was told how long: the rest is missing."""
+    """The same, but the function did not wait either, although it was told how long: the rest is missing."""
     asked = any(part.of("called") or part.of("looked") for part in evidence)
     return not asked and all(map(ended_at_once, evidence)) and _returned_silently(evidence)
 
@@ -185,7 +185,7 @@ NOT_BEGUN, _RETURNED_SILENTLY = (
     )
     for found in (_returned_at_once, _returned_silently)
 )
-"""A function as it was handed out: checked before mistakes about how it calls, waits or gives up."""
+"""A function that is still as it was handed out. This is checked before mistakes in how it calls, waits or gives up."""
 NOTHING_THERE = (
     _RETURNED_SILENTLY,
     Mistake("main_guard", _main_guard, certain=True),

@@ -54,7 +54,7 @@ class _Entry(NamedTuple):
 
 
 def _entries(file: IO[bytes]) -> list[_Entry]:
-    """The files of an archive, as it lists them."""
+    """Return the files that an archive lists."""
     if tarfile.is_tarfile(file):
         file.seek(0)
         tar = tarfile.open(fileobj=file)  # noqa: SIM115  (its files are read from it)

@@ -57,8 +57,8 @@ ORDERS = {LATE: (41, 46), REFUSED: (-9, -1), ABORTED: (0, 0), ABSENT: (11, 30)}
 SHOWN_WITHIN = {Pace.FAST: 0.5, Pace.REAL_TIME: 1.5}
 """The maximum time in seconds for a client to show a feedback message before the next one is sent."""
 HASTE = {Pace.FAST: 0.1, Pace.REAL_TIME: 0.075}
-"""The same for a client that failed to show one. It makes the goal's result come after some 3.5 s, between the 3 and
-the 5 seconds that many clients wait.
+"""The same time limit for a client that failed to show one. With it the goal's result comes after some 3.5 s, between
+the 3 and the 5 seconds that many clients wait.
 """
 AT_PACE = 3
 """The number of feedback messages at the end that are sent at the pace of the lab's server, whether or not earlier ones

@@ -1,4 +1,4 @@
-"""A launch file that starts two programs, a publisher and one that says what it hears, and remaps their topic.
+"""A launch file that starts two programs, a publisher and a listener that says what it hears, and remaps their topic.
 
 The judge listens to one and publishes to the other under the new name. The programs are not changed: the launch
 reports its processes, which shows which of them got a rule. Each program is then started again without its rule: if
@@ -32,22 +32,22 @@ NODES = 2
 MESSAGES = 2
 """The number of messages from the publisher to wait for."""
 SAYING = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
-"""Seconds of wall time within which the other program must have said the judge's text."""
+"""Time limit in seconds of wall time for the listener to report the judge's text."""
 BEGINNING = {Pace.FAST: 20.0, Pace.REAL_TIME: 40.0}
-"""Seconds of wall time within which a launch must have started its first process, or ended."""
+"""Time limit in seconds of wall time for a launch to start its first process or to end."""
 PAUSE = {Pace.FAST: 3.0, Pace.REAL_TIME: 10.0}
-"""Seconds of wall time that a launch may leave between its first process and its second."""
+"""The maximum pause of a launch between its first process and its second, in seconds of wall time."""
 LATE = 4.5
-"""Seconds of wall time within which the publisher must be heard, even if its first message was lost and delays the
-next ones until its writer's heartbeat, 3 s later (Fast DDS).
+"""Time limit in seconds of wall time for the publisher to be heard, even if its first message was lost and the next
+ones are delayed until its writer's heartbeat, 3 s later (Fast DDS).
 """
 PART = "launching"
 MOST = 4
-"""The most programs that are started without their rules, if a launch file starts many."""
+"""The maximum number of programs that are started without their rules, if a launch file starts many."""
 
 
 class Launched:
-    """The programs that a launch file started, as they were seen.
+    """The programs that a launch file started, as the judge saw them.
 
     Args:
         evidence: All evidence.
@@ -77,35 +77,38 @@ class Launched:
             {process for role, name, process in self._ends if (role, name) == (side, self.topic)}
             for side in ("publisher", "subscription")
         )
-        """The processes that publish under the new name, and those that subscribe; 0 for an unknown one."""
+        """The ids of the processes that publish under the new name, and of those that subscribe; 0 for an unknown one.
+        """
         self._given = {_lower(process.pid) for process in self._processes if self._has_a_rule(process.argv)}
         self._own = {
             _lower(process.pid)
             for process in self._processes
             if any(package in word for word in process.argv) and not _is_a_tool(process.argv)
         }
-        """The processes of the package's programs; a tool may also have a program's name among its arguments."""
+        """The processes of the package's programs. A tool that has a program's name among its arguments may also be
+        included.
+        """
 
     @property
     def heard(self) -> list[str]:
-        """The texts that came under the new name, without the judge's own."""
+        """The texts of the messages that came under the new name, except the judge's own."""
         own = str(self._part.inputs.get("text"))
         texts = [str(event.data["fields"].get("data")) for event in self._part.of("message", self.topic)]
         return [text for text in texts if text != own]
 
     @property
     def says_what_it_hears(self) -> bool:
-        """True if the text that the judge sent under the new name was said."""
+        """True if a program reported the text that the judge sent under the new name."""
         return self.topic in self.subscriptions and _says_its_text(self._part)
 
     @property
     def elsewhere(self) -> list[str]:
-        """The other names with an endpoint."""
+        """The names of endpoints other than the new name."""
         return sorted((self.publishers | self.subscriptions) - {self.topic})
 
     @property
     def old_names(self) -> list[str]:
-        """Those other names that are the name in the code, in any namespace."""
+        """The other names that are the name in the code, in any namespace."""
         return [name for name in self.elsewhere if name.rpartition("/")[2] == self._old_name]
 
     @property
@@ -115,7 +118,7 @@ class Launched:
 
     @property
     def not_moved(self) -> list[str]:
-        """The programs that are under the new name even without their rules."""
+        """The programs that use the new name even without their rules."""
         seen = [(one.main, Launched(one, self._package, self._old_name)) for one in self._alone]
         return [
             str(part.inputs["program"]) for part, it in seen if it.topic in it.publishers | it.subscriptions
@@ -123,7 +126,7 @@ class Launched:
 
     @property
     def without_rules(self) -> list[tuple[str, ...]]:
-        """The programs under the new name, as started without rules: package, program, arguments.
+        """The programs that use the new name when started without rules: package, program, arguments.
 
         A program that got no rule for the topic is started without arguments, because they may contain a rule of
         another form.
@@ -139,7 +142,7 @@ class Launched:
 
     @property
     def talkers(self) -> int:
-        """The number of programs that publish under the new name. One more subscriber does no harm."""
+        """The number of programs that publish under the new name. An additional subscriber does no harm."""
         return len(self._talk)
 
     @property
@@ -149,10 +152,10 @@ class Launched:
 
     @property
     def moved_by_rules(self) -> bool:
-        """True if each program that uses the new name was given a rule for it.
+        """True if each program that uses the new name got a rule for it.
 
-        If an endpoint does not tell its process, any process with a rule may own it. Other subscribers there, such as
-        ``ros2 topic echo``, need no rule.
+        If the process of an endpoint is unknown, it may be any process with a rule. Other subscribers, such as ``ros2
+        topic echo``, need no rule.
         """
         given, listen = self._given, self._listen
         listeners = listen & (given | self._own) or listen
@@ -160,23 +163,23 @@ class Launched:
 
     @property
     def has_a_talker(self) -> bool:
-        """True if a program of the package publishes under the new name, or perhaps one that was renamed does."""
+        """True if a program of the package publishes under the new name, or a renamed program may do so."""
         return self._has_one_of_its_own(self._talk)
 
     @property
     def has_a_listener(self) -> bool:
-        """True if a program of the package subscribes there, or perhaps one that was renamed does."""
+        """True if a program of the package subscribes under the new name, or a renamed program may do so."""
         return self._has_one_of_its_own(self._listen)
 
     def _has_one_of_its_own(self, side: set[int]) -> bool:
-        # If the package's name differs from the course's, the rule distinguishes its programs from tools. An endpoint
-        # of an unknown process, 0, may be anybody's.
+        # If the package's name differs from the course's, its programs are told from tools by their rules. An
+        # endpoint of an unknown process, 0, may belong to any program.
         without_a_rule = (self._talk | self._listen) & self._own - self._given
         return bool(side & (self._own | self._given) or 0 in side or without_a_rule)
 
     @property
     def is_settled(self) -> bool:
-        """True if the launch is fully known: each program's endpoints are on the graph, or there is one too many."""
+        """True if the launch is fully known: each program's endpoints are on the graph, or one endpoint too many."""
         if self.elsewhere or not (self.publishers and self.subscriptions):
             return True
         return self.moved_by_rules and self.talkers < NODES and self.all_are_there
@@ -196,7 +199,7 @@ class Launched:
 
     @cached_property
     def _programs(self) -> list[tuple[str, str]]:
-        """The module of each program of the workspace, with slashes for dots, and the end of the program's path."""
+        """For each program of the workspace, its module with slashes for dots, and the end of the program's path."""
         report = report_of(self._part)
         packages = report.packages if report is not None else ()
         named = [(package.name, entry.partition("=")) for package in packages for entry in package.programs]
@@ -229,7 +232,7 @@ class LaunchFile:
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:
-        """The common mistakes, most telling first."""
+        """The common mistakes, the most informative first."""
         return (
             *workspace.BUILD,
             OWN,
@@ -241,15 +244,15 @@ class LaunchFile:
         )
 
     def seen(self, evidence: Evidence) -> Launched:
-        """The programs, as they were seen."""
+        """The programs, as the judge saw them."""
         return Launched(evidence, self._package, self._old_name)
 
     def expected(self, evidence: Evidence) -> Launched:
-        """The same: only the new name is taken from the reference output, and it knows that."""
+        """The reference's programs, which equal the subject's, because only the new name comes from the reference."""
         return self.seen(evidence)
 
     def scenario(self, bench: Bench) -> None:
-        """Launch it; listen to one program and publish to the other under the new name."""
+        """Launch the file. Listen to the publisher, and publish to the listener, under the new name."""
         topic, type_name = bench.reference.only("publisher")
         text = f"status {bench.random.randrange(10_000, 100_000)} from the judge"
         bench.part(PART, text=text)
@@ -258,7 +261,7 @@ class LaunchFile:
         bench.start()
         bench.wait_until(_has_begun, BUILDING + BEGINNING[bench.pace], quiet=BUILDING)
         bench.wait_until(lambda evidence: len(_of_nodes(evidence.main)) >= NODES, PAUSE[bench.pace])
-        # The first program on the graph does not mean that the others come soon: on a busy machine they take seconds.
+        # After the first program is on the graph, the others may still need seconds on a busy machine.
         bench.watch_graph(lambda evidence: self.seen(evidence).all_are_there, PAUSE[bench.pace])
         talks = bench.await_endpoint("publisher", topic)
         listens = bench.await_endpoint("subscription", topic)
@@ -269,7 +272,7 @@ class LaunchFile:
         if talks:
             bench.wait_until(lambda evidence: len(self.seen(evidence).heard) >= MESSAGES, LATE)
         if talks and listens:
-            # The processes are not reported on the graph, so a third one may still be about to appear there.
+            # The graph does not show processes, so a third one may be about to appear there.
             bench.watch_graph(lambda evidence: self.seen(evidence).is_settled, PAUSE[bench.pace])
         seen = self.seen(Evidence([bench.seen()], bench.reference))
         bench.stop()
@@ -277,7 +280,7 @@ class LaunchFile:
             self._run_alone(bench, words)
 
     def _run_alone(self, bench: Bench, words: Sequence[str]) -> None:
-        """Start a program without its rules, until it is on the topic under either name."""
+        """Start a program without its rules, and wait until it uses the topic under either name."""
         bench.part(f"{words[1]} without its rule", program=words[1])
         bench.start(ALONE, *words)
         bench.watch_graph(lambda evidence: self.seen(evidence).is_there, BEGINNING[bench.pace])
@@ -335,7 +338,7 @@ def _says_its_text(part: Part) -> bool:
 
 
 def _lower(pid: int) -> int:
-    """Return the part of a process's id that its endpoints contain."""
+    """Return the part of a process id that its endpoints' identifiers contain."""
     return pid & 0xFFFF
 
 

@@ -8,8 +8,8 @@ while.
 The service is first only a little late. If the run without a service does not show that the client would have waited
 for longer, the first run is made again with a service that comes as late as the task allows.
 
-The subject cannot tell in advance which run has no service: after the run with the late service the others come in
-random order, with the same kinds of numbers and patience.
+The subject cannot tell in advance which run has no service: after the run with the late service, the others come in
+random order, with the same kinds of numbers and the same time limits.
 """
 
 from __future__ import annotations
@@ -64,11 +64,11 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
 
 CALL_LIMIT = 15.0
-"""Seconds of wall time within which a client with its service must finish."""
+"""Time limit in seconds of wall time for a client to finish once its service exists."""
 AFTERMATH = 1.0
-"""Seconds in which a client that has reported its sum may end, or go on and show what else it does."""
+"""Seconds for which a client that has reported its sum may continue, so that the judge sees what else it does."""
 SAYS_MORE = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
-"""Seconds for a client that has said something about its last answer, but not the sum, to say the sum."""
+"""Time limit in seconds for the sum, once a client has said something else about its last answer."""
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ def called_late(bench: Bench, run: Run, calls: int, lateness: float) -> bool:
 
 
 def called(bench: Bench, run: Run, calls: int, first: Part) -> bool:
-    """Make a run with a service that exists; ``first`` is the run with the late one.
+    """Make a run with a service that exists from the start; ``first`` is the run with the late service.
 
     Returns:
         True if the subject finished its work.
@@ -144,7 +144,7 @@ def called(bench: Bench, run: Run, calls: int, first: Part) -> bool:
 
 
 def _with_quick_answers(bench: Bench, run: Run, calls: int, done: bool) -> bool:
-    """End a run; before that, make it again if a patient client has missed an answer that was held back."""
+    """End a run. If a patient client has missed an answer that was held back, first make the run again."""
 
     def missed_an_answer(seen: Part) -> bool:
         return bool(run.held) and not reports(seen) and was_patient_with_an_answer(seen, ["request"])
@@ -184,9 +184,10 @@ def meets_service(
     if run.held and bench.wait_until(
         lambda seen: len(requests(seen.main)) >= run.held, CALL_LIMIT, quiet=HANGS_AFTER
     ):
-        # Any node on the graph may ask the client's node something meanwhile: that is not the answer.
+        # Meanwhile any node on the graph may send requests to the client's node, so an event is not necessarily the
+        # answer.
         bench.settle()
-        # Also if a person waits, one answer is as late as it may be: only a long wait shows a client's limit.
+        # Even if a person waits, one answer is as late as allowed, because only a long wait shows a client's limit.
         hold_back(bench, "request", run.held, ANSWERS_LATE if run.held == 1 else None)
         server.release()
     done = bench.wait_until(lambda seen: has_spoken(seen, calls), CALL_LIMIT, quiet=HANGS_AFTER)
@@ -225,7 +226,7 @@ def unserved(bench: Bench, numbers: Sequence[int]) -> None:
 
 
 def hidden(random: Random) -> int:
-    """Return a number from a range so large that a program cannot say all of it."""
+    """Return a number from a range that is so large that a program cannot print all of its numbers."""
     return random.randint(10**9, 10**12)
 
 
@@ -254,7 +255,7 @@ class Calls:
         runs: Draws the runs with a service: the late one, the one with hidden changes, the one with large numbers.
         kinds: Each draws numbers of one kind; the run without a service uses one of these kinds, too.
         wanted: The right calls, in words.
-        right: Returns the numbers of each right call, for a run with the right number of calls.
+        right: Returns the numbers of each right call of a run, if the run has the right number of calls.
     """
 
     roles = ("client",)
@@ -304,7 +305,7 @@ class Calls:
         return Finding(False, wanted, given + (", then ".join(made) or "no call"))
 
     def waits(self, evidence: Evidence) -> Finding:
-        """If the service comes late, the client calls anyway; another criterion judges the result."""
+        """Decide whether the client calls even if the service comes late; another criterion judges the result."""
         late = self.seen(evidence).late
         called = bool(requests(late))
         return Finding(called, "waits, then calls", "it did" if called else how_it_went(late))
@@ -315,13 +316,13 @@ class Calls:
         return next((count for count in counts if count > self.expected(evidence).calls), 0)
 
     def _wrong_numbers(self, evidence: Evidence) -> str:
-        """Return the calls, as many as the reference's, whose numbers are wrong."""
+        """Return those calls with wrong numbers, up to the reference's number of calls."""
         found = self.calls_right(evidence)
         as_many = self.seen(evidence).called(self.expected(evidence).calls)
         return found.seen if as_many and not found.passed else ""
 
     def _no_call(self, evidence: Evidence) -> bool:
-        """True if it ends by itself, with a client but without a call."""
+        """True if the subject ends by itself and has a client, but makes no call."""
         seen = self.seen(evidence)
         return seen.had_client and any(part.ending and not requests(part) for part in seen.served)
 
@@ -331,7 +332,7 @@ class Calls:
         return next((part for part in answered if self.is_right(part) and not reports(part)), None)
 
     def _another_sum(self, evidence: Evidence) -> tuple[int, str] | None:
-        """Return the last answer of that run, and the last line with another number."""
+        """Return the last answer of that run, and the last reported line that has a different number."""
         part = self._unreported(evidence)
         if part is None:
             return None
@@ -358,7 +359,7 @@ class Calls:
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:
-        """The common mistakes, most telling first."""
+        """The common mistakes, the most informative first."""
         return (
             WAIT.the_wrong_way_round(),
             *CRASHES,

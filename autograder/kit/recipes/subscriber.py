@@ -1,4 +1,4 @@
-"""A subscriber that says each text it hears: the judge sends texts that cannot be guessed, in two ways."""
+"""A subscriber that reports each text that it hears. The judge sends texts that cannot be guessed, in two ways."""
 
 from __future__ import annotations
 
@@ -19,25 +19,26 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part
 
 STEPS = 2
-"""Steps of simulated time from one text to the next: in each of them a listener takes what it was sent."""
+"""The number of steps of simulated time from one text to the next. In each step a listener takes what it was sent."""
 SIMULATED = 20
-"""The number of texts for a listener that follows simulated time, all sent at the pace."""
+"""The number of texts for a listener that follows simulated time, all of them sent at the given pace."""
 PATIENCE = {Pace.FAST: 1.0, Pace.REAL_TIME: 3.0}
-"""Seconds of wall time within which a text that was sent must have been said."""
+"""Time limit in seconds of wall time for a listener to report a text."""
 BEFORE = 1.0
-"""Seconds (simulated if it follows the clock) before the first text, in which nothing can have been heard."""
+"""Seconds before the first text, in which the listener can hear nothing; simulated if it follows the clock."""
 REPLACED = 2
-"""The number of replaced subscriptions which shows that a new one is made for each text."""
+"""The number of replaced subscriptions that shows that the listener makes a new one for each text."""
 AFTERMATH = 2.5
-"""Seconds (likewise) after the last text, in which nothing may be made up or repeated."""
+"""Seconds after the last text, in which the listener must invent or repeat nothing; simulated if it follows the clock.
+"""
 
 
 class Speaks:
-    """The recipe for a subscriber that says each text it hears, in any words of its own around it.
+    """The recipe for a subscriber that reports each text that it hears, with any words around it.
 
     Args:
-        pace: Seconds between two texts that follow each other, as from another node.
-        paced_by: The node that has this pace, in words for a student.
+        pace: Seconds between two successive texts, as another node would send them.
+        paced_by: The name of the node with this pace, in words for a student.
     """
 
     roles = ("subscription",)
@@ -47,7 +48,7 @@ class Speaks:
         self._step = pace / STEPS
 
     def scenario(self, bench: Bench) -> None:
-        """Send texts that no program can guess, some at the pace, some each after the one before was said."""
+        """Send texts that no program can guess: some at the pace, some each after the one before was reported."""
         topic, type_name = bench.reference.only("subscription")
         texts = random_texts(bench.random)
         bench.part("listening", texts=texts)
@@ -67,7 +68,8 @@ class Speaks:
         speaker.send(data=texts[0])
         simulated = bench.wait_until(_is_simulated, 0.0)
         if simulated:
-            # As long as between any two: the time of the next text must not depend on how soon this one is said.
+            # The pause is as long as any other: the time of the next text must not depend on how soon this one is
+            # reported.
             bench.run_time(self._pace, step=self._step)
         if not self._are_said(bench, texts[:1]):
             self._ask_once_more(bench, speaker, texts[1])
@@ -75,11 +77,11 @@ class Speaks:
         if simulated:
             return self._are_said_at_pace(bench, speaker, texts[1:SIMULATED])
         kept = any(self._are_said_at_pace(bench, speaker, row) for row in _rows(texts))
-        # If it missed some at that pace, two more tell whether it says texts for which it gets enough time.
+        # If it missed some at that pace, two more texts show whether it reports texts for which it gets enough time.
         return all(self._is_answered(bench, speaker, text) for text in texts[-SINGLY:][: None if kept else 2])
 
     def _ask_once_more(self, bench: Bench, speaker: Speaker, text: str) -> None:
-        """Send one more text to a listener that has said nothing: it may say the one before."""
+        """Send one more text to a listener that has reported nothing, because it may report the text before."""
         first = bench.seen().first("sent")
         if not bench.seen().said(after=first):
             speaker.send(data=text)
@@ -102,21 +104,21 @@ class Speaks:
             return True
         if not bench.wait_until(_is_simulated, 0.0):
             return False
-        # A listener may use a timer of its own to say what it has heard.
+        # A listener may use its own timer to report what it has heard.
         bench.run_time(PATIENCE[bench.pace], until=lambda: bench.wait_until(said, 0.0), step=self._step)
         return bench.wait_until(said, PATIENCE[bench.pace])
 
     def seen(self, evidence: Evidence) -> Part:
-        """The subject, as it was seen."""
+        """The subject, as the judge saw it."""
         return evidence.main
 
     def expected(self, evidence: Evidence) -> Part:
-        """The same: the expected texts are drawn again each time."""
+        """The reference, which is the same as the subject: the expected texts are drawn again each time."""
         return evidence.main
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:
-        """The common mistakes, most telling first."""
+        """The common mistakes, the most informative first."""
         return (
             unfinished.NEVER_CONSTRUCTED,
             *common.connecting("subscription"),
@@ -134,7 +136,7 @@ class Speaks:
         )
 
     def _too_slow(self, evidence: Evidence) -> Advice | None:
-        """The listener says a text if it gets enough time, but misses texts that come at the pace."""
+        """The listener reports a text if it gets enough time, but misses texts that come at the pace."""
         texts, missing = list(evidence.main.inputs.get("texts", ())), _missing(evidence)
         singly = [event for event in _sent(evidence) if _text(event) in texts[-SINGLY:]]
         if _is_simulated(evidence) or not singly or not missing or any(event in singly for event in missing):
@@ -222,13 +224,13 @@ def _missing(evidence: Evidence) -> list[Event]:
 
 
 def _replaced(evidence: Evidence) -> int:
-    """Return the number of its subscriptions that were replaced by another one since the first text was sent."""
+    """Return the number of its subscriptions that another subscription replaced after the first text was sent."""
     sent, part = _sent(evidence), evidence.main
     if not sent:
         return 0
     met = [event.data for event in part.of("matched", sent[0].name) if _is_before(part, sent[0], event)]
     gone = [data["count"] - data.get("now", data["count"]) for data in met]
-    # One that disappeared at the end of the program has no successor.
+    # A subscription that disappeared at the end of the program has no successor.
     return max((gone[i] for i in range(len(met) - 1) if met[-1]["count"] > met[i]["count"]), default=0)
 
 
@@ -238,7 +240,7 @@ def _expected_texts(evidence: Evidence) -> int:
 
 
 def says_every_text(evidence: Evidence) -> Finding:
-    """Each text that was sent is said afterwards."""
+    """Decide whether each text that was sent is reported afterwards."""
     sent, missing = _sent(evidence), _missing(evidence)
     topic, _ = evidence.reference.only("subscription")
     no_subscriber = f"no node subscribed to {topic}, so nothing was sent"
@@ -256,7 +258,7 @@ def says_every_text(evidence: Evidence) -> Finding:
 
 
 def says_nothing_else(evidence: Evidence) -> Finding:
-    """The listener says no text that was never sent, and none repeatedly."""
+    """Decide whether the listener reports no text that was never sent, and none repeatedly."""
     sent = _sent_texts(evidence)
     heard_any = any(is_said(text, evidence.main) for text in sent)
     made_up, again = invented(evidence.main, sent), repeated(evidence.main, sent)
@@ -277,7 +279,7 @@ def _most_often(again: Mapping[str, int]) -> tuple[str, int]:
 
 
 def _said_again(evidence: Evidence) -> Advice | None:
-    """The listener says texts more often than they were sent."""
+    """The listener reports texts more often than they were sent."""
     sent = _sent_texts(evidence)
     again = repeated(evidence.main, sent)
     if not again and retold(evidence.main, sent):
@@ -297,7 +299,7 @@ def _said_again(evidence: Evidence) -> Advice | None:
 
 
 def _changed_text(evidence: Evidence) -> Advice | None:
-    """The listener says some texts with changes."""
+    """The listener reports some texts with changes."""
     part, sent = evidence.main, _sent(evidence)
     for event in _missing(evidence):
         later = sent[sent.index(event) + 1 :][:1]
@@ -325,7 +327,7 @@ def _subscribes_again(evidence: Evidence) -> Advice | None:
 
 
 def _not_logged(evidence: Evidence) -> Advice | None:
-    """The listener is subscribed and was sent texts, but says none of them."""
+    """The listener is subscribed and was sent texts, but reports none of them."""
     topic, _ = evidence.reference.only("subscription")
     part, sent = evidence.main, _sent(evidence)
     silent = next(iter(_missing(evidence)), None)
@@ -358,7 +360,7 @@ def _not_logged(evidence: Evidence) -> Advice | None:
 
 
 def _invented_text(evidence: Evidence) -> Advice | None:
-    """The listener says texts that were never sent."""
+    """The listener reports texts that were never sent."""
     made_up = invented(evidence.main, _sent_texts(evidence))
     if not made_up:
         return None
