@@ -195,7 +195,7 @@ class Kernel:
         return Ended.TOO_MUCH_OUTPUT if self._desk_failed else why
 
     def _died(self) -> Ended:
-        """Take what the kernel has said before its end, and return how this end counts for the cell."""
+        """Record the kernel's last outputs. Return how the end of the kernel counts for the cell."""
         self.kill()  # also the programs that it has started and that hold its sockets open
         if not self._desk_failed:
             self._ask(Do.DRAIN, wall_time(_DESK_SECONDS), of_living=False)
@@ -206,7 +206,7 @@ class Kernel:
     def _ask(
         self, do: Do, left: Left, cell: int = 0, source: str = "", *, of_living: bool = True
     ) -> Said | None:
-        """Give the desk an order, and return its answer; None if none comes (:meth:`_await_answer`)."""
+        """Send an order to the desk, and return its answer; None if there is no answer (:meth:`_await_answer`)."""
         self._sent += 1
         try:
             self._lines.say_json(msgspec.json.encode(Order(self._sent, do, cell, source)))

@@ -1,4 +1,4 @@
-"""How a launch reports its processes to the judge, one line of JSON for each, and what their command lines say."""
+"""Reads a launch's reports on its processes, one line of JSON for each, and the rules in their command lines."""
 
 from __future__ import annotations
 

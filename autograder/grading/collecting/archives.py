@@ -1,4 +1,4 @@
-"""The files of zips and folders. A desk unpacks archives within limits; here only what comes out of it is read.
+"""The files in zips and folders. A desk unpacks archives within limits; this module reads only the desk's output.
 
 At the desk, :mod:`autograder.grading.collecting.unpack` writes all files of an archive into one file on the disk.
 Here a name is only text, bytes are read up to the limit of a notebook, and whatever cannot be taken has a reason.

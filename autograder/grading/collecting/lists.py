@@ -75,7 +75,7 @@ def _entries(form: ListForm, records: list[dict[str, str]]) -> Iterator[Entry]:
 
 
 def _of_gradescope(data: bytes) -> list[Entry] | None:
-    """Read ``submission_metadata.yml``, which has for each submission's folder the student and the time."""
+    """Read ``submission_metadata.yml``, which contains the student and the time for each submission's folder."""
     try:
         # Every value stays text: no number loses its zeros, and no text gets longer than it was typed.
         found = yaml.load(data, Loader=getattr(yaml, "CBaseLoader", yaml.BaseLoader))

@@ -88,7 +88,7 @@ def own_of(paths: Sequence[Path], student_of: StudentOf) -> set[Path]:
 
 
 def source_of(path: Path, archives: Archives, *, is_own: bool) -> Source:
-    """A file or folder with all its files."""
+    """Return a file or folder as a source, with all its files."""
     return Source(path, tuple(archives.files_of(path, is_opened=not is_own)), is_own)
 
 

@@ -63,7 +63,7 @@ class History:
     """The files that were collected from one student for one assignment.
 
     Attributes:
-        now: The content of ``submitted``, by notebook.
+        now: The files that are in ``submitted`` now, by notebook.
         replaced: The hashes of files that are being replaced, by notebook, while a command is at work.
     """
 

@@ -77,7 +77,7 @@ class Waiting:
 
     @property
     def cell(self) -> str:
-        """The cell that a person edits; empty if the table has no such line."""
+        """Return which cell a person has to edit; empty if the table has no such line."""
         return f" ({NAME}, line {self.line}, cell {cell_in(self.reason) or 'use'})" if self.line else ""
 
     @property

@@ -1,4 +1,4 @@
-"""Unpacks one archive. Runs at a desk: what an archive says is believed by that process alone.
+"""Unpacks one archive. It runs at a desk, because only that process relies on what the archive says.
 
 The answer has, for each file, a line of JSON and the bytes of the file. The line has the size, and the names: one for
 each archive in another. If a file is not taken, the line has the reason.

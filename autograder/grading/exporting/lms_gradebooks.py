@@ -64,7 +64,7 @@ def moodle_worksheet(table: ClassTable, records: CollectedRecords, assignment: s
 def filled_in(
     data: bytes, lms: str, table: ClassTable, assignments: Sequence[str], columns: Mapping[str, str]
 ) -> tuple[bytes, list[str], list[str], list[str]]:
-    """Fill the points into a list from the LMS, and leave everything else in it unchanged.
+    """Fill points into a list that an LMS exported, and leave everything else in the list unchanged.
 
     Points that are already in the list stay if the class has none for the student.
 
@@ -162,7 +162,7 @@ _KINDS = ("number", "login", "name")
 
 
 def _open_columns(header: Sequence[str], rows: Sequence[Sequence[str]], kind: ListForm) -> list[int]:
-    """Return the indexes of the columns that take points for an assignment.
+    """Return the indexes of the columns that can take the points of an assignment.
 
     The other columns are recognized as follows. In the line *Points Possible*, Canvas writes ``(read only)`` into
     each column that it computes itself. Gradescope writes a column ``… - Max Points`` for each assignment.
@@ -231,7 +231,7 @@ def _check_one_each(places: Mapping[str, int], header: Sequence[str]) -> None:
 
 
 def _who(table: ClassTable, kind: ListForm, values: Sequence[str]) -> tuple[Student, int] | None:
-    """Return the student of a line, and the rank of the value that matched; a low rank is a strong match."""
+    """Return the student of a line, and the rank of the matching value; a lower rank is a more certain match."""
     columns: list[tuple[str, tuple[str, ...]]] = [(value, _KINDS) for value in values]
     if kind.is_numbered:
         # A number of the LMS may be another student's id in the class, so it is compared with ids last.

@@ -38,7 +38,7 @@ def blank(score: float | None) -> float | str:
 
 
 def csv_rows(data: bytes) -> tuple[list[list[str]], str]:
-    """Return the rows of a table as a system or a spreadsheet has saved it, and the separator of its cells.
+    """Return the rows of a table that a system or a spreadsheet saved, and the separator of its cells.
 
     Commas, semicolons and tabs separate cells; the text is in UTF-8, in UTF-16 or, from Excel, in the encoding of
     Western European systems. The cells are as they stand there; :func:`original` is their text.
