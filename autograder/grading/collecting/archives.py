@@ -1,7 +1,8 @@
-"""The files in zips and folders. A desk unpacks archives within limits; this module reads only the desk's output.
+"""The files in zips and folders. An archive is unpacked at a desk with limits; this module reads only the answer.
 
 At the desk, :mod:`autograder.grading.collecting.unpack` writes all files of an archive into one file on the disk.
-Here a name is only text, bytes are read up to the limit of a notebook, and whatever cannot be taken has a reason.
+Here, a name is only text, bytes are read up to the size limit of a notebook, and each file that cannot be taken gets
+a reason.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ whole repository does not affect other students.
 _DEEPEST = 3
 """The maximum nesting of archives: an archive that a student handed in, one inside it, and so on."""
 _DEEPEST_FOLDER = 100
-"""Folders in each other; Python looks into no more than some hundreds."""
+"""The maximum nesting of folders. Python can follow no more than some hundreds."""
 _LEADS_OUT = "its name leads out of the archive"
 _TOO_LONG = f"its name has more than {LONGEST_NAME} characters"
 
@@ -90,10 +91,10 @@ class _Unpacked:
 
 
 class Archives:
-    """Opens archives. What was unpacked is there until the end.
+    """Opens archives. What was unpacked is kept until the end.
 
     Args:
-        disk: A folder on the disk that has room for what is unpacked.
+        disk: A folder on a disk with enough space for what is unpacked.
     """
 
     def __init__(self, disk: Path) -> None:
@@ -107,11 +108,12 @@ class Archives:
         self._stack.close()
 
     def files_of(self, source: Path, *, is_opened: bool = True) -> Iterator[File]:
-        """The files of an archive, of a folder, or the file itself; one that cannot be read says so when it is read.
+        """Yield the files in an archive or folder, or the file itself. An unreadable file raises only when it is read.
 
         Args:
-            source: A file or folder that the instructor named. It may be a link; nothing below it may.
-            is_opened: Whether an archive is opened here; otherwise it is a file, as in a download.
+            source: A file or folder that the instructor named. It may itself be a link, but links below it are not
+                followed.
+            is_opened: True to open an archive here; False to treat it as a file, as inside a download.
         """
         counts: Counter[tuple[str, ...]] = Counter()
         levels = 2 + _has_one_folder_around_all(source)
@@ -161,7 +163,7 @@ class Archives:
 def _unpacked(
     archive: int, room: Room, depth: int, out: IO[bytes]
 ) -> Iterator[tuple[tuple[str, ...], Callable[[], bytes]]]:
-    """Unpack an archive; the names that lead to each file, and what reads it."""
+    """Unpack an archive. Yield, for each file, the names that lead to it and a function that reads it."""
     most = max(room.unpacked, 0) + max(room.files + 1, 1) * LONGEST_LINE
     code = unpack(archive, out.fileno(), (depth, room.files, room.unpacked, MAX_BYTES), most)
     if code in (errno.ENOSPC, errno.EDQUOT):

@@ -88,7 +88,7 @@ def _is_ordinary(one: zipfile.ZipInfo) -> bool:
 
 
 class Unpacking:
-    """Unpacks an archive and those in it, within limits that they share.
+    """Unpacks an archive, and the archives in it, within common limits.
 
     Args:
         answer: The descriptor of the file for what is unpacked.
@@ -151,13 +151,13 @@ class Unpacking:
             self._tell(names, data)
 
     def _tell(self, names: Sequence[str], data: bytes = b"", reason: str = "") -> None:
-        """Write a file, or why it is not taken."""
+        """Write a file, or the reason why it is not taken."""
         line = json.dumps({"names": names, "size": len(data), "reason": reason}).encode()
         write(self._answer, line + b"\n" + data)
 
 
 def write(answer: int, data: bytes) -> None:
-    """Write an answer; if that is impossible, end the process with the number of the error."""
+    """Write an answer. If writing fails, end the process with the error's number."""
     left = memoryview(data)
     while left:
         try:

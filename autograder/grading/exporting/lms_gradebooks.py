@@ -76,8 +76,9 @@ def filled_in(
         columns: For assignments whose column in the list has another name, that name.
 
     Returns:
-        The list; the lines that match no student of the class; the lines that may mean a student for whom another
-        line is at least as good (in an LMS, users name themselves); and the columns that identify a student.
+        Four results: the list; the lines that match no student of the class; the lines that may mean a student for
+        whom another line is at least as good (in an LMS, users name themselves); and the columns that identify a
+        student.
 
     Raises:
         GradingError: The list cannot be read, is of an unknown kind or from another system, or has no column that
