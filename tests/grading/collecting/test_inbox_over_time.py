@@ -153,10 +153,14 @@ def test_no_cell_runs_and_a_spreadsheet_changes_nothing_by_saving(
         "März 3.ipynb",
     ]
     files = {f"007/{name}": work(klass, place) for place, name in enumerate(names)}
+    # The name in the system is a cell of its own, and its number must stay a text.
+    called = ("=1+1", "@SUM(A1)", "+1-2", "-2+3", "März 3", "true")
+    files |= {f"{name}_0031_assignsubmission_file_lab_1_2.ipynb": work(klass) for name in called}
     collect(klass.path, [write_zip(tmp_path / "f.zip", files)])
     text = (klass.path / "collected.csv").read_text(encoding="utf-8-sig")
     for line in csv.reader(io.StringIO(text)):
         assert not [cell for cell in line if cell[:1] in tuple("=+-@\t\r")]
+        assert not {"0031", "März 3", "true"} & set(line)
     before = outcome(klass)
     save(klass, *read(klass), separator, letters)
     report = collect(klass.path)
