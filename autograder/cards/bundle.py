@@ -13,7 +13,7 @@ from importlib.resources import files
 from typing import TYPE_CHECKING, Any, Unpack
 
 from autograder.cards import wording
-from autograder.cards.card import ON_A_PAGE, Card, Choices
+from autograder.cards.card_content import ON_A_PAGE, Card, Choices
 from autograder.cards.readable import one_line
 from autograder.cards.text import card_text
 from autograder.cards.timeline_layout import HALF_WIDTH, WIDTH, Picture, picture

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Unpack
 
 from autograder.cards import wording
-from autograder.cards.card import IN_A_TERMINAL, Card, Choices, CriterionRow, Solution
+from autograder.cards.card_content import IN_A_TERMINAL, Card, Choices, CriterionRow, Solution
 from autograder.cards.differences import marked
 from autograder.cards.readable import one_line, wrap
 from autograder.cards.readable import width as columns

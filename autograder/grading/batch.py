@@ -20,9 +20,9 @@ from rich.console import Console
 
 from autograder.grading.batch_work import AskedFor, Work, find_work, without_grade, would_change
 from autograder.grading.class_store import ClassStore
+from autograder.grading.classes.changed_masters import news
 from autograder.grading.classes.class_directory import ClassDirectory, RefusedFile, Submission
 from autograder.grading.classes.configuration import check_configuration, limits_of
-from autograder.grading.classes.origins import news
 from autograder.grading.classes.timestamps import handed_in_at
 from autograder.grading.collecting.beside_its_place import beside_their_place, put_right
 from autograder.grading.errors import MasterUnusable, is_disk_full

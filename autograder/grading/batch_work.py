@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import RefusedFile
 from autograder.grading.classes.timestamps import handed_in_at, is_not_believed
-from autograder.grading.collecting.table import NAME, Table
+from autograder.grading.collecting.collected_csv import NAME, Table
 from autograder.grading.errors import MasterUnusable, check_known, course_command
 from autograder.grading.gradebooks.gradebook_reading import CellEntry, SubmissionEntry, read_due_dates
 from autograder.grading.reporting.rows import LATE, Row

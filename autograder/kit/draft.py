@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
+from autograder.kit.mistakes.unfinished import constructor_remark
 from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Mistake
-from autograder.kit.unfinished import constructor_remark
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

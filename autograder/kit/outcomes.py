@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.crashes import on_purpose, raised_lines
-from autograder.kit.goals_seen import STATUS
+from autograder.kit.mistakes.crashes import on_purpose, raised_lines
 from autograder.kit.model import Advice
+from autograder.kit.reading.goals_seen import STATUS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import re2
 
+from autograder.kit.mistakes.names_in_tracebacks import own_line
 from autograder.kit.model import Advice, Mistake, Pace
-from autograder.kit.quoted_names import own_line
 from autograder.kit.workspace_report import BUILDING, report_of
 
 if TYPE_CHECKING:

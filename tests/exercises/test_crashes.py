@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from autograder.kit.crashes import CRASHES, OTHER_CRASHES, meant, traceback_of
 from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, meant, traceback_of
 from autograder.verdict import ASKS_FOR_INPUT
 
 NO_CONTEXT = "object does not support the context manager protocol"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
-from autograder.kit.hangs import HANGS
+from autograder.kit.mistakes.hangs import HANGS
 
 RCLPY = "/venv/lib/python3.11/site-packages/rclpy"
 WAIT = '  File "/usr/lib/python3.11/threading.py", line 320 in wait'

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from autograder.kit.evidence import INTERRUPTED, Event, Evidence, Part, Reference
-from autograder.kit.goal_mistakes import NOT_RETURNED
-from autograder.kit.goal_reports import (
+from autograder.kit.mistakes.goal_mistakes import NOT_RETURNED
+from autograder.kit.reading.goal_reports import (
     ABORTED,
     LATE,
     REFUSED,

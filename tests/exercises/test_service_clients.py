@@ -13,10 +13,9 @@ from lab_1_3 import client as lab_1_3_client
 
 from autograder.judge.verdicts import reference, trial
 from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.mistakes.service_client_mistakes import NOT_RETURNED
 from autograder.kit.model import Pace
-from autograder.kit.recipes import service_client
-from autograder.kit.recipes.service_client import Run, answering, has_spoken, is_done
-from autograder.kit.service_calls import (
+from autograder.kit.reading.service_calls import (
     ABSENT,
     BIASED,
     CALLED,
@@ -27,8 +26,9 @@ from autograder.kit.service_calls import (
     gives_up_in_time,
     reports,
 )
-from autograder.kit.service_client_mistakes import NOT_RETURNED
-from autograder.kit.texts_said import mentions
+from autograder.kit.reading.texts_said import mentions
+from autograder.kit.recipes import service_client
+from autograder.kit.recipes.service_client import Run, answering, has_spoken, is_done
 
 SEEDS = range(60)
 REFERENCE = reference.load("lab_1_3.client")

@@ -7,7 +7,7 @@ import pytest
 from autograder import exercises
 from autograder.judge.verdicts import reference, trial
 from autograder.kit.evidence import Event, Evidence, Part
-from autograder.kit.unfinished import NOTHING_THERE
+from autograder.kit.mistakes.unfinished import NOTHING_THERE
 from autograder.kit.workspace_report import WorkspaceReport, as_line
 
 

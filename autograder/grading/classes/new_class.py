@@ -19,6 +19,7 @@ from nbgrader.coursedir import CourseDirectory
 
 from autograder.boxes.limits import Limits
 from autograder.grading.class_store import ClassStore
+from autograder.grading.classes.changed_masters import note_origins
 from autograder.grading.classes.class_directory import (
     CONFIG_NAME,
     COURSE_NAME,
@@ -27,7 +28,6 @@ from autograder.grading.classes.class_directory import (
     ClassDirectory,
     refuse_students_folder,
 )
-from autograder.grading.classes.origins import note_origins
 from autograder.grading.classes.seeds import create_secret
 from autograder.grading.errors import ClassExists, GradingError, clear_disk_errors, course_command
 from autograder.grading.gradebooks.writer import quiet

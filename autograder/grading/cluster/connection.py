@@ -7,7 +7,7 @@ import importlib.util
 import re  # noqa: TID251  (an instructor's address)
 from typing import TYPE_CHECKING
 
-from autograder.grading.cluster.link import ClientLink
+from autograder.grading.cluster.client_link import ClientLink
 from autograder.grading.errors import GradingError
 from autograder.grading.running.dispatcher import Dispatcher
 from environment.installation import installing

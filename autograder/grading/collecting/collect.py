@@ -10,6 +10,7 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.apply import Submitted
 from autograder.grading.collecting.archives import Archives, File, NotTaken, Room
 from autograder.grading.collecting.assignment_of import AssignmentOf
+from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.decide import Decision, decide
 from autograder.grading.collecting.desk import read_list, without_sandbox
 from autograder.grading.collecting.handed_out import HandedOut
@@ -20,7 +21,6 @@ from autograder.grading.collecting.older_class import take_over
 from autograder.grading.collecting.outcomes import CollectReport, Outcome, State
 from autograder.grading.collecting.proposals import Edit, Proposals, entries_of, in_utc, list_trouble
 from autograder.grading.collecting.student_of import StudentOf
-from autograder.grading.collecting.table import Table
 from autograder.grading.collecting.unpack import is_archive
 from autograder.grading.errors import GradingError, check_known
 from autograder.grading.rebuilding.desk import why_unreadable

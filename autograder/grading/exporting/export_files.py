@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.errors import GradingError, check_known, clear_place_errors, course_command
-from autograder.grading.exporting import feedback_zips, lms_gradebooks, sheets
+from autograder.grading.exporting import class_workbook, feedback_zips, lms_gradebooks
 from autograder.grading.exporting.layouts import LAYOUTS, gradebook
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.grading.table.class_table import ClassTable, read_table
@@ -114,9 +114,9 @@ def _files(
 ) -> Iterator[tuple[str, bytes, str]]:
     records = CollectedRecords(directory.state)
     if to == "csv":
-        yield "students.csv", sheets.as_csv(table, assignments), "a line for each student"
+        yield "students.csv", class_workbook.as_csv(table, assignments), "a line for each student"
     elif to == "xlsx":
-        yield "grades.xlsx", sheets.as_xlsx(table, assignments), "sheets of students and of exercises"
+        yield "grades.xlsx", class_workbook.as_xlsx(table, assignments), "sheets of students and of exercises"
     elif to in LAYOUTS:
         text = gradebook(to, table, records, assignments)
         yield f"{to}.csv", text.encode(), LAYOUTS[to].purpose

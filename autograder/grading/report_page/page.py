@@ -11,7 +11,7 @@ from autograder.cards.page_templates import page_templates
 from autograder.cards.readable import one_line, printable
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.collecting.table import Table
+from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.errors import GradingError, clear_disk_errors, clear_place_errors
 from autograder.grading.report_page import statistics as figures
 from autograder.grading.reporting.rows import DROPPED, EXCUSED, columns, remarks_on

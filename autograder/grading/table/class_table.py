@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from autograder.grading.class_store import ClassStore
-from autograder.grading.collecting.table import Table, Waiting
+from autograder.grading.collecting.collected_csv import Table, Waiting
 from autograder.grading.errors import MasterUnusable
 from autograder.grading.gradebooks.gradebook_reading import Entries, read_entries
 from autograder.grading.rebuilding.fingerprints import Fingerprints

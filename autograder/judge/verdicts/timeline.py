@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import re2
 
 from autograder.kit.evidence import spoken_by
-from autograder.kit.goals_seen import STATUS
+from autograder.kit.reading.goals_seen import STATUS
 from autograder.kit.workspace_report import build_ended
 from autograder.verdict import Moment
 

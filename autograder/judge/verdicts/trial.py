@@ -17,8 +17,8 @@ from autograder.judge.verdicts.exercise_code import of_exercise
 from autograder.judge.verdicts.misnamed import misnamed
 from autograder.kit.evidence import Evidence, Reference
 from autograder.kit.in_words import of_its_kind, shortened, visible
+from autograder.kit.mistakes.workspace_mistakes import changed_since_build
 from autograder.kit.model import Advice, Exercise, Finding, Mistake, Pace
-from autograder.kit.workspace_mistakes import changed_since_build
 from autograder.verdict import CriterionResult, Diagnosis, State, Verdict
 
 if TYPE_CHECKING:

@@ -12,10 +12,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from autograder.kit import common_mistakes as common
-from autograder.kit import goal_mistakes as goals
-from autograder.kit import unfinished
-from autograder.kit.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
 from autograder.kit.draft import SeenAsItIs
 from autograder.kit.giving_up import (
     LATENESS,
@@ -25,8 +21,6 @@ from autograder.kit.giving_up import (
     await_it,
     drawn_patience,
 )
-from autograder.kit.goal_reports import ABORTED, ABSENT, FEEDBACKS, LATE, REFUSED, WAIT, unshown_feedback
-from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import (
     ANSWERS_LATE,
     ANSWERS_SOON,
@@ -43,7 +37,21 @@ from autograder.kit.lateness import (
     meets_present,
     missed_a_result,
 )
+from autograder.kit.mistakes import common_mistakes as common
+from autograder.kit.mistakes import goal_mistakes as goals
+from autograder.kit.mistakes import unfinished
+from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
+from autograder.kit.mistakes.hangs import HANGS
 from autograder.kit.model import Bench, Mistake, Pace
+from autograder.kit.reading.goal_reports import (
+    ABORTED,
+    ABSENT,
+    FEEDBACKS,
+    LATE,
+    REFUSED,
+    WAIT,
+    unshown_feedback,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -6,19 +6,19 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit import common_mistakes as common
-from autograder.kit import unfinished
-from autograder.kit.crashes import CRASHES, OTHER_CRASHES, raised, traceback_of
 from autograder.kit.draft import OWN, OWN_LATE, SeenAsItIs
-from autograder.kit.goals_seen import ABORTED, CANCELED, all_goals, status_text
+from autograder.kit.mistakes import common_mistakes as common
+from autograder.kit.mistakes import unfinished
+from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, raised, traceback_of
 from autograder.kit.model import Advice, Mistake
+from autograder.kit.reading.goals_seen import ABORTED, CANCELED, all_goals, status_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from autograder.kit.evidence import Evidence
-    from autograder.kit.goals_seen import Goal
     from autograder.kit.model import Bench
+    from autograder.kit.reading.goals_seen import Goal
 
 AT_ONCE = 0.3
 """Seconds: a server that computes many numbers within this time takes no time for each."""

@@ -14,10 +14,10 @@ import re2
 
 from autograder.kit.in_words import counted, first_difference
 from autograder.kit.model import Advice, Finding
-from autograder.kit.published_texts import counters, template
+from autograder.kit.reading.published_texts import counters, template
 
 if TYPE_CHECKING:
-    from autograder.kit.published_texts import Publisher
+    from autograder.kit.reading.published_texts import Publisher
 
 _UNFILLED = re2.compile(r"\{[^{}]*\}|%[ds]|\(?\bself\.\w+\)?")
 

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit import workspace_mistakes as workspace
-from autograder.kit.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.evidence import Evidence
 from autograder.kit.launch_report import Process, as_run, processes, remappings
+from autograder.kit.mistakes import workspace_mistakes as workspace
+from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.model import Advice, Bench, Mistake, Pace
 from autograder.kit.runners import ALONE
 from autograder.kit.workspace_report import BUILDING, report_of

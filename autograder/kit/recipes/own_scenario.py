@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from autograder.kit import common_mistakes as common
-from autograder.kit import unfinished
-from autograder.kit.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.draft import OWN, OWN_LATE, SeenAsItIs
 from autograder.kit.evidence import Event
-from autograder.kit.hangs import HANGS
+from autograder.kit.mistakes import common_mistakes as common
+from autograder.kit.mistakes import unfinished
+from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
+from autograder.kit.mistakes.hangs import HANGS
 from autograder.kit.model import Finding
 
 if TYPE_CHECKING:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, cast
 import re2
 
 from autograder.kit import package_programs as package
-from autograder.kit import unfinished
-from autograder.kit import workspace_mistakes as workspace
-from autograder.kit.crashes import traceback_of
 from autograder.kit.evidence import INTERRUPTED, Evidence, Part
+from autograder.kit.mistakes import unfinished
+from autograder.kit.mistakes import workspace_mistakes as workspace
+from autograder.kit.mistakes.crashes import traceback_of
 from autograder.kit.model import Advice, Bench, Criterion, Exercise, Finding, Mistake, Pace
 from autograder.kit.runners import RunsPrograms
 from autograder.kit.workspace_report import report_of

@@ -6,13 +6,13 @@ from itertools import pairwise
 from statistics import median
 from typing import TYPE_CHECKING
 
-from autograder.kit import common_mistakes as common
-from autograder.kit import unfinished
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.in_words import counted
+from autograder.kit.mistakes import common_mistakes as common
+from autograder.kit.mistakes import unfinished
 from autograder.kit.model import STEP, Advice, Bench, Finding, Mistake, Pace
-from autograder.kit.published_texts import Publisher
 from autograder.kit.rate import ROW, Rate, burst_at_the_start, confirmed, rate_of, simulated
+from autograder.kit.reading.published_texts import Publisher
 from autograder.kit.recipes import counting
 
 if TYPE_CHECKING:

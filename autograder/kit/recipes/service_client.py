@@ -20,12 +20,9 @@ from typing import TYPE_CHECKING, Any
 
 import re2
 
-from autograder.kit import common_mistakes as common
-from autograder.kit import giving_up, service_client_mistakes, unfinished
-from autograder.kit.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
+from autograder.kit import giving_up
 from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.giving_up import LATENESS, PATIENCE, drawn_patience
-from autograder.kit.hangs import HANGS
 from autograder.kit.lateness import (
     ANSWERS_LATE,
     again_while,
@@ -38,8 +35,12 @@ from autograder.kit.lateness import (
     meets_present,
     was_patient_with_an_answer,
 )
+from autograder.kit.mistakes import common_mistakes as common
+from autograder.kit.mistakes import service_client_mistakes, unfinished
+from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
+from autograder.kit.mistakes.hangs import HANGS
 from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace, mistake
-from autograder.kit.service_calls import (
+from autograder.kit.reading.service_calls import (
     ABSENT,
     HANGS_AFTER,
     LATE,
@@ -55,7 +56,7 @@ from autograder.kit.service_calls import (
     reports,
     requests,
 )
-from autograder.kit.texts_said import mentions
+from autograder.kit.reading.texts_said import mentions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence

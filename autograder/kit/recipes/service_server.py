@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from autograder.kit import common_mistakes as common
-from autograder.kit import unfinished
 from autograder.kit.draft import OWN, OWN_LATE
+from autograder.kit.mistakes import common_mistakes as common
+from autograder.kit.mistakes import unfinished
 from autograder.kit.model import Bench, Finding, Mistake, Pace
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from autograder import course
 from autograder.cards import bundle
-from autograder.cards.card import Solution
+from autograder.cards.card_content import Solution
 from autograder.cards.wording import duration
 from autograder.messages.checks import SOCKET_VARIABLE
 from autograder.notebook.cells.cell_output import notebook_shell

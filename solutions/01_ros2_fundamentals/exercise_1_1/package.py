@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from exercise_1_1 import remap
 
-from autograder.kit import workspace_mistakes as workspace
+from autograder.kit.mistakes import workspace_mistakes as workspace
 from autograder.kit.model import Advice, Criterion, Finding, Mistake
 from autograder.kit.package_programs import package_name, package_of
 from autograder.kit.runners import LaunchesFromPackage

@@ -21,11 +21,11 @@ from exercise_1_3._cancel_evidence import (
     unreported_end,
 )
 
-from autograder.kit import goal_mistakes
-from autograder.kit.common_mistakes import AWAITS_IN_VAIN, only_if_ended, went_deaf
-from autograder.kit.crashes import meant
-from autograder.kit.hangs import HANGS
 from autograder.kit.in_words import counted
+from autograder.kit.mistakes import goal_mistakes
+from autograder.kit.mistakes.common_mistakes import AWAITS_IN_VAIN, only_if_ended, went_deaf
+from autograder.kit.mistakes.crashes import meant
+from autograder.kit.mistakes.hangs import HANGS
 from autograder.kit.model import Advice, Mistake
 
 if TYPE_CHECKING:

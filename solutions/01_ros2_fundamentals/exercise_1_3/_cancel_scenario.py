@@ -25,7 +25,6 @@ from exercise_1_3._cancel_evidence import (
     request_of,
 )
 
-from autograder.kit.goal_reports import REFUSED
 from autograder.kit.lateness import (
     ANSWERS_SOON,
     SOON,
@@ -36,6 +35,7 @@ from autograder.kit.lateness import (
     meets_present,
 )
 from autograder.kit.model import Bench, Pace
+from autograder.kit.reading.goal_reports import REFUSED
 from autograder.kit.recipes.action_client import refuse
 
 if TYPE_CHECKING:

@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit import giving_up, unfinished
-from autograder.kit.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS, meant
+from autograder.kit import giving_up
 from autograder.kit.draft import OWN, OWN_LATE, Draft
 from autograder.kit.giving_up import LATENESS, PATIENCES
 from autograder.kit.lateness import SOON, was_patient
+from autograder.kit.mistakes import unfinished
+from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS, meant
 from autograder.kit.model import Advice, Bench, Finding, Pace
 from autograder.kit.recipes.own_scenario import OwnLadder
 

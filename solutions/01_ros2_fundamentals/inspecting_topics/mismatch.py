@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import re2
 
-from autograder.kit.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.draft import OWN, Draft
 from autograder.kit.evidence import Evidence
+from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.model import Advice, Bench, Finding, Pace
 from autograder.kit.recipes.own_scenario import OwnLadder
 

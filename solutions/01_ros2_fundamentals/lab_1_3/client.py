@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.kit import service_calls
 from autograder.kit.draft import Draft
-from autograder.kit.recipes.service_client import Calls, Run, hidden
-from autograder.kit.service_calls import (
+from autograder.kit.reading import service_calls
+from autograder.kit.reading.service_calls import (
     BIASED,
     EXTREME,
     LATE,
 )
+from autograder.kit.recipes.service_client import Calls, Run, hidden
 
 if TYPE_CHECKING:
     from random import Random

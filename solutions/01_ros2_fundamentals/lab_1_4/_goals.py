@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from autograder.kit import goals_seen
-from autograder.kit.goals_seen import ABORTED, CANCELED, SUCCEEDED, Goal, status_text
+from autograder.kit.reading import goals_seen
+from autograder.kit.reading.goals_seen import ABORTED, CANCELED, SUCCEEDED, Goal, status_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

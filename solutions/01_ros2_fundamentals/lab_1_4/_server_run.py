@@ -30,8 +30,8 @@ from lab_1_4._goals import (
     is_told_at_the_end,
 )
 
-from autograder.kit.goals_seen import ABORTED, CANCELED
 from autograder.kit.model import Bench, Pace
+from autograder.kit.reading.goals_seen import ABORTED, CANCELED
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -42,10 +42,10 @@ from lab_1_4._goals import (
 )
 from lab_1_4._server_run import scenario
 
-from autograder.kit.crashes import traceback_of
 from autograder.kit.draft import Draft
-from autograder.kit.goals_seen import CANCELED, SUCCEEDED, status_text
+from autograder.kit.mistakes.crashes import traceback_of
 from autograder.kit.model import Advice
+from autograder.kit.reading.goals_seen import CANCELED, SUCCEEDED, status_text
 from autograder.kit.recipes.action_server import SendsGoals, is_quick
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from summary._night import before_the_lamp, commands, goals, lamps, near_messages, published
 
+from autograder.kit.mistakes.unfinished import STEP_MISSING
 from autograder.kit.rate import another_rate
-from autograder.kit.unfinished import STEP_MISSING
 
 if TYPE_CHECKING:
     from collections.abc import Callable

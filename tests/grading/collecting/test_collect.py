@@ -24,9 +24,9 @@ from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.timestamps import is_not_believed, read_timestamp
 from autograder.grading.collecting.collect import collect
+from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.inbox import Inbox
 from autograder.grading.collecting.outcomes import CollectReport, State
-from autograder.grading.collecting.table import Table
 from autograder.grading.errors import GradingError
 from autograder.grading.table.roster import RosterError
 

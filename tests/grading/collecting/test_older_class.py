@@ -13,8 +13,8 @@ from test_where_it_goes import gathered
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
+from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.records import CollectedRecords
-from autograder.grading.collecting.table import Table
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -11,16 +11,16 @@ from test_where_it_goes import other_lab
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
+from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.outcomes import State
-from autograder.grading.collecting.table import Table
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from tiny_class import TinyClass
 
+    from autograder.grading.collecting.collected_csv import Waiting
     from autograder.grading.collecting.outcomes import CollectReport
-    from autograder.grading.collecting.table import Waiting
 
 
 @pytest.fixture

@@ -21,10 +21,10 @@ from tiny_class import TinyClass
 
 from autograder.cli import cli
 from autograder.grading.classes.class_directory import ClassDirectory
-from autograder.grading.collecting import apply, records, table
+from autograder.grading.collecting import apply, collected_csv, records
 from autograder.grading.collecting.collect import collect
+from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.outcomes import CollectReport, State
-from autograder.grading.collecting.table import Table
 from autograder.grading.exporting.export_files import export
 from autograder.grading.report_page.page import write_report
 from autograder.regular_files import write_whole
@@ -393,7 +393,7 @@ def test_killed_at_any_write_nothing_is_lost_and_nothing_is_there_twice(
         written(path, data)
 
     with monkeypatch.context() as patch:
-        for module in (apply, records, table):
+        for module in (apply, records, collected_csv):
             patch.setattr(module, "write_whole", write)
         try:
             gathered(klass, tmp_path, first)

@@ -24,9 +24,9 @@ from test_collect import work
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
+from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.inbox import Inbox
 from autograder.grading.collecting.records import CollectedRecords
-from autograder.grading.collecting.table import Table
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ import pytest
 from rich.console import Console
 from tiny_class import LISTENER, MASTER, TALKER, FakeEngine, TinyClass, write_master
 
-from autograder.grading.classes import origins
+from autograder.grading.classes import changed_masters
 from autograder.grading.classes.new_class import new_class, renew
 from autograder.grading.errors import DiskFull, GradingError
 
@@ -57,13 +57,13 @@ def test_a_class_hears_of_a_task_that_was_changed(tiny: TinyClass, course: Path)
 def test_a_class_hears_of_a_change_in_a_course_that_has_moved(
     course: Path, tmp_path: Path, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(origins, "course", SimpleNamespace(root=lambda: course))
+    monkeypatch.setattr(changed_masters, "course", SimpleNamespace(root=lambda: course))
     new_class(tmp_path / "class", course)
     tiny = TinyClass(tmp_path / "class")
     tiny.submit("ada", 4, 7)
     shutil.copytree(course, tmp_path / "clone")
     change(tmp_path / "clone", "TODO: return ten.", "TODO: return twelve.")
-    monkeypatch.setattr(origins, "course", SimpleNamespace(root=lambda: tmp_path / "clone"))
+    monkeypatch.setattr(changed_masters, "course", SimpleNamespace(root=lambda: tmp_path / "clone"))
     assert "lab_1_2: its master in the course was changed" in "\n".join(said(tiny))
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from autograder.grading.collecting.records import CollectedRecords
-from autograder.grading.exporting import sheets
+from autograder.grading.exporting import class_workbook
 from autograder.grading.exporting.layouts import gradebook
 from autograder.grading.report_page import statistics as figures
 from autograder.grading.reporting.rows import Row
@@ -48,7 +48,7 @@ def table() -> ClassTable:
     [
         lambda table: gradebook("gradescope", table, NO_RECORDS, ASSIGNMENTS),
         lambda table: gradebook("moodle", table, NO_RECORDS, ASSIGNMENTS),
-        lambda table: sheets.as_csv(table, ASSIGNMENTS),
+        lambda table: class_workbook.as_csv(table, ASSIGNMENTS),
         lambda table: [table.max_score(one) for _ in CLASS for one in ("", *ASSIGNMENTS)],
         lambda table: [table.assignments and table.students for _ in CLASS],
         figures.bands,

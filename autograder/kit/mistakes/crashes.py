@@ -10,15 +10,15 @@ import re2
 
 from autograder import code_of_elsewhere
 from autograder.kit.evidence import is_cut_off
-from autograder.kit.known_crashes import KNOWN, NOT_SPUN_WHILE_CALLING
+from autograder.kit.mistakes.known_crashes import KNOWN, NOT_SPUN_WHILE_CALLING
+from autograder.kit.mistakes.names_in_tracebacks import MARKS, Name, is_a_library, names, own_line
+from autograder.kit.mistakes.python_errors import meaning
 from autograder.kit.model import Advice, Mistake
-from autograder.kit.python_errors import meaning
-from autograder.kit.quoted_names import MARKS, Name, is_a_library, names, own_line
 
 if TYPE_CHECKING:
     from autograder.code_of_elsewhere import Elsewhere
     from autograder.kit.evidence import Evidence, Part
-    from autograder.kit.known_crashes import Crash
+    from autograder.kit.mistakes.known_crashes import Crash
 
 
 _NO_CRASH = re2.compile(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from autograder.cards import bundle
-from autograder.cards.card import Solution
+from autograder.cards.card_content import Solution
 from autograder.cards.wording import OTHER_WAY, SOLUTION
 from autograder.verdict import State, Verdict
 

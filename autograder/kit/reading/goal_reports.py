@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.client_waits import Wait
 from autograder.kit.evidence import INTERRUPTED
 from autograder.kit.giving_up import remark
+from autograder.kit.mistakes.client_waits import Wait
 from autograder.kit.model import Finding
 from autograder.kit.outcomes import Outcome
-from autograder.kit.texts_said import mentions, said_first_after
+from autograder.kit.reading.texts_said import mentions, said_first_after
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

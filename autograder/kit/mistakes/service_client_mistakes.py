@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit.model import mistake
-from autograder.kit.service_calls import (
+from autograder.kit.reading.service_calls import (
     Client,
     answers,
     ended_before_its_answer,
@@ -18,7 +18,7 @@ from autograder.kit.service_calls import (
     requests,
     returns_another,
 )
-from autograder.kit.texts_said import mentions
+from autograder.kit.reading.texts_said import mentions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit.common_mistakes import WORDS, worked
-from autograder.kit.crashes import traceback_of
 from autograder.kit.giving_up import ended_at_once
+from autograder.kit.mistakes.common_mistakes import WORDS, worked
+from autograder.kit.mistakes.crashes import traceback_of
 from autograder.kit.model import Advice, Mistake, mistake
 from autograder.kit.workspace_report import report_of
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import re2
 
-from autograder.kit.quoted_names import MARKS, Name, names
+from autograder.kit.mistakes.names_in_tracebacks import MARKS, Name, names
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from autograder.kit.crashes import CRASHES, OTHER_CRASHES
 from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

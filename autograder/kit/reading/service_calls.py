@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.kit import giving_up
-from autograder.kit.client_waits import Wait
 from autograder.kit.evidence import Evidence
 from autograder.kit.in_words import counted
+from autograder.kit.mistakes.client_waits import Wait
 from autograder.kit.model import Finding
-from autograder.kit.texts_said import mentions, not_filled_in, said_first_after
+from autograder.kit.reading.texts_said import mentions, not_filled_in, said_first_after
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part, Reference

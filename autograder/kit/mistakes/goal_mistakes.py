@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from autograder.kit.crashes import meant, on_purpose, what_and_where
-from autograder.kit.goal_reports import (
+from autograder.kit.mistakes.crashes import meant, on_purpose, what_and_where
+from autograder.kit.model import Advice, Mistake, mistake
+from autograder.kit.reading.goal_reports import (
     ABORTED,
     LATE,
     MANY_REQUESTS,
@@ -26,8 +27,7 @@ from autograder.kit.goal_reports import (
     said_of_result,
     unshown_feedback,
 )
-from autograder.kit.model import Advice, Mistake, mistake
-from autograder.kit.texts_said import mentions, not_filled_in
+from autograder.kit.reading.texts_said import mentions, not_filled_in
 
 if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence
