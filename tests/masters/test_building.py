@@ -183,7 +183,7 @@ def test_the_command_says_what_it_did(course: Path, said: Said) -> None:
     code, text = said(course)
     assert code == 0
     assert re.search(rf"written\s+{CHAPTER}", text)
-    assert "1 chapter notebook in step" in text
+    assert "1 chapter notebook up to date with the masters" in text
 
 
 def test_the_command_fails_when_a_chapter_is_stale(course: Path, said: Said) -> None:
