@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 KEY = "code_of_elsewhere"
 """The diagnosis key of these mistakes in ``docs/mistakes.md``."""
 _MARKS = r"\n(?:[ ~^]*\n)?"
-"""Matches the text between a line of code and the exception: perhaps a line of marks."""
+"""Matches what is between a line of code and the exception: a line break, and perhaps a line of ``^`` marks."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ _HERE = {
     "ROSInterruptException|signal_shutdown|on_shutdown": "Leave it out. A program ends with rclpy.shutdown().",
     "spin|spinOnce|spin_some": "Write rclpy.spin(your_node) in a program, `with spinning(your_node):` in a notebook.",
 }
-"""Names in ROS 1's module rospy (and C++'s rclcpp): for the pattern of each name, what to write here."""
+"""What to write in this course instead of names from ROS 1's module rospy (or C++'s rclcpp), by the names' pattern."""
 _TYPES = r"\w*Ints|SetBool|Trigger|Empty|Fibonacci|WalkTo"
 _PARTS = "Request|Response|Goal|Result|Feedback"
 
@@ -75,7 +75,8 @@ ROWS = (
         "init_twice",
     ),
     Elsewhere(
-        # Of rclpy 7.2 and later: contexts and entities for `with`, more names, arithmetic with durations.
+        # Code for rclpy 7.2 and later fails here: contexts and entities in `with`, new names, arithmetic with
+        # durations.
         r"\b(?:init\(|with \().*\n(?:[ ~^]*\n)?"
         r"(?:TypeError: 'NoneType' object does not support the (?:asynchronous )?context manager protocol"
         r"|AttributeError: __a?enter__)"
@@ -100,7 +101,8 @@ ROWS = (
         for names, here in _HERE.items()
     ),
     Elsewhere(
-        rf"AttributeError: '\w+' object has no attribute '(?P<name>{_LOG})'",  # is looked for in the node, too
+        # Copied code may also look for rospy's functions in the node, as in self.loginfo(...).
+        rf"AttributeError: '\w+' object has no attribute '(?P<name>{_LOG})'",
         "{name} is ROS 1's, and this course uses ROS 2.",
         _HERE[_LOG],
     ),

@@ -183,7 +183,7 @@ def interfaces() -> tuple[str, ...]:
 
 
 def interface_modules() -> tuple[str, ...]:
-    """Return the names of modules that may contain the classes of these packages. Not all have all three kinds."""
+    """Return the names of modules that may contain classes of these packages. A package need not have all of them."""
     return tuple(f"{package}.{kind}" for package in interfaces() for kind in ("msg", "srv", "action"))
 
 

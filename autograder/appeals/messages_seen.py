@@ -1,9 +1,9 @@
 """Writes the evidence of a check as MCAP: each event is a message in JSON, for Foxglove and other programs.
 
-A topic's messages are on that topic, and the log is on ``/rosout``. Requests, answers, goals and so on are on the
-name of the service or action plus the kind of event, such as ``/add_two_ints/asked``. Everything else is below
-``/judge``. Each message has a field ``_judge`` that contains its part and look, and its time by the judge's clock and
-by the simulated clock.
+In the file, the messages of a topic are on that topic, and log lines are on ``/rosout``. Requests, answers, goals and
+so on are on topics named after the service or action and the kind of event, such as ``/add_two_ints/asked``. Everything
+else is on topics below ``/judge``. The field ``_judge`` of each message contains its part of the check, its look
+(quick, or in real time), and its time by the judge's clock and by the simulated clock.
 
 A second form, for ``ros2 bag play``, contains only the messages of topics, in CDR with the definitions of their
 types. A player has to know each type, and all messages must have the same encoding.
@@ -193,7 +193,8 @@ def _extend(schema: dict[str, Any], value: Any) -> None:
                 _extend(items, inner)
     kind = _kind(value)
     if schema.setdefault("type", kind) != kind:
-        schema["type"] = "string"  # the values are of two kinds, so a reader shows them as text
+        # Values of this field have different types, so programs that read the file show them as text.
+        schema["type"] = "string"
 
 
 def _kind(value: Any) -> str:

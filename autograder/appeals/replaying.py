@@ -28,7 +28,7 @@ class Replay:
     """The result of judging a check a second time.
 
     Attributes:
-        then: The verdict at that time.
+        then: The verdict when the check was made.
         now: The verdict of the current code.
         differences: One line for each important difference: state, points, criteria, diagnosis.
         notes: Possible reasons for differences, and differences that are only in the wording.
@@ -64,8 +64,8 @@ def replay(kept: Kept) -> Replay:
         raise CannotReplay(f"{error} in this check, so there is nothing to judge again") from error
     except Exception as error:  # evidence from another version, or written by hand, may lack any field
         raise CannotReplay(
-            f"{exercise.id} cannot be decided from this evidence ({type(error).__name__}: {error}). It was edited, or "
-            "comes from another version of the course: use that one."
+            f"{exercise.id} cannot be decided from this evidence ({type(error).__name__}: {error}). Either it was "
+            "edited, or it comes from another version of the course: then use that version."
         ) from error
     notes = ["the reference output of this exercise has changed since"] if changed else []
     return Replay(then, now, list(_differences(then, now)), notes + list(_other_words(then, now)))

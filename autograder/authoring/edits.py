@@ -44,7 +44,7 @@ def edited(base: str, change: str) -> str:
         change: The changes, in the format above.
 
     Raises:
-        CannotEdit: Lines of the change are not in the base, or are there several times; or the text is not a change.
+        CannotEdit: Lines of the change occur in the base not at all, or several times; or the text is not a change.
     """
     lines = base.split("\n")
     places = []
@@ -77,7 +77,7 @@ def _sides(block: str) -> tuple[list[str], list[str]]:
         )
     if not old:
         raise CannotEdit(
-            f"the place of {block!r} is unknown: write the line before or after it, with a space in front"
+            f"the place of {block!r} is unknown: add the unchanged line before or after it, with a space in front"
         )
     return old, new
 

@@ -74,7 +74,7 @@ def _of_cell(kind: NotebookKind, cell: Cell, run: CellRun, verdict: Verdict | No
     elif any(TRACEBACK in _text(output) for output in run.outputs):
         yield "shows a stray traceback"
     if not _SHELL.search(cell.source) and any(output.get("name") == "stderr" for output in run.outputs):
-        # nbgrader gives no points to a graded cell that writes there, and a student takes the output for an error.
+        # nbgrader gives no points to a graded cell that writes to stderr, and students take such output for an error.
         yield "writes to standard error"
     if cell.check is not None and run.ended is Ended.DONE:
         yield from _of_check(kind, cell.check.points, run, verdict)

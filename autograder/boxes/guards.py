@@ -131,7 +131,7 @@ class BoxGuard:
         self._seen_cpu = max(self._seen_cpu, use.cpu_seconds)
         if self.cpu_seconds > self._limits.cpu_seconds:
             return Ended.OUT_OF_CPU
-        # This comes before the open files, because each forked process has the open files of its parent.
+        # Threads are checked before open files, because each forked process also has the open files of its parent.
         if not self._processes and use.threads > self._limits.processes:
             return Ended.TOO_MANY_PROCESSES
         if use.files > self._limits.all_open_files:
@@ -350,10 +350,10 @@ def guards() -> Mapping[str, str]:
     return {
         "memory": _cgroup("memory") or watched,
         "processes": _cgroup("pids") or _processes_without(watched),
-        "processor time": "checked four times a second, and a limit on each process",
+        "processor time": "the total is checked four times a second, and each process has a limit of its own",
         "share of the processors": _cgroup("cpu") or "none (no cgroup can be made here)",
         "disk": "a file system in memory, with a size and a number of files",
-        "open files": "a limit on each process, and all of them together checked four times a second",
+        "open files": "each process has a limit of its own, and the total is checked four times a second",
     }
 
 

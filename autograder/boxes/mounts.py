@@ -125,9 +125,10 @@ def box_arguments(
 
 
 def _course_below_the_scratch() -> tuple[str, ...]:
-    """Return the folder of the clone if it is below ``/tmp``: Python searches it, and a box could write there.
+    """Return the folder of the clone if it is below ``/tmp`` or the box's home, to make it read-only; else nothing.
 
-    An installed package is inside Python's own folder, which the box sees read-only.
+    A box can write to both, and Python imports from the clone. An installed package needs no such protection: it is
+    inside Python's own folder, which the box sees read-only.
     """
     folder = _PACKAGE.parent
     if folder.is_relative_to(sys.prefix) or not any(map(folder.is_relative_to, (HOME, Path("/tmp")))):

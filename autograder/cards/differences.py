@@ -64,7 +64,7 @@ def difference(criterion: CriterionResult) -> tuple[TextPiece, ...]:
 
 
 def marked(pieces: Iterable[TextPiece]) -> str:
-    """Return all pieces as one text, such as ``"Hello[,] world[!] 0"``."""
+    """Return all pieces as one text, with brackets around what is missing: ``"Hello[,] world[!] 0"``."""
     return "".join(piece.marked for piece in pieces)
 
 

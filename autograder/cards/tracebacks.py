@@ -1,4 +1,4 @@
-"""Finds the student's line in which a traceback ends."""
+"""Finds the last line of the student's own code in a traceback."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ _LIBRARIES = ("/site-packages/", "/lib/python3", "/opt/ros/", "<frozen")
 _BUILT = re2.compile(r"/install/(?:[^/.]+/)?lib/python3[^/]*/site-packages/")
 """Matches the folder into which a build installs a workspace's modules, which the student wrote."""
 _CALLED_BY_ROS = "/rclpy/task.py"
-"""The rclpy file that follows, in a traceback, the line that spins, if a callback failed and not that line."""
+"""The file of rclpy that comes, in a traceback, after the student's line that spins, if the error was raised in a
+callback. That line is not the cause.
+"""
 _CANNOT_BE_READ = ("SyntaxError", "IndentationError", "TabError")
 """Errors that have no traceback, because Python cannot start the program."""
 _SCRIPT = re2.compile(r"/lib/[^/]+/[^/.]+$")

@@ -27,7 +27,9 @@ MAX_LANES = 8
 _MAX_PARTS = 12
 _LAST = {OTHER_LANES: 1, "log": 2, "printed": 3, OWN_LANE: 4}
 _TOGETHER = 3
-"""The maximum number of moments in a lane at one simulated time. If there are more, the clock did not cause them."""
+"""If a lane has more than this many moments at one simulated time, the clock did not cause them, so times do not show
+their order.
+"""
 
 
 @dataclass(frozen=True)
@@ -38,7 +40,7 @@ class TrafficPart:
         title: The name of the part; empty if the check has only one part.
         simulated: True if the times are in simulated seconds.
         moments: The moments, sorted by time.
-        gaps: The number of moments that were left out after a moment, by that moment's index.
+        gaps: For the index of a shown moment, the number of moments that were left out after it.
     """
 
     title: str
@@ -124,8 +126,8 @@ def _part(title: str, simulated: bool, moments: list[Moment], share: int) -> Tra
     ordered = _few_lanes(sorted(moments, key=lambda moment: moment.t))
     if len(ordered) <= share + 2:  # leaving out only one or two would not be worth it
         return TrafficPart(title, simulated, tuple(ordered))
-    # Keep both ends: the beginning shows the pattern and the end shows the outcome. The middle repeats, except for
-    # important moments.
+    # Keep both ends: the beginning shows the pattern and the end shows the outcome. The middle only repeats the
+    # pattern, so it is left out, except for important moments.
     tail = share // 3
     head = share - tail
     kept: list[Moment] = []

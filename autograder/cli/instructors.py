@@ -100,7 +100,7 @@ def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
     default="",
     callback=_known_zone,
     metavar="Europe/Berlin",
-    help="The time zone of times in names and lists. The default is the time zone of the class.",
+    help="The time zone of times in file names and in lists of an LMS. The default is that of the class.",
 )
 @click.option(
     "--from",

@@ -85,7 +85,7 @@ class Execution:
         verdicts: The verdicts by the index of the check cell. Every check cell has one.
         trouble: A failure of the grader itself; empty if there was none. With such a failure, no result is final.
         seconds: The duration in seconds of wall time, including the start of the kernel.
-        start_seconds: The part of this time until kernel and judge were ready.
+        start_seconds: The part of ``seconds`` until kernel and judge were ready.
         as_typed: The indexes of the cells whose text takes too long to render on a page.
         crowded_out: True if the notebook failed or reached a limit, perhaps only because other work ran at the same
             time.

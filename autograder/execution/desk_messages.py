@@ -1,7 +1,7 @@
 """The orders to a kernel's desk and the desk's answers: lines of JSON on a socket.
 
-The desk (``kernel_desk.py``) reads what a student's program says, so the program may have taken the
-desk over. An answer is a document of this form or it is not used.
+The desk (``kernel_desk.py``) reads the messages of a student's program, so that program may have taken control of the
+desk. The grader therefore uses an answer only if it has exactly this form.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ import msgspec
 from autograder.execution.outputs import TRACEBACK_LINES
 
 MOST_ESCAPED = 8
-"""The most bytes in an answer for each byte of output. A control character takes six."""
+"""The maximum number of bytes in an answer for each byte of output. In JSON, a control character takes six bytes."""
 FURTHER_BYTES = 1_000_000
 """Limit in bytes of everything else in an answer."""
 
 
 @dataclass(frozen=True)
 class Setting:
-    """What a desk is told when it starts.
+    """The settings that a desk gets when it starts.
 
     Attributes:
         address: The path in the names of the kernel's sockets.
         key: The key that signs the messages.
-        message_bytes: See :class:`autograder.boxes.limits.Limits`, as for the others.
+        message_bytes: See :class:`autograder.boxes.limits.Limits`.
         flood_bytes: See there.
         cell_output_bytes: See there.
         notebook_output_bytes: See there.
@@ -48,13 +48,13 @@ class Do(StrEnum):
     EXECUTE = "execute"
     """Execute a cell, and answer when it has ended."""
     SETTLE = "settle"
-    """The cell was interrupted: answer when the kernel has ended it, or takes requests again."""
+    """The cell was interrupted. Answer when the kernel has ended the cell, or takes requests again."""
     DRAIN = "drain"
-    """The kernel has ended: answer when everything that it has sent has been read."""
+    """The kernel has ended. Answer when everything that it has sent has been read."""
 
 
 class Order(msgspec.Struct, frozen=True):
-    """One order. The desk answers each exactly once, in order; a new one ends the wait for the one before.
+    """One order. The desk answers each order exactly once, in order. A new order ends the wait for the one before.
 
     Attributes:
         number: Counted from 1; the answer has the same number. The answer 0 says that the kernel is ready.
@@ -75,11 +75,11 @@ class Said(StrEnum):
     DONE = "done"
     RAISED = "raised"
     EXITS = "exits"
-    """The cell has called ``exit()`` or ``quit()``: the kernel answers first, and ends a moment later."""
+    """The cell has called ``exit()`` or ``quit()``. The kernel answers before it ends, a moment later."""
     FLOODS = "floods"
     """The cell has sent too much, and still runs."""
     OPEN = "open"
-    """The next order came before the end of this one."""
+    """The next order came before this one was finished."""
 
 
 class _Output(msgspec.Struct, frozen=True, tag_field="output_type", forbid_unknown_fields=True):
@@ -121,8 +121,8 @@ class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes:
         number: The number of the order.
-        said: How it ended.
-        outputs: By the index of the cell, all outputs of each cell that has new ones since the last answer.
+        said: How the order ended.
+        outputs: For each cell with new outputs since the last answer, all of its outputs, by the index of the cell.
     """
 
     number: int
@@ -131,15 +131,15 @@ class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def admitted_answer(line: bytes, orders: range, cells: Collection[int]) -> Answer:
-    """Return an answer of the desk, checked.
+    """Check an answer of the desk, and return it.
 
     Args:
-        line: What the desk said.
+        line: The line that the desk sent.
         orders: The numbers of the orders that wait for an answer.
         cells: The indexes of the cells that were executed.
 
     Raises:
-        ValueError: It is not an answer to one of these orders.
+        ValueError: The line is not an answer to one of these orders.
     """
     try:
         answer = msgspec.json.decode(line, type=Answer)

@@ -1,9 +1,9 @@
-"""Hangs in a student's code. The first one is given its full time, later ones only little.
+"""Time limits after a hang in a student's code. The first hang gets its full time limit, later ones a short one.
 
-In a notebook with an endless loop, each cell that uses it hangs, and each would wait for its whole time limit. Which
-name is to blame is certain only if a cell of the master, which ends with any right answer, uses exactly one name that
-the student defined. If it uses several, or if the student wrote the cell, no name is blamed. A check is never left
-out, and one that reaches its verdict at the usual speed counts as usual.
+If a student's function has an endless loop, each cell that uses the function hangs, and each would take its whole time
+limit. A name is blamed for a hang only if a cell of the master, which ends with any right answer, uses exactly one name
+that the student defined. If the cell uses several, or if the student wrote the cell, no name is blamed. A check is
+never left out, and a check that reaches its verdict at the usual speed counts as usual.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def seconds_again(cell: Cell, usual: float, limits: Limits) -> float:
 
     Args:
         cell: The cell.
-        usual: The limit if the cell used no such name.
+        usual: The limit for a cell that uses no such name.
         limits: All limits.
     """
     if cell.check is None or cell.check.asserts:

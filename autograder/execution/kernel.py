@@ -1,4 +1,4 @@
-"""A Jupyter kernel in a process of its own, and the desk that reads its messages, seen from outside of both.
+"""Controls a Jupyter kernel, and the desk that reads the kernel's messages. Each of the two is a separate process.
 
 nbclient is made for trusted notebooks: it keeps all output, and learns of a dead kernel from a heartbeat. Here every
 wait ends at an answer of the desk, at the end of the kernel's process or at a deadline, whichever comes first.
@@ -71,7 +71,7 @@ class Place(Protocol):
         ...
 
     def start_desk(self, channels: Channels) -> ForkedProcess:
-        """Start the process of its desk."""
+        """Start the process of the kernel's desk."""
         ...
 
 
@@ -83,7 +83,7 @@ class Kernel:
             Only the desk's box sees what is made there.
         place: Starts the processes.
         limits: ``start_seconds``, ``interrupt_grace`` and ``notebook_output_bytes`` are used.
-        outputs: Gets the outputs.
+        outputs: Receives the outputs.
         guard: Reports that the box has exceeded another limit.
 
     Raises:
@@ -132,7 +132,7 @@ class Kernel:
 
     @property
     def lost(self) -> bool:
-        """True if the grader itself lost the process or its desk: their end then tells nothing about the notebook."""
+        """True if the kernel or the desk ended for a reason outside the notebook, which is then not to blame."""
         return self._process.lost or self._desk_lost
 
     def await_ready(self) -> None:
@@ -172,7 +172,8 @@ class Kernel:
             self.kill()
             return self._died()
         if self._guard.exceeded(at_once=True):
-            # The cell ended before the watch saw the excess: treat it as the watch would have done a moment later.
+            # The cell ended before the guard saw that a limit was exceeded. End the kernel, as the guard would have
+            # done a moment later.
             self.kill()
             return self._died()
         return Ended.DONE if said is Said.DONE else Ended.RAISED
@@ -223,7 +224,7 @@ class Kernel:
 
         Args:
             left: Returns the seconds that are left.
-            of_living: False to wait, too, if the kernel has ended.
+            of_living: False to go on waiting even if the kernel has ended.
         """
         waiting = select.poll()
         waiting.register(self._desk_says, select.POLLIN)
@@ -248,12 +249,12 @@ class Kernel:
             waiting.poll(1 + int(1000 * max(0.0, min(left(), INTERVAL))))
 
     def _answer(self) -> Answer:
-        """Take the next answer of the desk, if there is one.
+        """Return the next answer of the desk.
 
         Raises:
-            Silent: There is none.
-            Hangup: The desk has ended, or says too much.
-            ValueError: It is not an answer.
+            Silent: The desk has not answered yet.
+            Hangup: The desk has ended, or has sent too much.
+            ValueError: The message is not a valid answer.
         """
         line = self._lines.hear_json(0.0)
         answer = admitted_answer(line, range(self._answered + 1, self._sent + 1), self._cells)
@@ -263,7 +264,7 @@ class Kernel:
         return answer
 
     def _desk_ended(self, error: Exception) -> None:
-        """End a kernel whose desk has failed: the kernel has made it fail, unless the system has killed the desk."""
+        """End a kernel whose desk has failed. The kernel's messages caused this, unless the system killed the desk."""
         self._desk_failed = True
         has_ended = isinstance(error, Hangup) and not isinstance(error, TooLong)
         if has_ended and self._desk.wait(_DESK_SECONDS):
@@ -281,7 +282,7 @@ class Kernel:
 
 
 def _listener(path: Path) -> socket.socket:
-    """A listening Unix socket; ZeroMQ would make its own inside the box."""
+    """Return a listening Unix socket. It is made here, because ZeroMQ would make one inside the box."""
     listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     listener.bind(str(path))
     listener.listen(8)
@@ -289,7 +290,7 @@ def _listener(path: Path) -> socket.socket:
 
 
 def _log_pipe() -> tuple[int, int]:
-    """A pipe that keeps the first text and refuses more once it is full, so it need not be read meanwhile."""
+    """Return a pipe that refuses further text once it is full. So it need not be read while the kernel runs."""
     reading, writing = os.pipe()
     for end in (reading, writing):
         os.set_blocking(end, False)

@@ -1,10 +1,10 @@
 """A kernel's desk: a process in a box that reads the messages of one student's kernel, and nothing else.
 
 A desk is a fork of the kernels' fork server, which has loaded Jupyter's protocol (``jupyter_client.session``) and
-ZeroMQ. It connects to the kernel. Then, before it reads anything, it takes a filter of system calls: from now on it can
-open no file, start no process or thread, and make no further connection. ZeroMQ keeps a message in memory, without a
-limit, until the last part has come: here the memory limit of the process ends that. :mod:`autograder.execution.kernel`
-gives the orders.
+ZeroMQ. It connects to the kernel. Then, before it reads anything, it gives itself a filter of system calls. From then
+on it cannot open files, start processes or threads, or make further connections. ZeroMQ keeps a message of any size in
+memory until its last part has come, so the process has a memory limit. :mod:`autograder.execution.kernel` gives the
+orders.
 """
 
 from __future__ import annotations
@@ -31,16 +31,18 @@ if TYPE_CHECKING:
 
 _ASK_AGAIN_S = 0.5
 _LAST_OUTPUT_S, _LONGEST_LAST_OUTPUT_S = 5.0, 20.0
-"""Seconds of silence, and of waiting in all, after which a cell's last outputs are no longer expected."""
+"""A cell's last outputs are no longer expected after this many seconds without a message, or in all."""
 _AT_ONCE = 100
-"""Messages that are read before other connections have their turn."""
+"""The maximum number of messages that are read before other connections have their turn."""
 _WAITING = 500
-"""Messages that ZeroMQ keeps for us; further ones wait in the kernel, which drops some of them."""
+"""The maximum number of messages that ZeroMQ keeps for the desk. Further ones wait in the kernel, which drops some of
+them.
+"""
 _TOO_LARGE = "\n[output that was too large was dropped]\n"
 
 
 def prepare() -> None:
-    """Load what a desk needs: it can open no file itself."""
+    """Load everything that a desk needs, because a desk itself cannot open files."""
     session = Session(key=b"rehearsal", check_pid=False)
     asked = session.msg("execute_request", {"code": ""})
     sent = session.serialize(session.msg("stream", {"name": "stdout", "text": "x"}, parent=asked))
@@ -54,7 +56,7 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
 
     Args:
         call: The fields of :class:`Setting`.
-        descriptors: The socket of the orders.
+        descriptors: The socket for the orders.
     """
     setting = Setting(**call)
     with contextlib.suppress(Hangup):
@@ -88,8 +90,7 @@ class _Desk:
     def serve(self) -> None:
         """Say that the kernel is ready, then obey order by order."""
         while not (self._probed and self._heard):
-            # Sent repeatedly, because outputs are lost that were published before our subscription reached the
-            # kernel.
+            # Send this repeatedly, because the kernel drops outputs until the desk's subscription has reached it.
             self._ask_for_a_sign()
             self._wait(lambda: self._probed and self._heard, _ASK_AGAIN_S)
         self._answer(0, Said.DONE)
@@ -124,7 +125,7 @@ class _Desk:
         return self._ended(self._reply)
 
     def _ended(self, reply: Mapping[str, Any]) -> Said:
-        """Return how a cell ended, once its last outputs have come: they use a different socket."""
+        """Return how a cell ended, once its last outputs have come. They use another socket and may be late."""
         until = time.monotonic() + _LONGEST_LAST_OUTPUT_S
         self._wait(lambda: self._idle or time.monotonic() > until, _LAST_OUTPUT_S)
         if _asks_to_exit(reply):
@@ -152,7 +153,7 @@ class _Desk:
         return self._read > self._setting.flood_bytes
 
     def _wait(self, is_enough: Callable[[], bool], silence: float | None = None) -> bool:
-        """Read messages until it is enough. Return False at the next order, or after ``silence`` seconds of silence."""
+        """Read messages until ``is_enough`` holds. Return False at a new order, or after ``silence`` idle seconds."""
         while not is_enough():
             ready = dict(self._poller.poll(None if silence is None else int(1000 * silence)))
             if not ready or self._order_socket.fileno() in ready:
@@ -163,7 +164,7 @@ class _Desk:
         return True
 
     def _arrived(self) -> Iterator[None]:
-        """Take the messages that have arrived, one by one; outputs first, because they were sent before the reply."""
+        """Take the messages that have arrived, one by one. Outputs come first, because they were sent first."""
         for source in (self._iopub, self._shell):
             for _ in range(_AT_ONCE):
                 try:
@@ -234,9 +235,9 @@ def _connected(
 
 
 def _await_threads(context: zmq.Context[Any]) -> None:
-    """Wait until both of ZeroMQ's threads run: their first calls are among those that a desk's filter refuses.
+    """Wait until both of ZeroMQ's threads run, because the desk's filter refuses system calls with which they begin.
 
-    One of them has made the connections. The other closes sockets, and tells a monitor that it has.
+    One thread has made the connections. The other closes sockets, and reports that to a monitor.
     """
     closed, monitor = context.socket(zmq.PAIR), context.socket(zmq.PAIR)
     closed.monitor("inproc://closed", zmq.EVENT_MONITOR_STOPPED)
@@ -247,7 +248,7 @@ def _await_threads(context: zmq.Context[Any]) -> None:
 
 
 def _asks_to_exit(reply: Mapping[str, Any]) -> bool:
-    """True if the cell called ``exit()`` or ``quit()``: the kernel answers first and ends a moment later."""
+    """Return True if the cell called ``exit()`` or ``quit()``. The kernel answers before it ends, a moment later."""
     payload = reply.get("payload")
     return isinstance(payload, list) and any(
         isinstance(part, dict) and part.get("source") == "ask_exit" for part in payload

@@ -1,4 +1,4 @@
-"""A kernel that a fork server forks: an IPython kernel on sockets that it is given.
+"""An IPython kernel that is forked by a fork server, and uses the sockets that it is given.
 
 The grader provides the listening sockets. So no folder of the host is open to the box, and no program in the box can
 replace a socket. Only two of Jupyter's five channels are used, requests and outputs. The others (control, input,
@@ -97,7 +97,7 @@ def _rehearse() -> None:
 
 
 def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
-    """Run a kernel until it is shut down, or the desk that reads what a kernel says.
+    """Run a kernel until it is shut down, or run the desk that reads a kernel's messages.
 
     Args:
         call: ``key``, with which messages are signed, and ``address``, the path in the names of the sockets. For a desk

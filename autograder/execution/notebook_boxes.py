@@ -34,8 +34,8 @@ DESK_FOLDER = Path("/run/kernel")
 """The path, in the box of a kernel's desk, of the folder with the kernel's sockets."""
 _STUDENT, _JUDGE = "student", "judge"
 _PROGRAMS_SCRATCH_BYTES, _PROGRAMS_SCRATCH_FILES = 1_000_000, 1_000
-"""The limits of the programs' scratch. Only the supervisor writes there; what a program writes is in the memory of its
-own box.
+"""The limits, in bytes and in files, of the scratch folder in the boxes of programs. Only the supervisor writes there;
+the files that a program writes are in the memory of its own box.
 """
 
 
@@ -232,7 +232,7 @@ def _desk_entrance(channels: Channels, folder: Path, limits: Limits, *, boxed: b
     """Return the settings with which a kernel's desk starts.
 
     Args:
-        channels: The kernel's.
+        channels: The channels of the kernel.
         folder: The folder of the kernel's sockets, as the desk sees it.
         limits: All limits.
         boxed: See :class:`Entrance`.

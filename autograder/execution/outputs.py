@@ -15,12 +15,12 @@ from typing import Any
 IMAGES = ("image/png", "image/jpeg")
 TRACEBACK_LINES = 200
 OUTPUT_BYTES = 32
-"""Bytes that each output, each update and each line of a traceback counts at least: a million empty ones fill the
-memory and take long to render.
+"""The minimum number of bytes that an output, an update or a line of a traceback counts. Otherwise a million empty ones
+would stay below the limit, but fill the memory and take long to render.
 """
 
 _CLOSING_LINE = 200
-"""Bytes that a desk itself adds to an output that it had to cut."""
+"""The maximum number of bytes that a desk itself adds to an output that it had to cut."""
 
 
 class Budget:
@@ -30,7 +30,7 @@ class Budget:
         self.left = total
 
     def take(self, wanted: int) -> int:
-        """Use up to ``wanted`` bytes. Return how many were left."""
+        """Use at most ``wanted`` bytes of the budget. Return how many were used."""
         granted = max(0, min(wanted, self.left))
         self.left -= granted
         return granted
@@ -40,7 +40,7 @@ class OutputCollector:
     """The outputs of one cell.
 
     Args:
-        cell_bytes: The most bytes to keep for this cell.
+        cell_bytes: The maximum number of bytes to keep for this cell.
         notebook: The budget of the whole notebook.
     """
 
@@ -94,7 +94,7 @@ class OutputCollector:
             return
         self._clear_if_due()
         if goes_on:
-            # Pieces are joined later: repeated += on a long string would take quadratic time.
+            # Pieces are joined later, because repeated += on a long string would take quadratic time.
             self._outputs[-1]["text"].append(text)
         else:
             self._outputs.append({"output_type": "stream", "name": name, "text": [text]})
@@ -120,7 +120,7 @@ class OutputCollector:
                 output["data"] = data
 
     def _error(self, content: Mapping[str, Any]) -> None:
-        # One error is always kept: it explains why the cell ended.
+        # One error is always kept, because it explains why the cell ended.
         if not self._has_room() and any(output["output_type"] == "error" for output in self._outputs[-1:]):
             return
         self._clear_if_due()
@@ -143,7 +143,7 @@ class OutputCollector:
         for mime in IMAGES:
             picture = data.get(mime)
             if isinstance(picture, str) and _is_base64(picture):
-                # Half a picture is useless: keep all of it or nothing.
+                # Half a picture is useless, so keep all of it or nothing.
                 if len(picture) <= min(self._own.left, self._notebook.left):
                     safe[mime] = self._afford(picture)
                 else:
@@ -179,11 +179,11 @@ class OutputCollector:
 
 
 class NotebookOutputs:
-    """The outputs of a notebook's cells as a process in a box says them, cut and cleaned here again.
+    """The outputs of a notebook's cells. A process in a box reports them, and they are cut and cleaned here once more.
 
     Args:
         cells: The number of cells.
-        cell_bytes: The most bytes that the process should have kept of a cell.
+        cell_bytes: The maximum number of bytes that the process may report for a cell.
         notebook_bytes: The same for the notebook.
     """
 

@@ -1,9 +1,9 @@
 """A process, forked by a fork server, that runs `ros2 run` and the student's program without their slow imports.
 
-Most of a program's start-up time is spent on imports that all programs share. This process is forked from one that
-has already made these imports. It runs the course's own `ros2` (``environment.ros2_command``), with its search for
-programs and its messages. It differs in one point: a Python script for this interpreter becomes another fork, not a
-new process. That fork has its own arguments, path, standard streams, ``__main__`` and exit, like a new process.
+Most of a program's start-up time is spent on imports that all programs share. This process is forked from one that has
+already made these imports. It runs the course's own `ros2` (``environment.ros2_command``), so it finds programs as
+usual, and prints the usual messages. Only one thing differs: a Python script for this interpreter becomes another fork,
+not a new process. That fork has its own arguments, path, standard streams, ``__main__`` and exit, like a new process.
 
 Everything else is started as `ros2 run` starts it: a script for another interpreter, a program in another language,
 and a script that has a module or library of its own whose name is already loaded in this process.

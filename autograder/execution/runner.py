@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 _TERMINAL = ("%%bash", "%%sh", "%%script")
-"""The magics with which a cell that is a terminal begins."""
+"""The magics with which a cell that stands for a terminal begins."""
 
 
 class Unfinished(RuntimeError):
@@ -69,7 +69,8 @@ def run_notebook(
 
     Args:
         cells: The cells of the rebuilt notebook.
-        judge: Entered while the kernel starts. At the end of its context, the judge is ended.
+        judge: The judge, as a context manager. It is started while the kernel starts, and ended at the end of this
+            function.
         place: Starts the processes of the kernel and its desk.
         folder: The folder for the kernel's sockets. Its path must be short.
         limits: The limits of the notebook.
@@ -165,7 +166,7 @@ class _Run:
         return [(_title(self._cells[index]), runs[index]) for index in recent]
 
     def failed(self, reason: str, seconds: float) -> Execution:
-        """Return the execution for the case that the grader itself failed: none of its checks counts."""
+        """Return the execution after a failure of the grader itself. None of its checks counts."""
         runs = tuple(self._cell_run(index) for index in range(len(self._cells)))
         verdicts = {i: grader_trouble(cell.check, reason) for i, cell in enumerate(self._cells) if cell.check}
         return Execution(runs, verdicts, reason, seconds)

@@ -68,8 +68,8 @@ _SHORTAGES = {
     "RuntimeError: can't start new thread": ("too_many_processes", *LIMITS[Ended.TOO_MANY_PROCESSES]),
     "MemoryError": ("out_of_memory", *LIMITS[Ended.OUT_OF_MEMORY]),
 }
-"""Limits that a program meets as an error: the beginning of the error's text, with the diagnosis, the message and the
-advice.
+"""Limits that a program meets as an error. For the beginning of the error's text: the key of the diagnosis, the message
+that the student gets, and the advice.
 """
 
 
@@ -87,7 +87,7 @@ def zero_points(check: CellCheck, key: str, reason: str, next_step: str, detail:
 
 
 def grader_trouble(check: CellCheck, reason: str) -> Verdict:
-    """Return the verdict after a failure of the grader itself: not the student's fault, and worth another run."""
+    """Return the verdict after a failure of the grader itself. It says that the student is not to blame."""
     return not_checked(
         check.exercise,
         check.title,

@@ -116,5 +116,5 @@ def _why_nothing(
     return (
         f"No check of {exercise_id} by {student!r} was graded here: the class has the assignments "
         f"{', '.join(directory.assignments()) or 'none'}. `{course_command('attempts', directory.path, 'STUDENT')}` "
-        "says what was."
+        "lists what was graded."
     )

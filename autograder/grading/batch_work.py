@@ -142,7 +142,8 @@ def find_work(
     submissions = [one for one in submissions if one.assignment in released.cells]
     check_known(asked.assignments, directory.assignments(), "assignment")
     there = {submission.student for submission in submissions}
-    # The name of a refused folder also counts as known, because its line in the report gives the reason.
+    # The student of a refused folder also counts as known: the report already has a line with the reason for the
+    # refusal.
     there |= {one.path.name for one in refused if one.path.parent == directory.path / "submitted"}
     check_known(asked.students, sorted(there | roster.students.keys()), "student")
     names = {assignment: directory.notebooks(assignment) for assignment in released.cells}

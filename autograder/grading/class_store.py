@@ -115,12 +115,10 @@ class ClassStore:
     # -- results of tasks
 
     def keep(self, task: Task, execution: Execution) -> Execution:
-        """Store a result and its evidence in place of the last ones of this notebook.
+        """Replace the stored result and evidence of this notebook. Return the result without the evidence.
 
-        It returns the result without the evidence.
-
-        Evidence for grades that are in the gradebook stays, because a run that enters nothing must leave it for
-        appeals.
+        Evidence for grades that are in the gradebook stays, because appeals need it as long as no run replaces these
+        grades.
 
         If the grader itself failed, nothing is stored or replaced, and the next run tries again.
         """

@@ -304,9 +304,10 @@ class Evidence:
         return any(e.kind == "subject" and e.name in _OF_A_NOTEBOOK for part in self for e in part.events)
 
     def ever_had(self, role: str) -> bool:
-        """Return True if the subject had an endpoint of this role in any run of either look.
+        """Return True if the subject had an endpoint of this role in any run, now or in the first look.
 
-        Both looks count, because an endpoint that exists only briefly may go unseen in one of them.
+        If the judge watches twice (:attr:`before`), both looks count, because an endpoint that exists only briefly may
+        go unseen in one of them.
         """
         return any(part.endpoints(role) for part in (*self, *(self.before or ())))
 

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 SOON = 0.3
 """The server's delay in seconds in a repeated run, for a client that has just missed its server."""
 ANSWERS_LATE, ANSWERS_SOON = 0.7, 0.12
-"""The delay of an answer in seconds: usually the first; the second if a student is waiting, or the client just missed
-one.
+"""The delay of an answer in seconds: usually the first value; the second if a student is waiting, or if the client just
+missed an answer.
 
 Neither delay equals a limit that is usual in programs, such as half a second.
 """
@@ -52,15 +52,18 @@ def answers_late(bench: Bench) -> float:
 
 
 def late_at_first(bench: Bench) -> float:
-    """Return the delay in seconds of a late server, before the run without a server."""
+    """Return how many seconds late the server starts in the first run.
+
+    The judge has not yet seen then how long the client waits; the run without a server comes last.
+    """
     return LATE_AT_FIRST if bench.pace is Pace.FAST else LATENESS
 
 
 def may_be_impatient(bench: Bench) -> bool:
     """Return True if the run without a server, the last one, does not show that the client waits long enough.
 
-    A function that was told how long to wait shows that by waiting that long, and any other client by a long wait. In
-    real time the late server was as late as it can be.
+    A function that was told how long to wait must wait that long; any other client must wait long. In real time the
+    result is False, because the server of the first run was already as late as it may be.
     """
     absent = bench.seen()
     limit = patience(absent)
@@ -137,7 +140,8 @@ def _waited_since(part: Part, beginning: Event | None, seconds: float) -> bool:
 def await_goal(bench: Bench, server: ActionCounterpart, within: float) -> bool:
     """Wait for the subject's goal. While its answer is held back, send the subject's node an unrelated request.
 
-    Any node on the graph may send one. A client that takes the first event for its answer is right only by chance.
+    Any node on the graph may send such a request. A client that takes the first event for its answer is right only by
+    chance.
 
     Args:
         bench: The bench of the scenario.
@@ -194,7 +198,7 @@ def again_while(
 
 
 def _missed(request: str) -> Callable[[Part], bool]:
-    """Return a function that tells whether a patient client sent its server no request of this kind."""
+    """Return a function that decides whether a client sent no request of this kind, although it waited long enough."""
     return lambda seen: not seen.of(request) and was_patient(seen)
 
 

@@ -309,7 +309,7 @@ class Bench(Protocol):
         """Let the subject wait ``seconds`` of wall time for a late server, or less if the subject ends earlier."""
 
     def watch_graph(self, condition: Callable[[Evidence], bool], within: float) -> bool:
-        """Wait until a condition on the ROS graph holds: endpoints and the nodes that own them. It polls the graph."""
+        """Poll the ROS graph until a condition on endpoints or their nodes holds. Return True if it held."""
 
     def press_ctrl_c(self, within: float) -> bool:
         """Press Ctrl-C, as in the subject's terminal, and wait until the subject has ended.
@@ -343,8 +343,8 @@ class Exercise:
             sentence that no criterion judges is listed as not graded below the task.
         remarks: Functions that return remarks for the card, which cost no points: a sentence, or an empty text.
         roles: The roles of the subject's endpoints, such as ``("publisher",)``. `record` waits for one of them.
-        limit: Time limit of a check in seconds of wall time, for both looks together. A command may build first, so
-            it has more (`autograder/judge/subjects/command.py`).
+        limit: Time limit of a check in seconds of wall time, for the fast look and the one in real time together. A
+            command may build first, so it has more (`autograder/judge/subjects/command.py`).
         arguments: The arguments that a command takes, in words; empty if it takes none.
         sample_arguments: Example arguments, with which ``record`` starts the reference solution to see its interface.
         second_look: True if a subject that fails at the fast pace is watched again in real time.

@@ -76,8 +76,8 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
             f"In setup.py, the list 'console_scripts' has to contain {entry.line if named else FORM}. setup.cfg "
             f"beside it has to put programs into $base/lib/{entry.package}. {again}",
         )
-    # A traceback that shows only Python's own code below the start of a program: it failed before it imported any
-    # file of the student's.
+    # If a traceback shows only Python's own code after the line that starts the program, the program failed before it
+    # imported any of the student's files.
     started = (part.traceback for part in evidence if _STARTS.search(part.traceback))
     tracebacks = "\n".join(text for text in started if _STARTS.search(own_line(text) or text))
     found = _LED_NOWHERE.search(tracebacks)
@@ -111,7 +111,7 @@ def _again(evidence: Evidence) -> str:
     return (
         "Then build and check again."
         if report_of(evidence.main) is None
-        else "Then check again: the judge builds."
+        else "Then check again; the judge builds the workspace for you."
     )
 
 
@@ -150,8 +150,8 @@ def wrong_folder(evidence: Evidence, entry: Entry) -> Advice | None:
         return None
     return Advice(
         f"{file} is not in the folder of the package's modules: it is src/{package}/{lost}.",
-        f"Move it to src/{package}/{package}/{file}, into the inner one of the two folders {package}, and check "
-        "again: the judge builds.",
+        f"Move it to src/{package}/{package}/{file}, into the inner one of the two folders {package}. Then check "
+        "again; the judge builds the package for you.",
     )
 
 

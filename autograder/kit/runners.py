@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 ALONE = "--alone"
-"""The first argument of a start that runs one program and not the launch. The remaining arguments are those of ``ros2
-run``.
+"""The first argument that makes a runner start one program instead of the launch file. The remaining arguments are
+those of ``ros2 run``.
 """
 
 
@@ -25,7 +25,7 @@ class RunsProgram:
 
 @dataclass(frozen=True)
 class RunsPrograms:
-    """Build the workspace, and run programs from one of its packages; the first argument of a start names one.
+    """Build the workspace, and run programs from one of its packages. The first argument names the program to start.
 
     Attributes:
         package: The name of the package.
@@ -53,8 +53,8 @@ class ServesInterface:
 class Launches:
     """Launch the given launch file. If it lies in a workspace, build the packages that it needs first.
 
-    A start whose first argument is :data:`ALONE` runs one program instead, in the environment that the launch would
-    have.
+    If the first argument is :data:`ALONE`, the runner starts one program instead, in the environment that the launch
+    would have.
     """
 
 
@@ -62,7 +62,7 @@ class Launches:
 class LaunchesFromPackage:
     """Build the workspace, and launch a launch file that one of its packages has installed.
 
-    A start whose first argument is :data:`ALONE` runs one program instead, as with :class:`Launches`.
+    If the first argument is :data:`ALONE`, the runner starts one program instead, as with :class:`Launches`.
 
     Attributes:
         package: The name of the package.

@@ -33,7 +33,9 @@ BEGIN = "### BEGIN SOLUTION"
 END = "### END SOLUTION"
 TODO = "# TODO: "
 COPIED = "# copied from this notebook: "
-"""The beginning of the stub in a region that the cell itself fills (:mod:`autograder.notebook.cells.program_files`)."""
+"""The beginning of a stub line that is replaced with code from the notebook when its cell runs
+(:mod:`autograder.notebook.cells.program_files`).
+"""
 ONE_THING = "One cell asks for one thing: split it into two cells."
 MAGIC = re.compile(r"%%(?P<name>\w+)[ \t]*(?P<rest>.*)")
 

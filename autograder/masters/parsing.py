@@ -47,7 +47,7 @@ class CellRole(StrEnum):
     GIVEN = "given"
     """Code that is part of the explanation: locked and tracked. Code without a tag has this role."""
     DEMONSTRATION = "demonstration"
-    """Given code that only shows something. It is skipped when a class is graded."""
+    """Code that only shows something. Students receive it like given code. It is skipped when a class is graded."""
     SOLUTION = "solution"
     """Code with a region that the student writes."""
     MANUAL = "manual"

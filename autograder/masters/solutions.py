@@ -29,9 +29,11 @@ _KEPT = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.AsyncFunctionDef, ast.
 """The kinds of statements of a given cell that a program keeps, in addition to constants."""
 OTHER_WAY = "## Another way"
 LINES = 2
-"""The maximum number of lines of a reason, because a student who has solved a task wants to go on."""
+"""The maximum number of lines that explain a solution. They are few, because a student who has solved a task wants to
+go on.
+"""
 WIDTH = 140
-"""The maximum length of a line, in characters."""
+"""The maximum length of such a line, in characters."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +58,8 @@ def reference_source(
 
     If ``solved`` is false, the solution cells are as students get them.
 
-    Solution cells are kept whole. Of given cells, only imports, functions, classes and constants are kept, because
-    the rest only demonstrates. Files are written. If the subject is a path, shell cells are run as well, because
+    Solution cells are kept whole. Of given cells, only imports, functions, classes and constants are kept, because the
+    rest only shows something. Files are written. If the subject is a path, shell cells are run as well, because
     commands such as ``ros2 pkg create`` make the files that are judged.
 
     Raises:

@@ -24,8 +24,6 @@ class Check(Message, frozen=True):
     Attributes:
         kind: ``"class"`` for a Node class, ``"path"`` for a workspace or a launch file, ``"function"`` for everything
             else.
-        kind: ``"class"`` for a Node class, ``"path"`` for a workspace or a launch file,
-            ``"function"`` for everything else.
     """
 
     exercise: str
@@ -151,7 +149,7 @@ class Begin(Message, frozen=True):
 
 
 class Collect(Message, frozen=True):
-    """A request to send the sources of the check cell's path, because the grader builds and runs them itself."""
+    """A request to send the source files at the path in the check cell. The grader builds and runs them itself."""
 
 
 class Meet(Message, frozen=True):
@@ -159,8 +157,8 @@ class Meet(Message, frozen=True):
 
     Attributes:
         fresh: True to make a new context first.
-        there: The endpoints that it must see.
-        gone: The endpoints of earlier runs that it must no longer see.
+        there: The endpoints that the participant must see.
+        gone: The endpoints of earlier runs that the participant must no longer see.
         within: The limit in seconds.
     """
 

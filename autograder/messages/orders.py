@@ -17,8 +17,9 @@ class Open(msgspec.Struct, tag="open", frozen=True):
         workspaces: The path at which the judge reaches the socket of the grader's workspace service; empty if there
             is none.
         evidence: True to add the evidence to the report.
-        boxed: True if judge and notebook are in sandboxes. Then no other program is on their network, so a domain is
-            free even if its ports are in use. The notebook is then a submission, which gets no verdict.
+        boxed: True if judge and notebook are in sandboxes, as for a submission. No other program is on their network,
+            so a domain is free even if its ports seem to be in use. The judge reports the verdict only to the grader;
+            :class:`autograder.messages.checks.Judged` says why.
     """
 
     exercise: str

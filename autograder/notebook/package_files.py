@@ -268,7 +268,7 @@ def _comments(text: str, programs: ast.List) -> dict[int, str]:
 
 
 def _value(node: ast.expr, names: Mapping[str, object]) -> str | None:
-    """Return the value of an expression built from strings and names of strings; None for any other expression."""
+    """Return the value of an expression made only of constants and of variables that hold strings; else None."""
     match node:
         case ast.Constant(value=value):
             return str(value)

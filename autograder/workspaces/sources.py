@@ -1,9 +1,9 @@
 """Sources as one value, read once: the hash in a build's key and the files of the build both come from it.
 
-So a build contains nothing that is not in its key. Neither contains files that are not sources: links, pipes,
-devices, files that tools leave behind or compilers make, unreadable files. Nor do they contain times, permissions
-other than to execute, or the order of files in a folder. Names are bytes: two names that differ in case or in their
-Unicode normal form are different.
+So a build contains nothing that is not in its key. Neither the build nor the key contains files that are not sources:
+links, pipes, devices, files that tools leave behind or compilers make, unreadable files. Nor do they contain times,
+permissions other than to execute, or the order of files in a folder. Names are bytes: two names that differ in case or
+in their Unicode normal form are different.
 
 When a class is graded, the sources are collected in the process that runs a student's code, and checked and written
 in another process. The student's process may send anything, and a student may write any files; so only the number,
@@ -233,7 +233,8 @@ def receive(lines: Lines, count: int, path: str, folder: Path) -> None:
     for _ in range(count):
         source = lines.hear(Source)
         room -= room_of(source)
-        if room >= 0:  # otherwise the source is still read, because more messages may follow, but dropped
+        # Sources beyond the limit are also read, because other messages may follow them, but they are not kept.
+        if room >= 0:
             taken.append(source)
     if room < 0:
         raise _too_much()

@@ -1,4 +1,4 @@
-"""Makes ``submitted`` contain exactly the files that the decisions say.
+"""Makes ``submitted`` contain exactly the files that count according to the decisions.
 
 It never replaces or removes files other than those that ``collect`` itself wrote.
 """
@@ -53,7 +53,7 @@ class Submitted:
         return hashlib.sha256(data).hexdigest() if data is not None else ""
 
     def take_in(self) -> None:
-        """Put into the inbox what a person has put directly into ``submitted``.
+        """Copy into the inbox the files that a person has put directly into ``submitted``.
 
         Raises:
             OSError: A file could not be written.
@@ -130,7 +130,8 @@ class Submitted:
             else:
                 changes.append((place, line, content))
         history = History(now)
-        # The record is written first: if this is interrupted, `collect` still recognizes the files as its own.
+        # Write the record before the files. If this is interrupted, the next `collect` still recognizes the files as
+        # its own.
         passing = {place[2]: content for place, _, content in changes if content}
         if changes:
             self._records.put(assignment, student, replace(history, replaced=passing))

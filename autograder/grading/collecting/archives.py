@@ -1,8 +1,8 @@
-"""The files in zips and folders. An archive is unpacked at a desk with limits; this module reads only the answer.
+"""The files in zips and folders. A desk, a process in a box, unpacks an archive; this module reads only the answer.
 
-At the desk, :mod:`autograder.grading.collecting.unpack` writes all files of an archive into one file on the disk.
-Here, a name is only text, bytes are read up to the size limit of a notebook, and each file that cannot be taken gets
-a reason.
+In the desk, :mod:`autograder.grading.collecting.unpack` writes all files of an archive, within limits, into one file on
+the disk. This module treats each name in it as text only, reads bytes up to the size limit of a notebook, and gives a
+reason for each file that cannot be taken.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class File:
     """A file in an archive or folder.
 
     Attributes:
-        source: The archive, or the folder that contains the named folder or file.
+        source: The archive, or the folder that contains the folder or file that the instructor named.
         parts: The path in ``source``, without anything that leads upwards. For a file inside a student's archive, the
             path of that archive.
         read: Reads the file, up to the size limit of a notebook. Raises :class:`NotTaken`.
@@ -83,7 +83,7 @@ class Room:
 
 @dataclass(frozen=True)
 class _Unpacked:
-    """A line of the box's output. :mod:`autograder.grading.collecting.unpack` describes it."""
+    """A line of the desk's answer. :mod:`autograder.grading.collecting.unpack` describes it."""
 
     names: tuple[str, ...]
     size: int
@@ -91,10 +91,10 @@ class _Unpacked:
 
 
 class Archives:
-    """Opens archives. What was unpacked is kept until the end.
+    """Opens archives, as a context manager. Unpacked bytes are kept on the disk until the end of the block.
 
     Args:
-        disk: A folder on a disk with enough space for what is unpacked.
+        disk: A folder on a disk with enough space for the unpacked bytes.
     """
 
     def __init__(self, disk: Path) -> None:
@@ -144,12 +144,12 @@ class Archives:
             yield File(source.parent, (name_as_text(source.name),), functools.partial(_read_file, source))
 
     def within(self, file: File, data: bytes, room: Room) -> Iterator[File]:
-        """Yield the files in a student's archive, also those in archives inside it. Read each at once.
+        """Yield the files in a student's archive, and in archives inside it. Read each one before taking the next.
 
         Args:
             file: The archive, as a file of the download.
             data: The bytes of the archive.
-            room: What is left of the limits for this student's archives. It is reduced.
+            room: The remaining limits for this student's archives. They are reduced here.
         """
         with in_memory(data) as archive, unnamed_file(self._disk) as out:
             for names, read in _unpacked(archive, room, _DEEPEST, out):
@@ -199,7 +199,7 @@ def _path(name: str, read: Callable[[], bytes]) -> tuple[tuple[str, ...], Callab
     is_out = not parts or ".." in parts or name.startswith(("/", "\\")) or parts[0].endswith(":")
     if not is_out and len(name) <= LONGEST_NAME:
         return parts, read
-    # The folders in front, which the system made, stay unchanged.
+    # The first folders of the path stay unchanged, because the LMS made them.
     above = itertools.takewhile(lambda part: part != "..", parts[:-1][:2])
     shown = (*(part[:LONGEST_NAME] for part in above), name[:LONGEST_NAME])
     return shown, _refusing(_TOO_LONG if len(name) > LONGEST_NAME else _LEADS_OUT)

@@ -26,7 +26,7 @@ class NoTarget(ValueError):
 
     Args:
         message: The reason, and what to type.
-        assignment: The assignment to which its cells belong; empty if they do not show it.
+        assignment: The assignment to which the file's cells belong; empty if they do not show it.
         is_left_out: True if the file is not to be collected, because the instructor asked for another assignment, or
             because the class has no assignment with its cells.
     """
@@ -120,7 +120,7 @@ class AssignmentOf:
         return here[0], here[0] in named
 
     def _unclear(self, meant: list[Target]) -> str:
-        """Return why the notebook is unclear, given the possible notebooks (all, if the list is empty)."""
+        """Return why it is unclear which notebook a file is: one of ``meant``, or any of the class if that is empty."""
         assignments = sorted({self._asked} if self._asked else {assignment for assignment, _ in meant})
         if len(assignments) == 1:
             names = ", ".join(self._directory.notebooks(assignments[0]))

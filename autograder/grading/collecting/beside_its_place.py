@@ -72,7 +72,7 @@ def _of_assignments(directory: ClassDirectory) -> Iterator[tuple[Path, list[Path
 
 
 def _refused(folder: Path, what_to_do: str, places: Container[Path] = ()) -> list[RefusedFile]:
-    """Return one line for all notebooks and archives in a folder, except those at the right paths."""
+    """Return one refusal for all notebooks and archives of a folder that are at wrong paths; none if there are none."""
     others = _work(folder, places)
     more = f", nor are {len(others) - 1} more files here" if others[1:] else ""
     return [RefusedFile(others[0], f"it is not graded in this place{more}: {what_to_do}")] if others else []

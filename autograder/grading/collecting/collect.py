@@ -57,11 +57,11 @@ def collect(
         path: The class directory.
         sources: Zips, folders, notebooks; and lists from an LMS, which map numbers to students and contain times of
             handing in.
-        assignment: The assignment for which all files are; by default found from names and contents.
-        zone: The time zone of times in names and lists; by default that of the class.
-        form: The system from which the files are, as in ``--from``; by default found from the names.
+        assignment: The assignment to which all files belong; by default found from names and contents.
+        zone: The time zone of times in file names and in lists of an LMS; by default that of the class.
+        form: The system from which the files were downloaded, as in ``--from``; by default found from the names.
         names: The pattern of the file names, as in ``--names``.
-        handed_in: The time of handing in for all work that has none; in ``zone`` if it has no time zone.
+        handed_in: The time at which all work without a known time was handed in; in ``zone`` if it has no time zone.
 
     Raises:
         GradingError: The class, the assignment or a file does not exist, or a list cannot be used.
@@ -158,7 +158,7 @@ class _Collecting:
         return receiving.delivery
 
     def _knowing(self, entries: Iterable[Entry]) -> StudentOf:
-        """Return what is known about students: from students.csv, lists in the inbox, and lists that come now."""
+        """Return what is known about students from students.csv, lists in the inbox, and lists in this delivery."""
         options, own = self._options, list(entries)
         known = [entry for entries in entries_of(self._inbox).values() for entry in entries]
         is_notebook = AssignmentOf(self._directory).is_notebook
@@ -193,13 +193,13 @@ class _Collecting:
 
     @property
     def _entries(self) -> list[Entry]:
-        """Return the entries of the lists that come now."""
+        """Return the entries of the lists in this delivery."""
         return [entry for entries in self._lists.values() for entry in entries]
 
-    # -- what became of it
+    # -- the result
 
     def _with_trouble(self, one: Decision, results: dict[Place, tuple[State, str]]) -> Decision:
-        """Return the decision; if something other than a file is at the place, one that waits for a person."""
+        """Return the decision. If something other than a file is at the place, the decision then waits for a person."""
         place = (one.student, one.line.assignment, one.line.notebook)
         state, reason = results.get(place, (State.UNCHANGED, ""))
         is_hindered = one.state == State.PLACED and state == State.NOT_PLACED

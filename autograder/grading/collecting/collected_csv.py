@@ -101,7 +101,7 @@ class Table:
         self._locale = _locale_of(self._zone.key)
 
     def edits(self) -> dict[str, Edit]:
-        """Return what people have written, as far as ``collect`` has read it."""
+        """Return everything that people have written into the table and ``collect`` has already read."""
         try:
             return msgspec.json.decode(self._edits_file.read_bytes(), type=dict[str, Edit])
         except (OSError, msgspec.MsgspecError):

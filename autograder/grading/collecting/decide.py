@@ -92,7 +92,7 @@ def decide(lines: Iterable[Line], looks: Looks) -> tuple[list[Decision], dict[Pl
 
 
 def _beside(line: Line, came: set[tuple[str, str]]) -> Decision:
-    """Return the decision about a file that needs no attention once its student's notebook has come."""
+    """Return the decision about a file that needs no attention once a notebook of its student was collected."""
     student = line.students[0] if len(line.students) == 1 else ""
     if line.lms == "list" or (student and (student, line.assignment) in came):
         return Decision(line, student, State.BESIDE, line.reason)
@@ -144,7 +144,7 @@ def _of_group(place: Place, group: list[Line], looks: Looks) -> Iterator[_Why]:
 
 
 def _people(place: Place, pool: Sequence[Line], _: Looks) -> list[tuple[Line, str]]:
-    """Return the files that only a name assigns to a student, if several people or repositories have that name.
+    """Return the files that belong to a student only by a name that several people or repositories have.
 
     In Canvas each person has one number; in other systems, one number per download.
     """

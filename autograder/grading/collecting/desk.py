@@ -1,4 +1,4 @@
-"""Lets a desk in a box read an archive or a list: no byte of them is parsed in this process."""
+"""Lets a desk, a process in a box, read an archive or a list, so that this process parses none of their bytes."""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
-"""The desk of ``collect``: a process in a box that reads one archive, or one list of a system, and nothing else.
+"""A desk of ``collect`` is a process in a box that reads one archive, or one list from an LMS, and nothing else.
 
-The process is a fork like that of :mod:`autograder.grading.rebuilding.desk_process`, with the same filter.
+The process is forked like that of :mod:`autograder.grading.rebuilding.desk_process`, with the same filter of system
+calls.
 """
 
 from __future__ import annotations
@@ -19,11 +20,11 @@ _SAMPLES = {
     "a.csv": b"identifier,grade,full name,last modified (submission)\nParticipant 1,,Ada,3 October 2025\n",
     GRADESCOPE: b"submission_1:\n  :created_at: 2025-10-03\n  :submitters:\n  - :name: Ada\n",
 }
-"""Lists with everything that a desk loads at its first use."""
+"""One small list of each format. Reading them once loads everything that a desk otherwise loads at its first use."""
 
 
 def prepare() -> None:
-    """Load what a desk needs: it can open no file itself."""
+    """Load everything that a desk needs, because a desk itself cannot open files."""
     for name, data in _SAMPLES.items():
         msgspec.json.encode(parse_list(name, data))
     "".encode("cp437")
@@ -33,7 +34,7 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
     """Read one file and write the answer.
 
     Args:
-        call: ``limits`` of an archive, or the ``name`` of a list.
+        call: For an archive, the ``limits`` for :class:`Unpacking`; for a list, the ``name`` of its file.
         descriptors: The file, and an empty file for the answer.
     """
     source, answer = descriptors

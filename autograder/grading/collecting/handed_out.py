@@ -1,4 +1,4 @@
-"""Tells a student's work from a notebook that is as it was handed out, because a student may send both."""
+"""Distinguishes a student's work from a notebook that is still as it was handed out. A student may send both."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class HandedOut:
-    """Knows the parts of notebooks that the class itself provides.
+    """Compares notebooks with the parts that the class itself provides.
 
     Args:
         directory: The class.

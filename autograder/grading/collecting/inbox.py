@@ -1,7 +1,8 @@
 """The inbox of a class: every file that ``collect`` was given, stored by the hash of its bytes, with its origin.
 
-Each command makes one delivery, which is one file on the disk: a zip with the new bytes and a list of what came. It
-is written completely or not at all, and never changes. If the same delivery comes again, it is the same file.
+Each ``collect`` command makes one delivery, which is one file on the disk: a zip with the new bytes and a list of the
+files that came. The zip is written completely or not at all, and never changes. The same delivery, made again, is the
+same zip.
 """
 
 from __future__ import annotations
@@ -41,8 +42,8 @@ class Arrival:
         refused: Why the bytes could not be read; empty if they were.
         levels: The number of names, from the top of the path, that may name a student.
         is_own: True if the instructor named this file or folder as the work of one student.
-        is_list: True if it is a list made by the system and not a student's work.
-        is_archive: True if it is a student's archive. The files in it have arrivals of their own.
+        is_list: True if the file is a list made by the system and not a student's work.
+        is_archive: True if the file is a student's archive. The files in the archive have arrivals of their own.
     """
 
     source: str
@@ -72,7 +73,7 @@ class Arrival:
 
     @property
     def key(self) -> str:
-        """The key of the file in the table. Equal bytes under an equal name have the same key in any download."""
+        """The key of the file in ``collected.csv``. Equal bytes with an equal name always have the same key."""
         named = f"{self.content}\0{self.path or self.source}".encode("utf-8", "replace")
         return f"#{hashlib.sha256(named).hexdigest()[:_KEY_LENGTH]}"
 
@@ -138,7 +139,7 @@ class Inbox:
 
     @contextlib.contextmanager
     def receiving(self) -> Iterator[Receiving]:
-        """Take in a delivery. Nothing of it is kept until the block has ended.
+        """Take in a delivery within a ``with`` block. It is kept only when the block has ended without an error.
 
         Raises:
             OSError: The delivery could not be written.

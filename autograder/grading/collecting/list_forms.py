@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 EACH = "*"
-"""Each assignment has a column of its own for the points."""
+"""The value of ``points`` if each assignment has a column of its own."""
 
 
 @dataclass(frozen=True)
@@ -13,13 +13,13 @@ class ListForm:
     """A form of list, by the names of its columns, in lower case.
 
     Attributes:
-        lms: The system that exports it.
+        lms: The system that exports such lists.
         has: The columns by which it is recognized.
         number: The column with the number, or the user name, that is also in the names of files.
         logins: Columns with user names and addresses, the most certain first.
         names: The columns that together are the name, which users choose themselves.
-        time: The column with the time of handing in.
-        points: The column for the points, or :data:`EACH`; empty if the list takes none.
+        time: The column with the time at which the work was handed in.
+        points: The column for the points, or :data:`EACH`; empty if the list has no place for points.
         is_numbered: True if the number is the same for all assignments.
     """
 
@@ -39,7 +39,7 @@ class ListForm:
 
 
 FORMS = (
-    # Moodle's grading worksheet; its identifiers are "Participant 12345", and other words in other languages.
+    # Moodle's grading worksheet. Its identifiers look like "Participant 12345"; the word depends on the language.
     ListForm(
         "moodle",
         ("identifier", "grade"),
@@ -76,7 +76,7 @@ FORMS = (
         points=EACH,
         is_numbered=True,
     ),
-    # Canvas's submissions, with the names that its interface for programs gives them.
+    # A list of submissions from Canvas, whose columns have the field names of Canvas's API.
     ListForm(
         "canvas",
         ("user_id", "submitted_at"),
@@ -93,7 +93,7 @@ FORMS = (
         ("roster_identifier",),
         "submission_timestamp",
     ),
-    # The scores of an assignment of Gradescope's, then its gradebook.
+    # Gradescope has two forms: the scores of one assignment, and the gradebook.
     ListForm(
         "gradescope",
         ("sid", "submission time"),

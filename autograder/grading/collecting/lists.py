@@ -1,4 +1,4 @@
-"""Lists that come with a download: they map numbers to students, and contain times of handing in."""
+"""Lists that come with a download. They map numbers to students, and contain the times at which work was handed in."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Entry:
 
     Attributes:
         lms: The system that made the list.
-        number: The number or user name that file names contain as well; empty if they contain none.
+        number: The number or user name that the system also puts into file names; empty if it puts none.
         members: For each member of the group that handed in, the names of this member, the most certain first.
         when: The time of handing in, in the LMS's own time if it has no time zone; None if the list has no time.
     """
@@ -40,7 +40,7 @@ class Entry:
 
 
 def parse_list(name: str, data: bytes) -> list[Entry] | None:
-    """Parse a list, which only a desk does; return None if its form is unknown.
+    """Parse a list; return None if its form is unknown. Only a desk calls this.
 
     Args:
         name: The name of the file.
@@ -101,5 +101,5 @@ def _member(submitter: Mapping[str, Any]) -> tuple[Identity, ...]:
 
 
 def _word(value: object) -> str:
-    """Return a word of the list; empty for a nested list in its place, which could be larger than any memory."""
+    """Return a value as text; empty for a nested list, because its text could be larger than any memory."""
     return value.strip() if isinstance(value, str) else ""

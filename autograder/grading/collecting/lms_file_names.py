@@ -25,8 +25,9 @@ if TYPE_CHECKING:
     """A function that returns the facts in the name at one index of a path; None if it has another form."""
 
 _MOST_MARKS = 10
-"""The maximum number of ways to read a name; real names have fewer."""
-# Browsers, Canvas and Drive add such a mark to a name that already exists, and file managers to the name of a copy.
+"""The maximum number of marks at which a name is divided; real names have fewer."""
+# Browsers, Canvas and Drive add one of these marks to a name that already exists. File managers add one to the name of
+# a copy.
 _COPY_OF = "Copy of "
 _MARK = r" ?\((\d{1,6})\)|-(\d{1,6})| - [Cc]opy"
 _MARKED = re2.compile(rf"^(?P<base>.+?)(?P<marks>(?:{_MARK})+)$")
@@ -76,8 +77,9 @@ def read_at(parts: Sequence[str], place: int, form: str, is_notebook: Callable[[
         return None  # lab_1_2_3.ipynb and "lab_1_2 - Copy.ipynb" are names that a student chose
     if form == "canvas" and is_folder:
         return found if found.order >= 100 else None  # lab_1_2_submissions is a name that an instructor chose
-    # Not Canvas's: lab_1_2_ada_attempt_... Canvas writes names in lower case, and numbers the users and files of its
-    # whole site. No student is among its first nine users and has also sent one of its first nine files.
+    # A name from Blackboard, such as lab_1_2_ada_attempt_..., may have the form of Canvas's names. But Canvas writes
+    # names in lower case, and numbers the users and files of its whole site: no student is among the first nine users
+    # and has also sent one of the first nine files.
     login, number = found.identity.login, found.identity.number
     if form == "canvas" and (login != login.lower() or (len(number) == 1 and found.order < 10)):
         return None if _READERS["blackboard"](parts, place) else found
@@ -183,7 +185,7 @@ def _moodle(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
 
 
 def _plainly(lms: str) -> _Who:
-    """Return a reader for names in which each group is what it is called."""
+    """Return a reader for names whose groups ``number``, ``login`` and ``name`` need no further interpretation."""
     return lambda found: (
         Identity(lms, **{one: found.get(one) or "" for one in ("number", "login", "name")}),
         (),

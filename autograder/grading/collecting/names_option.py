@@ -66,7 +66,8 @@ def read_names(pattern: str) -> Callable[[Sequence[str]], Found | None]:
                     else []
                 )
                 if ways:
-                    # In 2025-10-03_140506_lab, the day alone is a time, too: the longest time is meant.
+                    # In 2025-10-03_140506_lab, the day alone could be the time, too. The longest possible time is
+                    # meant.
                     ways.sort(
                         key=lambda way: -len(way.get("time", "")) if read_time(way.get("time", "")) else 0
                     )

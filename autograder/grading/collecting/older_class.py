@@ -1,4 +1,4 @@
-"""Takes into the inbox what a version of the course before the inbox has collected, with its times."""
+"""Takes into the inbox the files that an older version of the course, which had no inbox, has collected, with times."""
 
 from __future__ import annotations
 
@@ -36,8 +36,9 @@ def take_over(directory: ClassDirectory, inbox: Inbox, edits: dict[str, Edit]) -
 
     Args:
         directory: The class.
-        inbox: Gets the bytes. A record whose bytes it has is of this version, or was taken over before.
-        edits: Gets the students and the times, as if a person had entered them.
+        inbox: Receives the bytes. A record whose bytes are in the inbox is skipped: it is new, or was taken over
+            before.
+        edits: Receives the students and the times, as if a person had entered them.
 
     Raises:
         OSError: The bytes could not be written.
@@ -74,7 +75,7 @@ def _records(folder: Path) -> Iterator[tuple[Path, _Older]]:
 
 
 def _bytes(directory: ClassDirectory, record: Path, own: tuple[str, ...], content: str) -> bytes:
-    """Return the bytes of this hash, from ``submitted`` or from where replaced notebooks were kept; else empty."""
+    """Return the bytes with this hash, from ``submitted`` or from the folder of replaced notebooks; else empty."""
     try:
         data = read_bytes(directory.path.joinpath("submitted", *own))
         if hashlib.sha256(data).hexdigest() == content:

@@ -35,7 +35,7 @@ _OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".bz2", ".xz", ".zst")
 
 @dataclass(frozen=True)
 class Edit:
-    """What a person has written into the cells of a line. An empty cell changes nothing.
+    """What a person has written into a line of ``collected.csv``. An empty cell changes nothing.
 
     Attributes:
         use: ``yes`` or ``no``.
@@ -54,10 +54,10 @@ class Edit:
 
 @dataclass(frozen=True)
 class Line:
-    """One file, with everything known about it.
+    """A line of ``collected.csv``: one file, with everything known about it.
 
     Attributes:
-        key: The key of the file in the table.
+        key: The key that identifies the line in ``collected.csv``.
         label: The name of the file in messages.
         content: The hash of the file's bytes.
         students: The ids of the students to whom the file belongs; empty if they are unknown.
@@ -69,8 +69,9 @@ class Line:
         late: True if the system marks the file as late.
         use: ``yes`` or ``no``, as a person wrote it; empty if no person did.
         reason: Why the file cannot count, and what to do.
-        is_soft: True if the file needs no attention once the notebook of its student counts.
-        what_to_do: The advice for the case that this notebook does not come.
+        is_soft: True if the file needs no attention once a notebook of its student was collected, as for a picture next
+            to it.
+        what_to_do: What to do if no such notebook is collected.
         lms, number, name, file: The system, and its names for the student and the file.
         number_of_copy: The number that a browser has added to the file's name.
         is_named: True if the file has the name of the notebook.
@@ -78,8 +79,8 @@ class Line:
         readings: The ways in which the name of the file can be read as a student's.
         repository: The repository on GitHub that contained the file.
         came_in: The downloads that contained the file.
-        rank: Lower if the command named the system, and higher if it named the assignment. It decides which line is
-            shown.
+        rank: Lower if the command named the system, and higher if it named the assignment. If a file came several
+            times, the line with the lowest rank is preferred.
     """
 
     key: str
@@ -157,7 +158,7 @@ class Proposals:
         )
 
     def lines(self) -> list[Line]:
-        """Return one line for each file. What a person wrote takes precedence over what was found.
+        """Return one line of ``collected.csv`` for each file. What a person wrote takes precedence over what was found.
 
         A file that was collected for two assignments has two lines.
         """
@@ -250,7 +251,7 @@ class _Reading:
         return self._student_of.owners(arrival.parts, arrival.levels, is_alone=arrival.is_own)
 
     def line(self, arrival: Arrival, edit: Edit) -> Line:
-        """Return the line of a file."""
+        """Return the line for a file, with what a person wrote into it."""
         rank = bool(self._delivery.assignment) - bool(self._delivery.form or self._delivery.names)
         line = Line(arrival.key, arrival.label, arrival.content, use=edit.use, rank=rank)
         if arrival.is_list:
@@ -356,7 +357,7 @@ class _Reading:
 
 
 def _by_hand(line: Line, arrival: Arrival) -> Line:
-    """Return the line for a file that a person has put into ``submitted``."""
+    """Return the line completed for a file that a person put into ``submitted``: its path shows everything."""
     student, assignment, name = arrival.parts
     return replace(
         line,

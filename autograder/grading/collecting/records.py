@@ -1,4 +1,4 @@
-"""The record of what was collected, stored in the class. From then on only the times in it are trusted."""
+"""The record of the collected work, stored in the class. Once work is collected, only the times in it are trusted."""
 
 from __future__ import annotations
 

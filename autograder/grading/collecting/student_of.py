@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 _WRITE_IT = "write the id under student in collected.csv"
 _NO_ID = f"its name does not say whose it is: {_WRITE_IT}, or add a line to students.csv"
 _LIST_OF = {"moodle": "the grading worksheet (Grades-….csv)", "gradescope": GRADESCOPE}
-"""For systems whose numbers differ in each submission, the list that says whose number it is."""
+"""For each system that gives a student a new number in every submission, the list that maps the numbers to students."""
 _NOBODY = Identity()
 _BY_NUMBER, _BY_LOGIN = ("canvas", "brightspace"), ("github", "blackboard", "google", "sakai", "ilias")
 """The systems whose names contain a person's number, and those whose names contain a user name. Both stay the same for
@@ -62,7 +62,7 @@ class Owners:
 
 
 class StudentOf:
-    """Knows the names by which the systems call a class's students.
+    """Finds a class's students by the names that the systems use for them.
 
     Args:
         roster: The students of the class.
@@ -214,7 +214,7 @@ class StudentOf:
         return numbers
 
     def _first(self, names: Iterable[Identity]) -> tuple[Student, bool] | None:
-        """Return the student of the first name that only one student has, and whether it is more than a name."""
+        """Return the student of the first identity that only one student has, and whether it is more than a name."""
         hits = ((self._roster.find(name), bool(name.login)) for name in names)
         return next(((found[0], is_sure) for found, is_sure in hits if len(found) == 1), None)
 

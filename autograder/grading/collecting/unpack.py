@@ -1,7 +1,8 @@
-"""Unpacks one archive. It runs at a desk, because only that process relies on what the archive says.
+"""Unpacks one archive. It runs in a desk, a process in a box, because an archive may be made to do harm.
 
-The answer has, for each file, a line of JSON and the bytes of the file. The line has the size, and the names: one for
-each archive in another. If a file is not taken, the line has the reason.
+The answer contains, for each file, a line of JSON and then the bytes of the file. The line has the size, and a list of
+names: the path of the file in its archive and, before it, the path of each archive that is inside another. If a file is
+not taken, the line has the reason.
 """
 
 from __future__ import annotations
@@ -29,8 +30,8 @@ EMPTY = "holds no file, or only what programs leave beside a work"
 LONGEST_NAME = 1_000
 """The maximum length of a path in characters. A zip may have paths of 65,535, too long to print."""
 LONGEST_LINE = 50_000
-"""The maximum length of the line about a file, in bytes. It has up to three names, each of which may exceed
-:data:`LONGEST_NAME` when escaped.
+"""The maximum length in bytes of the line of JSON about a file. The line has up to three names, and an escaped name may
+be longer than :data:`LONGEST_NAME`.
 """
 
 
@@ -88,14 +89,14 @@ def _is_ordinary(one: zipfile.ZipInfo) -> bool:
 
 
 class Unpacking:
-    """Unpacks an archive, and the archives in it, within common limits.
+    """Unpacks an archive, and the archives in it. The limits hold for all of them together.
 
     Args:
         answer: The descriptor of the file for what is unpacked.
-        depth: Archives in each other; 1 leaves those that are in it as they are.
-        files: The number of files.
-        unpacked: The number of bytes.
-        of_one: The bytes of one file.
+        depth: The maximum number of archives inside one another. With 1, an archive in the archive is not unpacked.
+        files: The maximum number of files.
+        unpacked: The maximum size of all files together, in bytes.
+        of_one: The maximum size of one file, in bytes.
     """
 
     def __init__(self, answer: int, depth: int, files: int, unpacked: int, of_one: int) -> None:
@@ -126,7 +127,8 @@ class Unpacking:
             for one in entries
             if not any(map(is_left_by_a_program, one.name.replace("\\", "/").split("/")))
         ]
-        if not kept and self.depth > 1:  # of an empty download, its folder says so
+        # At depth 1 the archive is a whole download; if that is empty, a later step reports it.
+        if not kept and self.depth > 1:
             self._tell(names, reason=f"it {EMPTY}")
         for one in kept:
             self._take([*names, one.name[: 2 * LONGEST_NAME]], one)

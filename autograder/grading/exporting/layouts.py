@@ -63,18 +63,18 @@ LAYOUTS = {
         most="{name} - Max Points",
     ),
     "blackboard": GradebookLayout(
-        "Blackboard: Grade Center, Work Offline, Upload",
+        "Blackboard: Grade Center > Work Offline > Upload",
         {"Last Name": "last", "First Name": "first", "Username": "user"},
         points="{name} [Total Pts: {most:g} Score]",
     ),
     "brightspace": GradebookLayout(
-        "Brightspace: Grades, Enter Grades, Import",
+        "Brightspace: Grades > Enter Grades > Import",
         {"OrgDefinedId": "#id"},
         points="{name} Points Grade",
         end={"End-of-Line Indicator": "#"},
     ),
     "sakai": GradebookLayout(
-        "Sakai: Gradebook, Import Grades",
+        "Sakai: Gradebook > Import Grades",
         {"Student ID": "user", "Student Name": "name"},
         points="{name} [{most:g}]",
     ),
@@ -112,7 +112,7 @@ def gradebook(lms: str, table: ClassTable, records: CollectedRecords, assignment
 def _facts(
     table: ClassTable, records: CollectedRecords, id_: str, lms: str, assignments: Sequence[str]
 ) -> dict[str, str]:
-    """Return what a file may contain about a student. ``there`` and ``user`` are the names in the system itself."""
+    """Return what a file may contain about a student. ``there`` and ``user`` are the student's names in the LMS."""
     student = table.roster.students[id_]
     own = student.lms.get(lms, "")
     is_asked = {"there", "user"} & set(LAYOUTS[lms].columns.values())

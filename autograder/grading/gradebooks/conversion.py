@@ -166,7 +166,7 @@ def _with_rubrics(cells: Sequence[NotebookNode]) -> Iterator[NotebookNode]:
 def _graded_outputs(
     check: CellCheck, verdict: Verdict, outputs: Sequence[Mapping[str, Any]]
 ) -> list[NotebookNode]:
-    """Return the card or the test's output, and the score as the cell's value, which nbgrader takes as the points."""
+    """Return the outputs of a graded cell. The last one is the score, which nbgrader takes as the points."""
     score = points(check, verdict)
     card = nbformat_nodes.output(output_type="display_data", data=mimebundle(verdict), metadata={})
     return [

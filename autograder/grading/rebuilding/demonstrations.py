@@ -4,10 +4,11 @@ A chapter shows the ``ros2`` command in some forty cells. Each of these starts p
 together they take longer than all student code and checks. A check runs its subject in a separate ROS domain, so such
 a cell cannot affect the check.
 
-The master marks these cells with a tag. A cell that makes something, such as ``colcon build``, is not a
-demonstration, except below the last cell with points: there, a notebook writes its nodes into a package, and builds
-and runs them as programs. This is for the reader and not for a check, so cells with files and terminals are skipped
-there.
+The master marks these cells with a tag. A cell that makes something, such as ``colcon build``, is not a demonstration,
+because a later check may need the result.
+
+Below the last cell with points, no check follows. There, notebooks write their nodes into a package, and build and run
+them as programs. So all cells with files and terminals are skipped there, too.
 """
 
 from __future__ import annotations

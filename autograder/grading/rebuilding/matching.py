@@ -172,7 +172,7 @@ class _Matching:
 
 
 def _defines(answer: Known) -> str:
-    """Return what a stub defines: the path of a file that it writes, else a pattern for its names, else nothing."""
+    """Return the path of the file that a stub writes, or a pattern for the names that it defines, or an empty text."""
     return _file(answer.texts[0]) or (_names(answer.texts[0]) if answer.kind is CellType.CODE else "")
 
 

@@ -126,11 +126,13 @@ class _Sorting:
         }
         if len(strangers) == 1:
             found.append(
-                f"This notebook has no graded cell {_quoted(*strangers)}. It runs as a cell of your own."
+                f"This notebook has no graded cell {_quoted(*strangers)}. The cell with this name runs as one of your "
+                "own."
             )
         elif strangers:
             found.append(
-                f"This notebook has no graded cells {_listed(sorted(strangers))}. They run as cells of your own."
+                f"This notebook has no graded cells {_listed(sorted(strangers))}. The cells with these names run as "
+                "your own."
             )
         return found
 

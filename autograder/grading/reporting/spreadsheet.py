@@ -13,7 +13,8 @@ import re2
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-# A list from an LMS contains texts that students have typed, which may be as long as the list.
+# A list from an LMS contains texts that students have typed. They may be of any length, so a cell has no limit of its
+# own.
 csv.field_size_limit(2**31 - 1)
 _FORMULA = frozenset("=+-@\N{MINUS SIGN}")
 # A spreadsheet may be set to split a line at these characters, so a formula could begin after them.

@@ -24,7 +24,8 @@ For comparison: in the bank, which solves a task in many ways, two independent r
 LEAST_SHARE = 0.5
 """The minimum share of own words that the two have in common, as a fraction of the answer with fewer own words."""
 _ROUNDS = 6
-"""The number of times that the rest of two answers is compared again. Each time finds one more order of moved blocks.
+"""How many times two answers are compared, each time without the passages already found. One comparison finds passages
+in the same order in both answers; the next ones find blocks that were moved.
 """
 _FOUND_IN_ONE, _FOUND_IN_OTHER = -3, -4
 

@@ -1,4 +1,8 @@
-"""The bench: implements the methods that a scenario calls. One bench serves one look at one subject."""
+"""The bench: implements the methods that a scenario calls.
+
+A bench serves one look, that is, one execution of a scenario with one subject: a fast one or, to confirm it, one in
+real time.
+"""
 
 from __future__ import annotations
 
@@ -174,7 +178,7 @@ class TestBench:
 
     @property
     def wire(self) -> Wire:
-        """The judge's participant in this part."""
+        """The judge's DDS participant in this part of the check."""
         return _of_a_part(self._wire)
 
     @property
@@ -202,7 +206,7 @@ class TestBench:
         return self._announcements is not None and bool(self._announcements.heard() - self._older_processes)
 
     def release(self) -> None:
-        """Let a held subject spin."""
+        """Spin a subject that was constructed and held back so far."""
         self._subject.release()
 
     def press_ctrl_c(self, within: float) -> bool:
@@ -236,7 +240,7 @@ class TestBench:
         return self._misnamed[name]["real"] if name in self._misnamed else name
 
     def await_node(self) -> bool:
-        """Wait for a node of the subject on the graph. It counts if a subject that ended had one."""
+        """Wait for a node of the subject on the graph. A node of a subject that has already ended counts, too."""
         return self._presence.await_node()
 
     def await_sign_of_life(self, within: float) -> bool:
@@ -373,7 +377,7 @@ class TestBench:
         self._recorder.wait(lambda: self._subject.ended, seconds, wall=True)
 
     def settle(self) -> None:
-        """Send each node of the subject two requests, except nodes that did not answer earlier in this part."""
+        """Wait until the subject has handled what it received, if its nodes still answer."""
         self._time.settle()
 
     def await_attention(self) -> None:
@@ -388,8 +392,8 @@ class TestBench:
         """Request a parameter from each node of the subject, and record which node does not answer."""
         nodes = self._presence.counterparts()
         if not nodes:
-            # A program that has destroyed its nodes is ending: how it ends says more than that its nodes do not
-            # answer.
+            # A program that has destroyed its nodes is about to end. Wait for that, because how it ends says more than
+            # nodes that do not answer.
             self.await_end(MATCH)
         for node in nodes:
             if not self._subject.ended and not answers(self.wire, self._recorder, node):
@@ -425,7 +429,7 @@ class TestBench:
         return held
 
     def compare_type(self, service: str, like: str) -> None:
-        """Record whether a service's type has the fields of the type ``like``, by its hashes on the graph."""
+        """Record whether a service's type has the same fields as ``like``, by comparing type hashes on the graph."""
         at = self._real(service)
         made = graph.survey(self.wire.node)["service"].get(at, "")
         expected = expected_hashes(like, made.partition("/")[0])

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 CROWDED = 4.0
-"""The number of runnable threads per processor up to which limits need not be longer."""
+"""The number of runnable threads per processor up to which time limits keep their length."""
 SLOWEST = 3.0
-"""The maximum length of a second of patience, in seconds."""
+"""The largest factor by which a busy machine makes a time limit longer."""
 _LOOK_EVERY = 0.1
 _LOAD = Path("/proc/loadavg")
 
@@ -27,7 +27,7 @@ class Patience:
 
     Args:
         seconds: The time limit in seconds, on an idle machine.
-        slowness: Returns how many seconds a second of patience lasts at the moment.
+        slowness: Returns the factor by which the time limit is longer at the moment; 1.0 on an idle machine.
         now: A monotonic clock, in seconds.
     """
 
@@ -50,7 +50,7 @@ class Patience:
 
     @property
     def left(self) -> float:
-        """The remaining seconds of patience; zero or negative if the limit is reached."""
+        """The rest of the time limit, in seconds on an idle machine; zero or negative if the limit is reached."""
         now = self._now()
         if now - self._looked >= _LOOK_EVERY:
             self._factor = self.slowness()
@@ -61,7 +61,7 @@ class Patience:
 
 
 def machine_slowness() -> float:
-    """Return how many seconds a second of patience lasts at the moment on this machine."""
+    """Return the factor by which time limits are longer at the moment on this machine."""
     return slowness(runnable_threads(), os.cpu_count() or 1)
 
 
@@ -74,7 +74,7 @@ def runnable_threads() -> int:
 
 
 def slowness(runnable: float, processors: int) -> float:
-    """Return how many seconds a second of patience lasts with this load.
+    """Return the factor by which time limits are longer with this load.
 
     Args:
         runnable: The number of threads that run or wait for a processor.

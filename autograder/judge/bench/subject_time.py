@@ -133,7 +133,7 @@ def ask(recorder: Recorder, client: Any, request: Any, limit: float, *, turns: i
     """Return the answer of a service of the subject; None if the subject's executor does not answer in time.
 
     Args:
-        recorder: Its events end a wait.
+        recorder: The record of the part. Each new event ends a wait for the answer.
         client: The client of the service.
         request: The request.
         limit: Time limit for each round, in seconds of wall time.
@@ -206,7 +206,8 @@ class SimulatedClock(NodeClock):
         Returns:
             True if the subject's executor answered after each step.
         """
-        # Rounded like each step, because a sum of floats may be slightly greater than the last step.
+        # Round the end as each step is rounded. Otherwise the floating-point sum could be slightly later than the last
+        # step, and the loop would make one more.
         end = round(self._now + seconds, 6)
         while self._now < end and not until():
             began = time.monotonic()
@@ -231,7 +232,7 @@ class SubjectTime:
 
     Args:
         wire: The judge's participant.
-        recorder: The record; its events end a wait.
+        recorder: The record of the part. Each new event ends a wait.
         subject: The subject.
         presence: The subject's nodes, and which of the judge's endpoints they are matched with.
         opened: Everything that is made here and has to be closed at the end of the part.
@@ -284,7 +285,7 @@ class SubjectTime:
         return True
 
     def lend(self, seconds: float, role: str, name: str) -> None:
-        """Let simulated seconds pass for the node with this endpoint, then restore real time; or real seconds."""
+        """Let simulated seconds pass for the node with this endpoint; if it does not follow, let real seconds pass."""
         for node in graph.owners(self._wire.node, role, name):
             if node.full not in self._deaf:
                 with contextlib.closing(NodeClock(self._wire, self._recorder, node)) as clock:
@@ -293,7 +294,10 @@ class SubjectTime:
         self._recorder.wait(lambda: self._subject.ended, seconds, wall=True)
 
     def settle(self) -> None:
-        """Send each node of the subject two requests, except nodes that did not answer earlier in this part."""
+        """Wait until the subject has handled what it received: each node then answers two requests.
+
+        Nodes that have already failed to answer in this part are skipped.
+        """
         limit = ANSWER_LIMIT if self._pace is Pace.FAST else PATIENT_ANSWER
         for node in self._presence.counterparts():
             if node.full in self._deaf or self._subject.ended:

@@ -75,7 +75,8 @@ def converse(connection: socket.socket, order: Open | None) -> Report:
         subject = RemotePath(lines)
     else:
         subject = RemoteSubject(lines, is_class=first.kind == "class")
-    # If a grader ordered the check, it repeats the check alone in case an overloaded machine spoiled it.
+    # A grader repeats a check, with nothing else running, if an overloaded machine may have spoiled it. So the report
+    # to a grader says whether that is possible.
     seed = own_seed(wanted.seed, exercise.id)
     report, checked = _report(exercise, subject, seed, wanted, marks_crowded=order is not None)
     _tell(lines, Judged(None if wanted.boxed else _shown(exercise, report)))

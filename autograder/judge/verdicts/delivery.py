@@ -16,8 +16,8 @@ NOT_DELIVERED = (
     "judge cannot tell whether your node sent any. Close some, or wait a little, and check again."
 )
 _DATAGRAMS, _BYTES = 16, 4096
-"""The datagrams to send. Together they are more than a socket can hold if this memory is used up, and less than half of
-what it can hold otherwise.
+"""The number of datagrams to send, and the bytes in each. Their sum is less than half of what a socket normally holds,
+but more than it holds if other programs have used up the system's memory for sockets.
 """
 _ARRIVES_WITHIN = 10.0
 """Time limit in seconds of wall time. Inside one machine, a datagram waits only for a processor."""

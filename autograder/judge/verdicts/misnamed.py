@@ -10,19 +10,19 @@ if TYPE_CHECKING:
 
 
 def misnamed(evidence: Evidence, verdict: Verdict) -> dict[str, dict[str, str]]:
-    """Return the endpoints with wrong names, by their names in the task.
+    """Return the endpoints to which the subject gives a wrong name, by their right names in the task.
 
     A name counts as wrong if the subject has, in all runs, no endpoint of this name, role and type, but exactly one
     other endpoint of this role and type. If there are two, neither is chosen, because it is unclear which one was
     meant.
 
     Args:
-        evidence: A look in which the judge used the names in the task.
-        verdict: The verdict on that look, which is not a pass.
+        evidence: What the judge recorded when it used the names in the task.
+        verdict: The verdict on that evidence, which is not a pass.
 
     Returns:
-        For each name: ``real``, the name that the subject uses, and ``costs``, the criterion that the wrong name
-        fails first.
+        For each name: ``real``, the name that the subject uses, and ``costs``, the name of the first criterion that
+        fails because of the wrong name.
     """
     costs = next(criterion.name for criterion in verdict.criteria if not criterion.passed)
     found: dict[str, dict[str, str]] = {}

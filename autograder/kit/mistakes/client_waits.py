@@ -1,4 +1,4 @@
-"""A client's wait for its server: the runs with and without one, what it says there, and the mistakes with both.
+"""A client's wait for its server: the runs with and without a server, what the client says, and its mistakes.
 
 The clients of services and of actions differ only in words: see :class:`Wait`.
 """
@@ -22,9 +22,9 @@ class Wait:
     """The wait of one kind of client.
 
     Attributes:
-        noun: The word for the server, as in the name of the wait: ``"service"`` or ``"server"``.
+        noun: The word for the server, as in ``wait_for_service``: ``"service"`` or ``"server"``.
         role: The role of the client's endpoint: ``"client"`` or ``"action_client"``.
-        asks: The kind of event with which it asks its server: ``"request"`` or ``"goal"``.
+        asks: The kind of event that is recorded when the client asks its server: ``"request"`` or ``"goal"``.
         absent: The name of the run without a server.
         served: The names of the runs with a server. In the first of them the server comes late.
     """
@@ -44,7 +44,7 @@ class Wait:
         return part.first(self.asks) is not None
 
     def had_server(self, evidence: Evidence) -> list[Part]:
-        """Return the runs in which the client had its server, so that its words there cannot mean that one is missing.
+        """Return the runs in which the client had its server, so a report in them that a server is missing is wrong.
 
         In the first run the server comes late, so a client may report it missing there. That run is therefore left
         out, unless the client never sends a request in it.
@@ -90,7 +90,7 @@ class Wait:
         return f"`if not your_{self.role}.wait_for_{self.noun}(timeout_sec=5.0):`"
 
     def for_nobody(self) -> Mistake:
-        """Make the mistake of a client that, without a server, waits in silence for ever."""
+        """Return the mistake of a client that, without a server, waits in silence forever."""
         return mistake(
             "waits_forever",
             lambda evidence: self.fault(evidence).startswith("still waiting"),
@@ -100,7 +100,7 @@ class Wait:
         )
 
     def for_ever(self) -> Mistake:
-        """Make the mistake of a client that, with a server, waits for ever and asks for nothing."""
+        """Return the mistake of a client that, although there is a server, waits forever and asks for nothing."""
         return mistake(
             "waits_forever",
             lambda evidence: any(
@@ -114,7 +114,7 @@ class Wait:
         )
 
     def the_wrong_way_round(self) -> Mistake:
-        """Make the mistake of a client whose condition lacks a ``not``: it gives up if its server exists, else not."""
+        """Return the mistake of a client whose condition lacks a ``not``: it gives up only if its server exists."""
         return mistake(
             "not_forgotten",
             self._gives_up_where_served,
@@ -126,7 +126,7 @@ class Wait:
         )
 
     def _gives_up_where_served(self, evidence: Evidence) -> str:
-        """Return the line that reports a missing server in a run with one; empty if the other run has the same line."""
+        """Return the line that reports an existing server as missing; empty if a missing one is reported, too."""
         absent, served = evidence.part(self.absent), self.runs(evidence)
         if not absent.events or NOT_AVAILABLE.lines(absent):
             return ""
@@ -136,7 +136,7 @@ class Wait:
         return told[0][-1] if all(told) else ""
 
     def too_short(self) -> Mistake:
-        """Make the mistake of a client that gives up before its server exists."""
+        """Return the mistake of a client that gives up before its server exists."""
         return mistake(
             "gave_up_too_early",
             lambda evidence: giving_up.gave_up(self.runs(evidence), evidence.part(self.absent), self.asked),
@@ -147,7 +147,7 @@ class Wait:
         )
 
     def patience_not_kept(self) -> Mistake:
-        """Make the mistake of a function that, without a server, waits by a limit of its own."""
+        """Return the mistake of a function that, without a server, does not wait as long as it was told to."""
         return mistake(
             "patience_not_kept",
             lambda evidence: (
@@ -162,7 +162,7 @@ class Wait:
         )
 
     def silent_end(self, *, certain: bool = False) -> Mistake:
-        """Make the mistake of a client that asks its server for something, and does not report a missing one."""
+        """Return the mistake of a client that asks its server for something, but does not report a missing server."""
 
         def recognise(evidence: Evidence) -> Advice | None:
             if not self.asked(evidence.part(self.served[0])):

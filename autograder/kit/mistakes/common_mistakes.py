@@ -54,8 +54,8 @@ def endpoint_name(role: str) -> Mistake:
         _KEY[noun],
         strange_and_missing,
         f"Your node {verb} {{0[0]}}; the {noun} is called {{0[1]}}.",
-        f"Compare the names letter by letter: two nodes are connected only if they are equal, as `ros2 {noun} list` "
-        "shows them. A ~/ or a namespace in front comes from your code or your launch file: leave it out.",
+        f"Compare the names in `ros2 {noun} list` letter by letter: two nodes are connected only if their names are "
+        "equal. A ~/ or a namespace before the name comes from your code or your launch file: remove it there.",
         certain=True,
     )
 
@@ -200,7 +200,7 @@ def _awaits_in_vain(evidence: Evidence) -> bool:
 
 
 def _left_an_answer(part: Part) -> bool:
-    # A client that only sends a goal may rightly spin on while its node answers.
+    # If a client only sends a goal, it is right to keep spinning after the answer, as long as its node responds.
     answers = part.of("response") + (part.of("goal_answered") if part.of("unanswered") else [])
     if not answers:
         return False
@@ -221,7 +221,7 @@ AWAITS_IN_VAIN = mistake(
     "(ReentrantCallbackGroup or another MutuallyExclusive one), or go on in a function that you give to the "
     "add_done_callback(...) of the future.",
 )
-"""These mistakes are checked after the hangs, and before the mistakes of a node that is not spun."""
+"""This mistake is checked after the hangs, and before the mistakes of a node that is not spun."""
 
 
 def _silent_node(evidence: Evidence, role: str) -> bool:

@@ -161,7 +161,7 @@ def _went_on_without_it(part: Part) -> bool:
 
 
 _COROUTINE = re2.compile(
-    # If a callback was never awaited, the program may simply have ended before rclpy ran it: those are left out.
+    # The warning is not matched for methods, which may be callbacks: a program may end before rclpy has run one.
     r"^<coroutine object (?P<returned>\S+) at |RuntimeWarning: coroutine '(?P<warned>[a-z]\w*)' was never awaited"
 )
 
@@ -191,8 +191,8 @@ def _file_not_found(evidence: Evidence) -> Advice | None:
         return None
     return Advice(
         f"Python does not find the program {found['file']}, so nothing of yours has run.",
-        "Write the path of your program behind python3. `ls` lists the files of the folder that the terminal is in, "
-        "and `cd FOLDER` goes to another folder.",
+        "Write the path of your program after python3. `ls` lists the files in the terminal's current folder, and "
+        "`cd FOLDER` changes to another folder.",
     )
 
 

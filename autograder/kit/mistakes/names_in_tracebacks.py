@@ -9,7 +9,8 @@ from __future__ import annotations
 import re2
 
 MARKS = r"\n(?:[ ~^]*\n)?"
-"""Matches the end of a line of code up to Python's message, with an optional line of ``^`` or ``~`` marks between them.
+"""Matches what is between a quoted line of code and Python's message: a line break, and perhaps a line of ``^`` and
+``~``.
 """
 _FRAME_WITH_CODE = re2.compile(r'(?m)^ {2}File "(?P<file>[^"]*)", line \d+.*\n {4,}(?P<code>\S.*)$')
 """Matches a frame of a traceback and the line of code quoted below it."""

@@ -298,4 +298,4 @@ def waits_for_the_server(evidence: Evidence) -> Finding:
 ends_without_a_server = WAIT.gives_up
 """Decide whether, without a server, the client reports that and ends, or repeatedly says that it waits."""
 may_wait_on = remark(ABSENT)
-"""Returns the card's remark, about setting limits, on a client that keeps waiting."""
+"""Returns, for a client that keeps waiting without a server, the card's remark that a robot also needs a limit."""

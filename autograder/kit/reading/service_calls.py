@@ -29,12 +29,12 @@ CALLED = (LATE, BIASED, EXTREME)
 HANGS_AFTER = 8.0
 """Seconds without any event after which a client is taken to hang.
 
-A program that calls before the service exists waits this long in both looks: 21 seconds in all on a quiet machine. No
-event can decide the matter earlier. A request without a service reaches no reader. ROS lets the judge read requests
-only as a server, which the client would see: the topic `rq/add_two_intsRequest` belongs to services, and a
-subscription, even one with `avoid_ros_namespace_conventions`, reads `/rq/add_two_intsRequest`. The stack of a client
-whose call was lost looks like that of a right client, whose timer waits for the service. So a second run has to
-confirm that nothing happens.
+A program that calls before the service exists waits this long twice, in the fast look and in real time: 21 seconds in
+all on a quiet machine. No event can decide the matter earlier. A request without a service reaches no reader. ROS lets
+the judge read requests only as a server, which the client would see: the topic `rq/add_two_intsRequest` belongs to
+services, and a subscription, even one with `avoid_ros_namespace_conventions`, reads `/rq/add_two_intsRequest`. The
+stack of a client whose call was lost looks like that of a right client, whose timer waits for the service. So a second
+run has to confirm that nothing happens.
 """
 
 
@@ -77,7 +77,7 @@ class Client:
         return all(part.ending for part in self.evidence.parts)
 
     def called(self, wanted: int) -> bool:
-        """Return True if it made at least this many calls in each run with a service."""
+        """Return True if the client made exactly this many calls in each run with a service."""
         return all(len(requests(part)) == wanted for part in self.served)
 
 
@@ -113,8 +113,8 @@ def returns_another(part: Part) -> bool:
 def says_otherwise(part: Part) -> bool:
     """Return True if one of the client's reports of the last answer is wrong, even if another report is right.
 
-    A function that raised an exception returned nothing, so its value is not compared. A line that contains the
-    answer with the wrong sign counts as wrong.
+    A notebook's function that raised an exception counts as wrong, because it has returned no answer. A line that
+    contains the answer with the wrong sign counts as wrong, too.
     """
     if returns_another(part) or (part.ending is not None and part.ending.name == "raised"):
         return True

@@ -65,12 +65,13 @@ ORDERS = {LATE: (41, 46), REFUSED: (-9, -1), ABORTED: (0, 0), ABSENT: (11, 30)}
 SHOWN_WITHIN = {Pace.FAST: 0.5, Pace.REAL_TIME: 1.5}
 """The maximum time in seconds for a client to show a feedback message before the next one is sent."""
 HASTE = {Pace.FAST: 0.1, Pace.REAL_TIME: 0.075}
-"""The same time limit for a client that failed to show one. With it the goal's result comes after some 3.5 s, between
-the 3 and the 5 seconds that many clients wait.
+"""The same time limit, in seconds, once the client has failed to show a message. With it the goal's result comes after
+some 3.5 s, between the 3 and the 5 seconds that many clients wait.
 """
 AT_PACE = 3
-"""The number of feedback messages at the end that are sent at the pace of the lab's server, whether or not earlier ones
-were shown. A client that shows the newest message by a timer shows only some of the earlier ones.
+"""The number of last feedback messages that are sent at the pace of the lab's server, even if the client has not shown
+the messages before. They are a fair test for a client that shows the newest message by a timer, and so misses earlier
+ones.
 """
 LAB_PACE = 0.5
 """Seconds, in the client's time, between two feedback messages at the lab's pace."""
@@ -88,7 +89,7 @@ AFTERMATH = 1.0
 
 
 def scenario(bench: Bench) -> None:
-    """Make four runs: one succeeds at a late server; then, in random order, one refused, one aborted, one unserved."""
+    """Make four runs: first a goal succeeds at a late server; then, in random order, a refusal, an abort, no server."""
     inputs = begin(bench, LATE)
     if not late(bench, inputs, late_at_first(bench)) or called_before_server(bench.seen()):
         return
@@ -128,8 +129,8 @@ def late(bench: Bench, inputs: Mapping[str, Any], lateness: float, held: float =
         bench: The bench of the scenario.
         inputs: The inputs of the subject.
         lateness: The delay of the server, in seconds.
-        held: The delay of the answer to the goal. Also if a person waits, it is once as late as it may be: only a long
-            wait shows a client's limit.
+        held: The delay of the answer to the goal, in seconds. Even if a student is waiting, this run has the longest
+            delay allowed, because only a long wait shows a client's limit.
     """
 
     def meet(seconds: float, answer: float) -> bool:
@@ -199,7 +200,7 @@ def aborted(bench: Bench, first: Part) -> None:
 
 
 def needs_no_search(bench: Bench, first: Part) -> bool:
-    """Return True if the server may exist before the subject, a function in the kernel that waits for answers."""
+    """Return True if the server may exist before the subject, as for a notebook's function that waits for answers."""
     return bench.in_a_cell and bool(first.of("result_request"))
 
 
@@ -224,8 +225,9 @@ def works_on_a_goal(
     result.insert(-1, result[1])
     done = await_goal(bench, server, GOAL_LIMIT)
     if done:
-        # The first feedback must not come together with the answer to the goal: chance would then decide what a
-        # client receives that takes one event and ends. A client that goes on will next request the result.
+        # The first feedback must not come together with the answer to the goal. Otherwise chance would decide which of
+        # the two is received by a client that takes one event and ends. A client that goes on will next request the
+        # result.
         server.await_result_request(SHOWN_WITHIN[bench.pace])
         action, _ = bench.reference.only("action_client")
         for count, last in enumerate(newest, start=2):
@@ -236,8 +238,8 @@ def works_on_a_goal(
                 bench.pass_time(LAB_PACE, "action_client", action)
             elif not bench.wait_until(lambda seen: not unshown_feedback(seen.main), shown_within):
                 shown_within = HASTE[bench.pace]
-                # The client's queue holds ten messages, so a client on a busy machine must first have taken those
-                # that are in it.
+                # The client's queue holds ten messages, so wait until a client on a busy machine has taken those that
+                # are in it.
                 bench.settle()
         server.await_result_request(END_LIMIT[bench.pace])
         hold_back(bench, "result_request")
@@ -304,7 +306,7 @@ _WHAT_IS_SAID = (
     goals.ABORT_NOT_REPORTED,
     WAIT.silent_end(),
 )
-"""Criteria about what a client requests and reports. They are certain if it ended by itself in every part."""
+"""Criteria about what a client requests and reports. They are certain if the client ended by itself in every part."""
 
 
 def _not_by_refusal(mistake: Mistake) -> Mistake:

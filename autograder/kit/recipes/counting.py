@@ -113,7 +113,7 @@ class Counting:
         )
 
     def start(self, seen: Publisher, expected: Publisher) -> Advice | None:
-        """Return advice if it counts by the right step, but from a wrong number, or not from its first message on."""
+        """Return advice if the step is right, but the first number is wrong, or other messages come before it."""
         steady = len(seen.counters) > 1 and not _slip(seen.counters, expected.step)
         unheard, right = _uncounted(seen, expected), _starts_right(seen, expected)
         if not steady or (right and not seen.greetings):
@@ -123,8 +123,8 @@ class Counting:
             return Advice(
                 f"“{seen.texts[seen.greetings]}” was message {seen.greetings + seen.number_of_first} of your node: it "
                 f"published {counted(seen.greetings + unheard, 'message')} more before it than it counted{what}.",
-                "Fill each message before you publish it, and publish nothing before the first of these: a line such "
-                "as “Talker started” goes into the log.",
+                "Fill each message before you publish it, and publish no other message before the one with the first "
+                "number: write a line such as “Talker started” to the log.",
             )
         first, begins = _first_number(seen, expected), expected.counters[0]
         return Advice(
@@ -160,7 +160,7 @@ class Counting:
 
 
 def _first_number(seen: Publisher, expected: Publisher) -> int | None:
-    """Return the number in its first message, even if the judge could not receive that message; None if unknown.
+    """Return the number in the publisher's first message, even if the judge could not receive it; None if unknown.
 
     A loop may publish in the moment in which it makes its publisher, too early for any listener. DDS numbers the
     messages, so the judge knows how many were lost. If the first number that was heard cannot be reached from the

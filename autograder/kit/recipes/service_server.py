@@ -142,11 +142,11 @@ class Asks:
         return True
 
     def seen(self, evidence: Evidence) -> Server:
-        """Return the view of the subject as a server."""
+        """Return the calls in the evidence, and how the subject answered them."""
         return Server(evidence.main, len(evidence.reference.part(CALLS).of("asked")))
 
     def expected(self, evidence: Evidence) -> Server:
-        """Return the view of the recorded reference solution."""
+        """Return the same for the recorded reference solution."""
         part = evidence.reference.part(CALLS)
         return Server(part, len(part.of("asked")))
 
@@ -171,7 +171,8 @@ class Asks:
                 "Each call reaches both, and whichever is quicker answers.",
                 "Call create_service once, and make one node only.",
             ),
-            # This comes before any crash: a wrong answer may not fit into its field, and then rclpy's server crashes.
+            # A wrong answer is checked before any crash, because it may be the cause: if it does not fit into its
+            # field, rclpy's server crashes.
             OWN,
             *common.connecting("service"),
             *common.spinning("service"),

@@ -25,11 +25,14 @@ SIMULATED = 20
 PATIENCE = {Pace.FAST: 1.0, Pace.REAL_TIME: 3.0}
 """Time limit in seconds of wall time for a listener to report a text."""
 BEFORE = 1.0
-"""Seconds before the first text, in which the listener can hear nothing; simulated if it follows the clock."""
+"""Seconds to wait before the first text, to see whether the listener reports one that was not sent. They are simulated
+for a listener that follows simulated time.
+"""
 REPLACED = 2
 """The number of replaced subscriptions that shows that the listener makes a new one for each text."""
 AFTERMATH = 2.5
-"""Seconds after the last text, in which the listener must invent or repeat nothing; simulated if it follows the clock.
+"""Seconds to wait after the last text, to see whether the listener repeats a text or reports one that was not sent.
+They are simulated for a listener that follows simulated time.
 """
 
 
@@ -48,7 +51,7 @@ class Speaks:
         self._step = pace / STEPS
 
     def scenario(self, bench: Bench) -> None:
-        """Send texts that no program can guess: some at the pace, some each after the one before was reported."""
+        """Send texts that no program can guess: first some at the pace, then some one by one, each after a report."""
         topic, type_name = bench.reference.only("subscription")
         texts = random_texts(bench.random)
         bench.part("listening", texts=texts)
@@ -68,8 +71,8 @@ class Speaks:
         speaker.send(data=texts[0])
         simulated = bench.wait_until(_is_simulated, 0.0)
         if simulated:
-            # The pause is as long as any other: the time of the next text must not depend on how soon this one is
-            # reported.
+            # This pause has the same length as all others, so that the time of the next text does not depend on how
+            # soon the listener reports this one.
             bench.run_time(self._pace, step=self._step)
         if not self._are_said(bench, texts[:1]):
             self._ask_once_more(bench, speaker, texts[1])
@@ -109,11 +112,11 @@ class Speaks:
         return bench.wait_until(said, PATIENCE[bench.pace])
 
     def seen(self, evidence: Evidence) -> Part:
-        """The subject, as the judge saw it."""
+        """Return the record of the subject."""
         return evidence.main
 
     def expected(self, evidence: Evidence) -> Part:
-        """The reference, which is the same as the subject: the expected texts are drawn again each time."""
+        """Return the record of the subject, too: it contains the expected texts, which are drawn for each check."""
         return evidence.main
 
     @property
@@ -155,18 +158,18 @@ class Speaks:
 
 
 def _rows(texts: Sequence[str]) -> list[Sequence[str]]:
-    """Return the texts of each try of the lab's pace in real time."""
+    """Return the texts that are sent at the lab's pace in real time, as one group for each try."""
     return [texts[1 + AT_PACE * i : 1 + AT_PACE * (i + 1)] for i in range(TRIES)]
 
 
 def _is_simulated(evidence: Evidence) -> bool:
-    """True if the clock was the judge's when it sent its last text."""
+    """Return True if the subject followed the judge's clock when the last text was sent."""
     sent = evidence.main.of("sent")
     return bool(sent) and sent[-1].sim is not None
 
 
 def _says(texts: Sequence[str], evidence: Evidence) -> bool:
-    """True if each of these texts was said after it was sent, and again after it was sent again."""
+    """Return True if each of these texts was reported after it was sent, and again if it was sent again."""
     awaited = [event for event in _sent(evidence) if _text(event) in texts]
     return all(is_said(_text(event), evidence.main, after=event) for event in awaited)
 
@@ -185,7 +188,7 @@ def _text(event: Event) -> str:
 
 
 def subscribes(evidence: Evidence) -> Finding:
-    """A subscription of the subject is on the topic with the right type."""
+    """Decide whether the subject subscribes to the topic with the right type."""
     topic, type_name = evidence.reference.only("subscription")
     made = _subscriptions(evidence.main, topic)
     nothing = "it ended too soon to tell" if evidence.main.ending else "no subscription"
@@ -194,10 +197,10 @@ def subscribes(evidence: Evidence) -> Finding:
 
 
 def _subscriptions(part: Part, topic: str) -> dict[str, str]:
-    """Return topic -> type; empty for a program that ended before it was sent anything.
+    """Return the topics of subscriptions with their types; none for a program that ended before it was sent anything.
 
-    Chance decides whether the graph showed those before they were gone. A notebook's class is held until they are
-    known.
+    For such a program, chance decides whether the graph showed its subscriptions before they were gone. A notebook's
+    class is not spun until its subscriptions are known.
     """
     ending, sent = part.ending, part.first("sent", topic)
     met = ending is None or part.first("subject", "constructed") or (sent and _is_before(part, sent, ending))
@@ -209,7 +212,7 @@ def _is_before(part: Part, event: Event, other: Event) -> bool:
 
 
 def _missing(evidence: Evidence) -> list[Event]:
-    """Return the texts that were sent and not said, except those missed at a pace that it kept at another time."""
+    """Return the texts that were not reported, except those sent at a pace that the listener kept in another try."""
     part, sent = evidence.main, _sent(evidence)
     silent = [event for event in sent if not is_said(_text(event), part, after=event)]
     if _is_simulated(evidence):
@@ -224,7 +227,7 @@ def _missing(evidence: Evidence) -> list[Event]:
 
 
 def _replaced(evidence: Evidence) -> int:
-    """Return the number of its subscriptions that another subscription replaced after the first text was sent."""
+    """Return how many subscriptions of the listener were replaced by another one after the first text was sent."""
     sent, part = _sent(evidence), evidence.main
     if not sent:
         return 0

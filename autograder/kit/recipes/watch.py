@@ -1,4 +1,4 @@
-"""A node that says something once, when a state changes, declared by the state that follows from its inputs and time.
+"""A recipe for a node that reports each change of a state. The author writes how inputs and time decide the state.
 
 Time alone may change the state: ``"lost"`` after a second without a message, ``"back"`` with the next one.
 """
@@ -23,24 +23,24 @@ if TYPE_CHECKING:
     from autograder.kit.rules import State
 
 SILENCE = object()
-"""A state of which nothing is said."""
+"""A state that the node must not report."""
 EARLY = 0.15
-"""Seconds by which a message may come before its state is due: three steps of the judge's clock."""
+"""How many seconds too early a message may report a state: three steps of the judge's clock."""
 BUSY = 0.25
-"""Seconds by which a message may come later in real time, in which a busy machine holds a node up."""
+"""How many seconds later than the task allows a message may come in real time, because a busy machine delays a node."""
 GRAIN = 0.02
-"""Seconds between two moments for which the state is computed."""
+"""The state is computed for moments that are this many seconds apart."""
 
 
 @dataclass
 class Span:
-    """A time in which a state holds that has to be said once.
+    """An interval in which one state holds, which the subject has to report once.
 
     Attributes:
         state: The state.
-        begin: When it begins, in seconds of the subject's time.
-        end: When it ends.
-        said: When the subject said it, or None.
+        begin: The beginning of the interval, in seconds of the subject's time.
+        end: The end of the interval.
+        said: The time at which the subject reported the state; None if it did not.
     """
 
     state: Any
@@ -50,22 +50,22 @@ class Span:
 
 
 class Watch(Declared):
-    """A node that listens on one topic and says a state on another: once at each change, and in time.
+    """The recipe for a node that listens on one topic and reports a state on another, once at each change and in time.
 
     Args:
-        exercise_id: Such as ``"lab_8_1.watchdog"``.
+        exercise_id: The exercise's id, such as ``"lab_8_1.watchdog"``.
         title: The title of the card: the lab and the subject.
         task: One sentence that states the task.
-        state: Returns the state for everything that the node was given so far, each with its ``age`` in seconds,
-            ``value`` and ``name``. The state for nothing is the first one, which is not said; of :data:`SILENCE`
-            nothing is said.
+        state: Returns the state, given all messages that the node was sent so far, each with its ``age`` in seconds,
+            ``value`` and ``name``. For no messages it returns the initial state. The node must report neither the
+            initial state nor :data:`SILENCE`.
         gives: The messages, each with the seconds until the next one or the end. A dictionary is a whole message,
-            anything else its field ``data``. In real time these seconds grow on a busy machine: choose them at least
-            a quarter of a second off every limit. A node that looks only once a second is late at some change if
-            changes are due in different thirds of a second.
-        within: Seconds in which a change must be said; the task states them.
-        waits: Seconds of wall time before the first message, in which nothing may be said.
-        field: The path of the field of a message that has the state.
+            anything else its field ``data``. In real time these seconds get longer on a busy machine, so let them
+            differ from every limit by at least a quarter of a second. Let changes be due in different thirds of a
+            second: then a node that looks only once a second is late at one of them.
+        within: Time limit in seconds for reporting a change, as stated in the task.
+        waits: Seconds of wall time before the first message, in which the node must not report anything.
+        field: The path of the message field that contains the state.
     """
 
     def __init__(
@@ -86,13 +86,14 @@ class Watch(Declared):
         self._field = field
 
     def says(self, name: str, state: Any, points: float, title: str, words: str = "") -> None:
-        """Add a criterion: whenever a state begins, it is said in time.
+        """Add a criterion: whenever a state begins, the node reports it in time.
 
-        A state is not missed if it ends before that time, or if the subject did not say the one before it.
+        A state does not count as missed if it ends before the time limit, or if the node did not report the state
+        before it either.
 
         Args:
             name: A stable key.
-            state: The state that is to be said.
+            state: The state to report.
             points: The points for it.
             title: One line for people.
             words: The words of the task that the criterion judges.
@@ -119,7 +120,7 @@ class Watch(Declared):
         self._judges(name, words)
 
     def once(self, name: str, points: float, title: str, words: str = "") -> None:
-        """Add a criterion: no message is untrue, and none repeats another; arguments as in :meth:`asks`."""
+        """Add a criterion: every message reports a state that is due, and only once; arguments as in :meth:`asks`."""
 
         def judge(seen: Part, expected: Part) -> Finding:
             _, stray = self._matched(seen, self._state)
@@ -133,7 +134,7 @@ class Watch(Declared):
         self._judges(name, words)
 
     def wrong(self, key: str, state: State | Mapping[str, Any], says: str, next_step: str) -> None:
-        """Add a mistake: all messages fit a variant of ``state``; arguments as in :meth:`Relay.wrong`."""
+        """Add a mistake: all messages fit a wrong variant of the state; arguments as in :meth:`Relay.wrong`."""
         wrong = variant(self._state, state)
 
         def fits(seen: Part, rule: State) -> bool:
@@ -152,7 +153,7 @@ class Watch(Declared):
         return super().exercise()
 
     def _ready_made(self) -> Iterator[tuple[str, Callable[[Part], str], str, str, bool]]:
-        """Yield key, finder, both texts and certainty of each mistake that every watch may show."""
+        """Yield each mistake that any such node may show: its key, the function that finds it, two texts, certainty."""
         yield (
             "too_early",
             self._before_the_first,
@@ -198,7 +199,7 @@ class Watch(Declared):
         )
 
     def _happens(self, met: Met) -> bool:
-        # A time that the subject has read before its clock is simulated means nothing later: this part is in real time.
+        # Wait in real time, because a time that the subject reads before its clock is simulated means nothing later.
         met.bench.wait_until(lambda evidence: bool(evidence.main.of("message")), self._waits)
         met.bench.run_time(STEP)
         for given, seconds in self._gives:
@@ -208,7 +209,7 @@ class Watch(Declared):
         return met.heard > 0
 
     def _spans(self, seen: Part, rule: State) -> list[Span]:
-        """Return the times of all states that are due by a rule, in order."""
+        """Return the interval of each state that has to be reported by a rule, in order."""
         sent = seen.of("sent")
         if not sent:
             return []
@@ -228,7 +229,7 @@ class Watch(Declared):
         return [span for span in spans[1:] if span.state is not SILENCE]
 
     def _matched(self, seen: Part, rule: State) -> tuple[list[Span], list[Event]]:
-        """Return the due states, each with the time at which it was said, and the messages of no due state."""
+        """Return the states to report, each with the time of its report, and the messages that report no such state."""
         spans, stray = self._spans(seen, rule), []
         for event in seen.of("message"):
             at, told = reported_at(event), self._told(event)
@@ -251,17 +252,17 @@ class Watch(Declared):
         return pick(event.data["fields"], self._field)
 
     def _before_the_first(self, seen: Part) -> str:
-        """Return what was said before the first message of the judge."""
+        """Return what the subject reported before the judge's first message."""
         heard = [event for event in seen.events if event.kind in ("sent", "message")]
         return str(self._told(heard[0])) if heard and heard[0].kind == "message" else ""
 
     def _repeated(self, seen: Part) -> str:
-        """Return what was said twice in a row."""
+        """Return a state that the subject reported twice in a row."""
         told = map(self._told, seen.of("message"))
         return next((str(one) for one, other in pairwise(told) if same(one, other)), "")
 
     def _only_in_answer(self, seen: Part) -> str:
-        """Return what is due without a message of the judge, if the subject speaks at such messages only."""
+        """Return a state that begins without a message, if the subject reports only when the judge sends one."""
         sent = [event.moment for event in seen.of("sent")]
 
         def by_itself(at: float) -> bool:
@@ -273,14 +274,14 @@ class Watch(Declared):
         return str(due[0]) if due and answers else ""
 
     def _never_told(self, seen: Part) -> str:
-        """Return a due state that was never said, and what was said; nothing if nothing was said at all."""
+        """Return a due state that was never reported, and what was reported; empty if nothing was reported at all."""
         told = [self._told(event) for event in seen.of("message")]
         due = [span.state for span in self._spans(seen, self._state)]
         never = next((one for one in due if not any(same(one, other) for other in told)), None)
         return f"{never}, but {in_words(told[:6])}" if told and never is not None else ""
 
     def _too_late(self, seen: Part) -> str:
-        """Return what was said too late, and by how much, or was missed; nothing if nothing was said at all."""
+        """Return a state that was reported too late, with the delay, or missed; empty if nothing was reported."""
         spans, _ = self._matched(seen, self._state)
         after = [(span.state, span.said - span.begin) for span in spans if span.said is not None]
         late = [f"{state} {seconds:.1f} s late" for state, seconds in after if seconds > self._late(seen)]
@@ -288,7 +289,7 @@ class Watch(Declared):
         return next(iter([*late, *missed] if after else []), "")
 
     def _untrue(self, seen: Part) -> str:
-        """Return what was said while another state held."""
+        """Return a state that the subject reported while another one held."""
         spans, stray = self._matched(seen, self._state)
         states = [span.state for span in spans]
         told = map(self._told, stray)

@@ -156,12 +156,13 @@ class StaleCodeError(Exception):
 
 
 def raise_if_stale(subject: Any) -> None:
-    """End a check of out-of-date code with a message. Outside a notebook, do nothing.
+    """Refuse to check a class or function that is older than its cell. Outside a notebook, do nothing.
 
-    A check of files is not ended, because a student may have written them in an editor.
+    A check of files is never refused, because a student may have written them in an editor.
 
     Raises:
-        StaleCodeError: The cell that redefines the subject, or a name that it uses, ended with an error.
+        StaleCodeError: The last run of the cell that defines the subject, or that defines a name used by the subject,
+            ended with an error.
     """
     if _cells is None:
         return

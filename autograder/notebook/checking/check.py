@@ -161,9 +161,8 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: CardPlace) -> V
                         place.ensure(fresh=order.fresh)
                         link.say(messages.Met(place.sees(order.there, order.gone, order.within)))
                     case messages.Start():
-                        if not is_path(
-                            subject
-                        ):  # for a path, the started process has a participant of its own
+                        # The program at a path runs in a process of its own, with its own DDS participant.
+                        if not is_path(subject):
                             place.ensure(fresh=order.fresh)
                         number = order.run
                         card.doing(f"run {number} of your code")

@@ -30,7 +30,7 @@ TOLD: tuple[tuple[Any, str, type[Looked | Called]], ...] = (
 blocking calls use these methods, too.
 """
 LOOKS_TOLD = 10
-"""The maximum number of looks reported in one run, because a loop without a pause looks thousands of times in a second.
+"""How many times in one run a look for a server is reported. A loop without a pause looks thousands of times a second.
 """
 
 
@@ -49,7 +49,7 @@ class ToldCalls:
         self._looks = 0
 
     def begin_run(self) -> None:
-        """Begin the next run: count its looks from zero."""
+        """Count from zero again, for the next run, how often the subject looks for a service."""
         self._looks = 0
 
     def __enter__(self) -> Self:

@@ -125,8 +125,8 @@ class Builds:
     def lend(self, made: Build, course: Build) -> Build:
         """Return the course's build with the student's files added, for a package that lacks the course's programs.
 
-        ROS finds each package in one prefix only. So the prefix that has the lent programs must also have the
-        student's launch files, which other launch files may include by the package.
+        ROS finds each package in one prefix only. So the prefix with the course's programs must also contain the
+        student's launch files, because other launch files may include them by the name of the package.
         """
         assert course.install is not None
         names = {prefix.name for prefix in made.prefixes}

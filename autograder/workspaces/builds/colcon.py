@@ -1,4 +1,4 @@
-"""A workspace before and after its build; colcon's command line; and the reason of a failure in colcon's output."""
+"""Describes a workspace before and after its build, makes colcon's command line, and finds why a build failed."""
 
 from __future__ import annotations
 

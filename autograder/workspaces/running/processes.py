@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 LOOK_EVERY = 0.05
 """Seconds between two scans of the launch's processes."""
 MAX_COMMAND_LINE = 32_000
-"""The maximum length of a command line in bytes: a process can give itself one of megabytes, and change it before each
-scan.
+"""The maximum number of bytes read of a command line. A process can change its own command line before each scan, and
+make it megabytes long.
 """
 MAX_COMMAND_LINES = 500
 """The maximum number of command lines to report for one launch; a usual launch has about ten."""
