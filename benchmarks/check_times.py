@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import sys
+import argparse
 
 from autograder.temporary_folders import HeldFolder
 from benchmarks.classes import make_class
@@ -21,4 +21,8 @@ def main(labs: tuple[str, ...]) -> None:
 
 
 if __name__ == "__main__":
-    main(tuple(sys.argv[1:]))
+    options = argparse.ArgumentParser(prog="python -m benchmarks.check_times", description=__doc__)
+    options.add_argument(
+        "labs", nargs="*", metavar="LAB", help="only the checks of these labs, such as lab_1_2"
+    )
+    main(tuple(options.parse_args().labs))

@@ -294,7 +294,9 @@ def test_a_file_of_a_newer_course_is_sound(store: ClassStore, tmp_path: Path) ->
     store.keep_graded_cells("f", b"{}")
     with contextlib.closing(sqlite3.connect(tmp_path / "class" / ".autograder" / "class.db")) as book:
         book.execute("PRAGMA user_version = 99")
-    with pytest.raises(StoreTrouble, match=r"form 99 of a newer course.* The file is not damaged") as caught:
+    with pytest.raises(
+        StoreTrouble, match=r"its version is 99 of a newer course.* The file is not damaged"
+    ) as caught:
         ClassStore(ClassDirectory(tmp_path / "class")).entered()
     assert "Put back" not in str(caught.value)
 

@@ -91,7 +91,13 @@ def _crashed(evidence: Evidence) -> Advice | None:
         return None
     outermost = _FRAME.search(traceback)
     if outermost and outermost["file"].endswith(_LOGGING):
-        return raised("A line could not be logged", traceback)
+        why, _ = meaning(traceback)
+        return Advice(
+            f"A line could not be logged: {what_and_where(traceback)}{why and f'. {why}'}",
+            "Python names the line of your code below the words `Call stack`. Give logging one argument for each "
+            "placeholder of its text, such as %s, or write an f-string.",
+            traceback,
+        )
     spun = _was_spun(evidence) or _EXECUTOR in traceback
     return raised(
         "Spinning the node ended with an exception" if spun else "The program stopped with an exception",
