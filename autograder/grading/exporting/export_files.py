@@ -9,7 +9,7 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.errors import GradingError, check_known, clear_place_errors, course_command
 from autograder.grading.exporting import class_workbook, feedback_zips, lms_gradebooks
-from autograder.grading.exporting.layouts import LAYOUTS, gradebook
+from autograder.grading.exporting.layouts import LAYOUTS, MOODLE_WORKSHEET, gradebook, known_there
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.grading.table.class_table import ClassTable, read_table
 from autograder.kit.in_words import counted
@@ -124,11 +124,12 @@ def _files(
         notices.append(f"{to.upper()} takes no points from a file, so only students' pages are written")
     if to == "moodle":
         for assignment in assignments:
-            text, unknown = lms_gradebooks.moodle_worksheet(table, records, assignment)
-            if text:
-                purpose = f"Moodle: the assignment {assignment}, Upload grading worksheet"
+            known = [one for one in table.students if known_there(records, assignment, one, to)]
+            if any(table.score(one, assignment) is not None for one in known):
+                text = gradebook(to, table, records, [assignment], MOODLE_WORKSHEET, known)
+                purpose = MOODLE_WORKSHEET.purpose.format(name=assignment)
                 yield f"moodle-{assignment}.csv", text.encode(), purpose
-            if unknown:
+            if unknown := [one for one in table.students if one not in known]:
                 notices.append(
                     f"Moodle's numbers for {assignment} are not known of {', '.join(unknown)}: they are in moodle.csv "
                     f"only. Download the grading worksheet and say --into it"

@@ -2,7 +2,8 @@
 
 Canvas reads ``Student, ID, SIS User ID, SIS Login ID, Section``, then a column for each assignment, and in the second
 line the points possible (https://community.canvaslms.com, "How do I import grades in the Gradebook?"). Moodle's
-gradebook reads any columns, one of which identifies the student (https://docs.moodle.org, "Grade import").
+gradebook reads any columns, one of which identifies the student (https://docs.moodle.org, "Grade import"). Moodle's
+assignment reads ``Identifier``, ``Grade`` and ``Last modified (grade)`` of its worksheet.
 Brightspace reads ``OrgDefinedId`` or ``Username``, ``… Points Grade`` and an end-of-line marker
 (https://community.d2l.com, "Importing grades"). Gradescope imports no grades, but programs that read its lists read
 this format. The formats of Blackboard and Sakai are from memory.
@@ -81,6 +82,23 @@ LAYOUTS = {
 }
 
 
+MOODLE_WORKSHEET = GradebookLayout(
+    "Moodle: the assignment {name}, Upload grading worksheet",
+    {"Identifier": "participant", "Full name": "full", "Email address": "email", "Status": "status"},
+    points="Grade",
+    most="Maximum Grade",
+    end={
+        "Grade can be changed": "Yes",
+        "Last modified (submission)": "",
+        "Last modified (grade)": "",
+        "Feedback comments": "",
+    },
+)
+"""The grading worksheet of one assignment. Only work that was collected from Moodle contains the participant's number,
+because Moodle gives each student a different number in each assignment.
+"""
+
+
 def known_there(records: CollectedRecords, assignment: str, student: str, lms: str) -> Collected | None:
     """Return how the LMS named a student whose work was collected from it; None if the work came another way."""
     history = records.get(assignment, student)
@@ -88,9 +106,25 @@ def known_there(records: CollectedRecords, assignment: str, student: str, lms: s
     return found[-1] if found else None
 
 
-def gradebook(lms: str, table: ClassTable, records: CollectedRecords, assignments: Sequence[str]) -> str:
-    """Return the file to import into the gradebook of an LMS."""
-    layout = LAYOUTS[lms]
+def gradebook(
+    lms: str,
+    table: ClassTable,
+    records: CollectedRecords,
+    assignments: Sequence[str],
+    layout: GradebookLayout | None = None,
+    students: Sequence[str] = (),
+) -> str:
+    """Return the file to import into the gradebook of an LMS, or another file of that LMS.
+
+    Args:
+        lms: A key of :data:`LAYOUTS`.
+        table: The table of the class.
+        records: The records of what was collected.
+        assignments: The assignments, which get a column each.
+        layout: The layout of the file; by default that of the gradebook.
+        students: The students, who get a line each; by default all.
+    """
+    layout = layout or LAYOUTS[lms]
     header: list[str | float] = [*layout.columns]
     possible: list[str | float] = [layout.possible, *[""] * (len(layout.columns) - 1)]
     for name in assignments:
@@ -98,7 +132,7 @@ def gradebook(lms: str, table: ClassTable, records: CollectedRecords, assignment
         header += [title.format(name=name, most=most) for title in (layout.points, layout.most) if title]
         possible.append(most)
     rows = [[*header, *layout.end], *([possible] if layout.possible else [])]
-    for student in table.students:
+    for student in students or table.students:
         facts = _facts(table, records, student, lms, assignments)
         row: list[str | float] = [facts[fact] for fact in layout.columns.values()]
         for name in assignments:
@@ -115,9 +149,9 @@ def _facts(
     """Return what a file may contain about a student. ``there`` and ``user`` are the student's names in the LMS."""
     student = table.roster.students[id_]
     own = student.lms.get(lms, "")
-    is_asked = {"there", "user"} & set(LAYOUTS[lms].columns.values())
-    collected = (known_there(records, name, id_, lms) for name in assignments if is_asked)
-    there = own or next((one.number or one.name for one in collected if one), "")
+    collected = (known_there(records, name, id_, lms) for name in assignments)
+    number = next((one.number or one.name for one in collected if one), "")
+    there = own or number
     return {
         "": "",
         "id": id_,
@@ -129,4 +163,7 @@ def _facts(
         "there": there,
         "user": there or id_,
         "#id": f"#{id_}",
+        "participant": f"Participant {number}",
+        "full": student.name or id_,
+        "status": "Submitted for grading",
     }

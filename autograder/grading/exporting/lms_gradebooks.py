@@ -1,7 +1,4 @@
-"""Lists exported by an LMS, filled in with points; among them Moodle's grading worksheet.
-
-Moodle's assignment reads the columns ``Identifier``, ``Grade`` and ``Last modified (grade)`` of the worksheet.
-"""
+"""Lists exported by an LMS, filled in with points; among them Moodle's grading worksheet."""
 
 from __future__ import annotations
 
@@ -14,51 +11,15 @@ from rapidfuzz import fuzz
 
 from autograder.grading.collecting.list_forms import EACH, FORMS, ListForm
 from autograder.grading.errors import GradingError
-from autograder.grading.exporting.layouts import LAYOUTS, known_there
-from autograder.grading.reporting.spreadsheet import blank, csv_rows, csv_text, original
+from autograder.grading.exporting.layouts import LAYOUTS
+from autograder.grading.reporting.spreadsheet import csv_rows, original
 from autograder.grading.table.roster import Identity
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from autograder.grading.collecting.records import CollectedRecords
     from autograder.grading.table.class_table import ClassTable
     from autograder.grading.table.roster import Student
-
-MOODLE_WORKSHEET = (
-    "Identifier",
-    "Full name",
-    "Email address",
-    "Status",
-    "Grade",
-    "Maximum Grade",
-    "Grade can be changed",
-    "Last modified (submission)",
-    "Last modified (grade)",
-    "Feedback comments",
-)
-
-
-def moodle_worksheet(table: ClassTable, records: CollectedRecords, assignment: str) -> tuple[str, list[str]]:
-    """Return the grading worksheet of one assignment, and the students whose participant number is unknown.
-
-    The worksheet is empty if it would give points to no student. Moodle gives each student a different number in each
-    assignment, so only work that was collected from there contains the number.
-    """
-    rows: list[list[str | float]] = [list(MOODLE_WORKSHEET)]
-    unknown = []
-    is_empty = True
-    for student in map(table.roster.students.__getitem__, table.students):
-        there = known_there(records, assignment, student.id, "moodle")
-        if there is None:
-            unknown.append(student.id)
-            continue
-        score = table.score(student.id, assignment)
-        is_empty = is_empty and score is None
-        points = [blank(score), table.max_score(assignment)]
-        who = [f"Participant {there.number}", student.name or student.id, student.email]
-        rows.append([*who, "Submitted for grading", *points, "Yes", "", "", ""])
-    return ("" if is_empty else csv_text(rows)), unknown
 
 
 def filled_in(
