@@ -33,7 +33,7 @@ def show(report: CollectReport, console: Console | None = None) -> None:
 
 def _lines(report: CollectReport) -> Iterator[str]:
     for one in report.having(State.PLACED):
-        when = f", handed in {one.when:%Y-%m-%d %H:%M} UTC" if one.when else ""
+        when = f", handed in {one.when:%Y-%m-%d %H:%M} {one.when.tzinfo}" if one.when else ""
         late = ", late as the LMS says" if one.late else ""
         again = ", instead of an earlier one" if one.replaced else ""
         yield f"placed       {one.student}/{one.assignment}: {one.label}{when}{late}{again}"
@@ -56,15 +56,13 @@ def _lines(report: CollectReport) -> Iterator[str]:
         )
     for note in report.notes:
         yield f"note         {note}"
-    if report.by_their_names:
-        yield "note         the class has no students.csv: folders have the names that the LMS uses"
     counts = {state: len(report.having(state)) for state in State}
     yield ", ".join(f"{count} {state}" for state, count in counts.items())
     if counts[State.NOT_PLACED]:
         yield (
             f"note         {counted(report.waiting, 'line')} of {report.path / 'collected.csv'} to decide: write the "
             f"student or the assignment, or yes or no under use, and type {course_command('collect', report.path)}. "
-            "If many names have one form, --names tells it"
+            "If many names have one form, --from or --names tells it"
         )
     if counts[State.PLACED]:
         yield f"Then         {course_command('grade', report.path)}"

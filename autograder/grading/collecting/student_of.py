@@ -42,23 +42,15 @@ class Owners:
     """The students who may have handed in a file, according to its name.
 
     Attributes:
-        found: The facts in the name; None if its form is unknown.
+        found: The facts in the name; None if its form is unknown, or if several systems may have made the name, and
+            would mean different students or times by it.
         members: For each member of the group, the students who may be meant; empty if none is known.
         is_sure: True if a number of the system identifies the students, and not just a name that students may choose.
-        rivals: The systems that may have made the name, if there are several, and if they would mean different
-            students or times by it.
     """
 
     found: Found | None
     members: tuple[tuple[Student, ...], ...] = ()
     is_sure: bool = False
-    rivals: tuple[str, ...] = ()
-
-    @property
-    def only(self) -> Student | None:
-        """The student; None if the file belongs to no student or to a group, or if several students may be meant."""
-        students = [student for members in self.members for student in members]
-        return students[0] if len(students) == 1 else None
 
 
 class StudentOf:
@@ -108,8 +100,8 @@ class StudentOf:
         if self._names is not None:
             found = self._names(parts)
             hits = [self._of(one)[0] for one in found.readings] if found else []
-            meant = {one.id: one for members in hits for students in members for one in students}
-            return Owners(found, (tuple(meant.values()),) if meant else ())
+            meant = _distinct(students for members in hits for students in members)
+            return Owners(found, (meant,) if meant else ())
         forms = [self._form] if self._form else TOLD_APART
         names = [*parts[:-1], PurePath(parts[-1]).stem if is_alone and self._form != "google" else ""]
         # In a download from Google Classroom, students may have chosen the name of any folder, however deep.
@@ -123,13 +115,15 @@ class StudentOf:
     def has_form(self, path: Path) -> bool:
         """Return True if a file or folder has a name of the kind that a system makes for one student's work."""
         owners = self._of_name(path)
-        lms = owners.found.identity.lms if owners.found else ""
+        if owners.found is None:
+            return bool(owners.members)
         # Names from these systems have no part by which they could be recognized.
-        return bool(owners.rivals) or lms not in ("", "google", "github")
+        return owners.found.identity.lms not in ("", "google", "github")
 
     def is_called(self, path: Path) -> bool:
         """Return True if a file or folder has the name of a student in the list of students."""
-        return bool(self._roster.students and self._of_name(path).members)
+        owners = self._of_name(path)
+        return bool(self._roster.students and owners.found and owners.members)
 
     def _of_name(self, path: Path) -> Owners:
         name = name_as_text(path.absolute().name)
@@ -147,20 +141,18 @@ class StudentOf:
     def _agreed(self, ways: Sequence[Found]) -> Owners:
         read = [self.find(way) or Owners(way) for way in ways]
         meant = [(one.members, one.members and way.when) for one, way in zip(read, ways, strict=True)]
-        if any(one != meant[0] for one in meant):
-            return Owners(None, rivals=tuple(way.identity.lms for way in ways))
-        return read[0]
+        if all(one == meant[0] for one in meant):
+            return read[0]
+        return Owners(None, (_distinct(students for one in read for students in one.members),))
 
     def _undisputed(self, owners: Owners, name: str) -> Owners:
         """Return ``owners``; if a name may be another student's Canvas number, all students with these numbers."""
         if owners.found is None or owners.found.identity.lms != "canvas" or not owners.members:
             return owners
         others = map(self._of, (Identity("canvas", number) for number in numbers_in(name)))
-        known = [members for members, is_sure in others if is_sure]
-        meant = {
-            one.id: one for members in (owners.members, *known) for students in members for one in students
-        }
-        return replace(owners, members=(tuple(meant.values()),)) if len(meant) > 1 else owners
+        known = [students for members, is_sure in others if is_sure for students in members]
+        meant = _distinct((*owners.members, *known))
+        return replace(owners, members=(meant,)) if len(meant) > 1 else owners
 
     def _who(self, identity: Identity) -> tuple[tuple[tuple[Student, ...], ...], bool]:
         """Return the students who may be meant, and whether that is certain. Without a list, use the LMS's name."""
@@ -181,7 +173,7 @@ class StudentOf:
             # A user name in the system may equal the id of a different student in the class, so the name has to
             # agree.
             named = self._roster.find(Identity(name=identity.name))
-            found = tuple({one.id: one for one in (*found, *(named if len(named) == 1 else ()))}.values())
+            found = _distinct((found, named if len(named) == 1 else ()))
         called = identity.login or identity.name
         if not self._roster.students and identity.lms and called:
             found = (Student(called),)
@@ -220,11 +212,9 @@ class StudentOf:
 
     def reason_against(self, owners: Owners) -> str:
         """Return why a file cannot be assigned to a student, and what to do; empty if it can be assigned."""
-        if owners.rivals:
-            read = " and as ".join(form.capitalize() for form in owners.rivals)
-            say = " or ".join(f"--from {form}" for form in owners.rivals)
-            why = f"its name can be read as {read} gives it, of another student or time each"
-            return f"{why}: say {say}, or {_WRITE_IT}"
+        if owners.found is None and owners.members:
+            ids = ", ".join(one.id for one in owners.members[0])
+            return f"its name fits several systems, each of another student or time ({ids}): {_WRITE_IT}"
         if owners.found is None:
             return _NO_ID if self._roster.students else f"{_NO_ID}, which the class does not have"
         identity = owners.found.identity
@@ -255,6 +245,11 @@ class StudentOf:
     def of_several_times(self) -> list[str]:
         """Return the numbers for which the lists have several times, so that none of these counts."""
         return sorted({number for (_, number), times in self._timed[0].items() if len(times) > 1})
+
+
+def _distinct(several: Iterable[Iterable[Student]]) -> tuple[Student, ...]:
+    """Return all these students, each once."""
+    return tuple({one.id: one for students in several for one in students}.values())
 
 
 def _times(entries: Iterable[Entry]) -> dict[tuple[str, str], set[datetime]]:

@@ -189,7 +189,8 @@ def test_a_name_that_two_systems_may_have_given_to_two_students_is_refused(
         file.write_text(work(klass, 1))
         report = collect(klass.path, [file])
         assert placed(report) == {}, whose
-        assert "its name can be read as Blackboard and as Canvas gives it" in why(report)
+        meant = ", ".join(dict.fromkeys((whose, "malloryeve")))
+        assert f"of another student or time ({meant}): write the id under student" in why(report)
     assert placed(collect(klass.path, [file], form="canvas")).keys() == {"malloryeve"}
 
 
