@@ -23,6 +23,7 @@ from environment.installation import COMMAND
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
+    from datetime import datetime, tzinfo
 
     from nbformat import NotebookNode
     from traitlets.config import Config
@@ -289,6 +290,11 @@ def refuse_students_folder(folder: Path) -> None:
                 f"{folder} contains files of students, so it is not used as a class. The class is "
                 f"{outer}: name that folder."
             )
+
+
+def in_zone(when: datetime, zone: tzinfo) -> str:
+    """Return a time for a person to read, in this time zone and with its name."""
+    return f"{when.astimezone(zone):%Y-%m-%d %H:%M} {zone}"
 
 
 def reason_against_name(name: str) -> str:

@@ -89,7 +89,7 @@ class Submitted:
         refused: dict[Place, set[str]] = defaultdict(set)
         for one in decisions:
             if one.state == State.LEFT_OUT:
-                refused[one.student, one.line.assignment, one.line.notebook].add(one.line.content)
+                refused[one.place].add(one.line.content)
         wanted: dict[tuple[str, str], dict[str, Line]] = defaultdict(dict)
         for (student, assignment, notebook), line in counts.items():
             wanted[student, assignment][notebook] = line
@@ -172,8 +172,6 @@ def _record(line: Line) -> Collected:
         line.notebook,
         line.content,
         when=line.when,
-        order=line.order,
-        late=line.late,
         lms="" if line.is_by_hand else line.lms,
         number=line.number,
         name=line.name,

@@ -62,11 +62,6 @@ class AssignmentOf:
         self._directory = directory
         self._asked = asked
 
-    @property
-    def notes(self) -> list[str]:
-        """Return a sentence about each source of the class that cannot be read."""
-        return self._directory.named_cells.notes
-
     def is_notebook(self, file: str) -> bool:
         """Return True if a file with this name is a notebook of the class."""
         return stem_of(file)[0].casefold() in self._notebooks

@@ -11,9 +11,8 @@ from autograder.grading.collecting.apply import Submitted
 from autograder.grading.collecting.archives import Archives, File, NotTaken, Room
 from autograder.grading.collecting.assignment_of import AssignmentOf
 from autograder.grading.collecting.collected_csv import Table
-from autograder.grading.collecting.decide import Decision, decide
+from autograder.grading.collecting.decide import Decision, Looks, decide
 from autograder.grading.collecting.desk import read_list, without_sandbox
-from autograder.grading.collecting.handed_out import HandedOut
 from autograder.grading.collecting.inbox import Arrival, Delivery, Inbox
 from autograder.grading.collecting.named_sources import Source, note_on, own_of, source_of
 from autograder.grading.collecting.names_option import check_names
@@ -23,7 +22,6 @@ from autograder.grading.collecting.proposals import Edit, Proposals, entries_of,
 from autograder.grading.collecting.student_of import StudentOf
 from autograder.grading.collecting.unpack import is_archive
 from autograder.grading.errors import GradingError, check_known
-from autograder.grading.rebuilding.desk import why_unreadable
 from autograder.grading.table.roster import enter_roster, read_roster
 from autograder.regular_files import name_as_text
 
@@ -91,7 +89,6 @@ class _Collecting:
         self._inbox = Inbox(directory.state)
         self._submitted = Submitted(directory, self._inbox)
         self._table = Table(directory)
-        self._handed_out = HandedOut(directory)
         self._notes: list[str] = []
         self._lists: dict[str, list[Entry]] = {}
         self._rooms: dict[object, Room] = defaultdict(Room)
@@ -112,21 +109,7 @@ class _Collecting:
 
     def _decide(self, edits: dict[str, Edit]) -> tuple[list[Decision], dict[Place, Line]]:
         lines = Proposals(self._directory, self._inbox, self._roster, edits).lines()
-        return decide(lines, self)
-
-    # -- questions about the content of a file
-
-    def has_work(self, line: Line) -> bool:
-        """Return True if the notebook contains more than what was handed out."""
-        return self._handed_out.has_work(line.assignment, line.notebook, self._inbox.read(line.content))
-
-    def why_unreadable(self, line: Line) -> str:
-        """Return why the notebook cannot be read; empty if it can."""
-        return why_unreadable(self._inbox.read(line.content))
-
-    def is_there(self, line: Line, place: Place) -> bool:
-        """Return True if the file with these bytes is at its place in ``submitted``."""
-        return self._submitted.content(place) == line.content
+        return decide(lines, Looks(self._directory, self._inbox, self._submitted))
 
     # -- taking in
 
@@ -200,8 +183,7 @@ class _Collecting:
 
     def _with_trouble(self, one: Decision, results: dict[Place, tuple[State, str]]) -> Decision:
         """Return the decision. If something other than a file is at the place, the decision then waits for a person."""
-        place = (one.student, one.line.assignment, one.line.notebook)
-        state, reason = results.get(place, (State.UNCHANGED, ""))
+        state, reason = results.get(one.place, (State.UNCHANGED, ""))
         is_hindered = one.state == State.PLACED and state == State.NOT_PLACED
         return replace(one, state=state, reason=reason) if is_hindered else one
 
@@ -216,10 +198,7 @@ class _Collecting:
         labels = {one.key: one.label for one in delivery.arrivals}
         outcomes = []
         for one in decisions:
-            place = (one.student, one.line.assignment, one.line.notebook)
-            changed = (
-                results.get(place, (State.UNCHANGED, ""))[0] == State.PLACED and one.state == State.PLACED
-            )
+            changed = one.state == State.PLACED == results.get(one.place, (State.UNCHANGED, ""))[0]
             waits = one.state == State.NOT_PLACED and f"{one.line.label} {one.line.key}" not in before
             if one.line.key in labels or changed or waits or (not delivery.arrivals and _waits(one)):
                 outcomes.append(self._outcome(one, labels.get(one.line.key, one.line.label), results))
@@ -241,25 +220,27 @@ class _Collecting:
                 "collect each assignment in a command of its own, with its list"
             )
         notes += self._roster.excused_from_nothing(self._directory.assignments(), self._roster.students)
-        notes += AssignmentOf(self._directory).notes
+        notes += self._directory.named_cells.notes
+        if not self._roster.students:
+            notes.append("the class has no students.csv: folders have the names that the LMS uses")
         return CollectReport(
             self._directory.path,
             tuple(sorted(outcomes, key=lambda one: one.label)),
             {name: tuple(dict.fromkeys(students)) for name, students in untimed.items()},
             {name: students for name, students in missing.items() if students},
             sum(map(_waits, decisions)),
-            not self._roster.students,
             tuple(notes),
         )
 
     def _outcome(self, one: Decision, label: str, results: dict[Place, tuple[State, str]]) -> Outcome:
         line = one.line
-        state, why = results.get((one.student, line.assignment, line.notebook), (State.UNCHANGED, ""))
+        state, why = results.get(one.place, (State.UNCHANGED, ""))
         own = state if one.state == State.PLACED else one.state
         label = label if len(line.students) < 2 or not line.notebook else f"{label} ({one.student})"
         is_replacing = own == State.PLACED and why == "replaced"
+        when = line.when and line.when.astimezone(self._directory.time_zone)
         return Outcome(
-            label, own, one.reason, one.student, line.assignment, line.when, line.late, is_replacing, line.key
+            label, own, one.reason, one.student, line.assignment, when, line.late, is_replacing, line.key
         )
 
 

@@ -4,34 +4,62 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import re2
 
+from autograder.grading.classes.class_directory import in_zone
+from autograder.grading.collecting.handed_out import HandedOut
 from autograder.grading.collecting.outcomes import State
+from autograder.grading.rebuilding.desk import why_unreadable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
+    from datetime import datetime
 
+    from autograder.grading.classes.class_directory import ClassDirectory
+    from autograder.grading.collecting.apply import Submitted
+    from autograder.grading.collecting.inbox import Inbox
     from autograder.grading.collecting.proposals import Line
 
 Place = tuple[str, str, str]
 """The place of a notebook: student, assignment and notebook."""
 _Why = tuple["Line", State, str]
+_ONE_NUMBER = ("canvas", "moodle", "brightspace")
+"""The systems that give each person one number in a download, and in which users may change their names."""
 _CELL = re2.compile(r"(?:under|the cell) (use|student|assignment|notebook|handed_in)\b")
 
 
-class Looks(Protocol):
-    """Questions about the content of a file. They are asked only if more than one file may count."""
+class Looks:
+    """Questions about a class and the content of its files. They are asked only if more than one file may count.
+
+    Args:
+        directory: The class.
+        inbox: The inbox of the class.
+        submitted: The folder ``submitted`` of the class.
+    """
+
+    def __init__(self, directory: ClassDirectory, inbox: Inbox, submitted: Submitted) -> None:
+        self._zone = directory.time_zone
+        self._handed_out = HandedOut(directory)
+        self._inbox = inbox
+        self._submitted = submitted
 
     def has_work(self, line: Line) -> bool:
         """Return True if the notebook contains more than what was handed out."""
+        return self._handed_out.has_work(line.assignment, line.notebook, self._inbox.read(line.content))
 
     def why_unreadable(self, line: Line) -> str:
         """Return why the notebook cannot be read; empty if it can."""
+        return why_unreadable(self._inbox.read(line.content))
 
     def is_there(self, line: Line, place: Place) -> bool:
         """Return True if the file with these bytes is at its place in ``submitted``."""
+        return self._submitted.content(place) == line.content
+
+    def shown(self, when: datetime) -> str:
+        """Return a time as text, in the time zone of the class."""
+        return in_zone(when, self._zone)
 
 
 @dataclass(frozen=True)
@@ -49,6 +77,11 @@ class Decision:
     student: str
     state: State
     reason: str = ""
+
+    @property
+    def place(self) -> Place:
+        """The place of the notebook."""
+        return self.student, self.line.assignment, self.line.notebook
 
 
 def decide(lines: Iterable[Line], looks: Looks) -> tuple[list[Decision], dict[Place, Line]]:
@@ -150,7 +183,7 @@ def _people(place: Place, pool: Sequence[Line], _: Looks) -> list[tuple[Line, st
     """
     numbers: dict[str, set[str]] = defaultdict(set)
     for one in pool:
-        if one.lms in ("canvas", "moodle", "brightspace"):
+        if one.lms in _ONE_NUMBER:
             for download in ("canvas",) if one.lms == "canvas" else one.came_in:
                 numbers[download].add(one.number)
         elif one.repository:
@@ -163,9 +196,8 @@ def _people(place: Place, pool: Sequence[Line], _: Looks) -> list[tuple[Line, st
     )
     found = [(one, whose) for one in pool if repositories and one.repository not in ("", one.number)]
     people = f"there are several people who are read as {place[0]}, of the numbers "
-    found += [
-        (one, people + ", ".join(next(iter(several.values())))) for one in pool if several and one.is_by_name
-    ]
+    by_name = [one for one in pool if several and one.lms in _ONE_NUMBER and not one.is_sure]
+    found += [(one, people + ", ".join(next(iter(several.values())))) for one in by_name]
     return [(one, f"{why}: write the id under student, or no under use") for one, why in found]
 
 
@@ -211,7 +243,7 @@ def _newest(place: Place, pool: list[Line], looks: Looks) -> tuple[Line | None, 
     whys += others
     for one in firsts if timed else ():
         if one.when is None:
-            whys.append((one, *_without_time(one, best, work)))
+            whys.append((one, *_without_time(one, best, work, looks)))
     return best, whys
 
 
@@ -238,13 +270,13 @@ def _time(one: Line) -> tuple[float, ...]:
     return (one.when.timestamp() if one.when else 0.0,)
 
 
-def _without_time(one: Line, best: Line | None, work: dict[str, bool]) -> tuple[State, str]:
+def _without_time(one: Line, best: Line | None, work: dict[str, bool], looks: Looks) -> tuple[State, str]:
     """Return the decision about a file whose time is unknown, given the best file whose time is known."""
-    if best is None:
+    if best is None or best.when is None:
         return State.NOT_PLACED, "nothing says when it was handed in: write the time under handed_in"
     if one.content == best.content:
         return State.UNCHANGED, ""
-    at = f"{best.label}, handed in {best.when:%Y-%m-%d %H:%M} UTC"
+    at = f"{best.label}, handed in {looks.shown(best.when)}"
     if one.order and best.order and one.lms == best.lms and one.order < best.order:
         return State.EARLIER, f"{at}, was handed in later"
     if work[best.key] and not work[one.key]:

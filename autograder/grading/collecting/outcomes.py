@@ -40,7 +40,7 @@ class Outcome:
         reason: Why the file is not at its place, and what to type; empty if it is at its place.
         student: The student's id; empty if unknown.
         assignment: The assignment's name; empty if unknown.
-        when: The time of handing in, in UTC; None if unknown.
+        when: The time of handing in, in the time zone of the class; None if unknown.
         late: True if the LMS marks the file as late.
         replaced: True if another file was at its place before. That file is kept.
         key: The key of the file's line in the table.
@@ -67,7 +67,6 @@ class CollectReport:
         untimed: The students with work collected now whose time of handing in is unknown, by assignment.
         missing: The students who have handed in nothing, by assignment.
         waiting: The number of lines in the table that wait for a person.
-        by_their_names: True if there is no list of students, so that folders get the names that the LMS uses.
         notes: Sentences for the instructor, for example about recorded times, names in a list that are not students,
             and empty downloads.
     """
@@ -77,7 +76,6 @@ class CollectReport:
     untimed: dict[str, tuple[str, ...]] = field(default_factory=dict)
     missing: dict[str, tuple[str, ...]] = field(default_factory=dict)
     waiting: int = 0
-    by_their_names: bool = False
     notes: tuple[str, ...] = ()
 
     def having(self, state: State) -> tuple[Outcome, ...]:

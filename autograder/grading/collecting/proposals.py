@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
 PAGES = ("index.html", "grades.csv", GRADESCOPE)
 """Files that the system itself adds to a download."""
-_ONE_NUMBER = ("canvas", "moodle", "brightspace")
-"""The systems that give each person one number in a download, and in which users may change their names."""
 _OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".bz2", ".xz", ".zst")
 
 
@@ -112,11 +110,6 @@ class Line:
     def is_by_hand(self) -> bool:
         """True if a person put the file into ``submitted``."""
         return self.lms == BY_HAND
-
-    @property
-    def is_by_name(self) -> bool:
-        """True if only a name identifies the student, although the system has a number for each person."""
-        return self.lms in _ONE_NUMBER and not self.is_sure
 
 
 class Proposals:
@@ -273,7 +266,7 @@ class _Reading:
             ids, reason = self._proposals.known(written)
         if (found := owners.found) is not None:
             identity = found.identity
-            when = self._in_utc(found.when or self._student_of.time(identity))
+            when = in_utc(found.when or self._student_of.time(identity), self._zone)
             line = replace(
                 line,
                 lms=identity.lms,
@@ -351,9 +344,6 @@ class _Reading:
             return replace(line, reason=f"{what} {student}, and collect that")
         what_to_do = "ask for the notebook, or write no under use"
         return replace(line, reason="it is not a notebook", what_to_do=what_to_do, is_soft=True)
-
-    def _in_utc(self, when: datetime | None) -> datetime | None:
-        return in_utc(when, self._zone)
 
 
 def _by_hand(line: Line, arrival: Arrival) -> Line:

@@ -26,8 +26,6 @@ class Collected:
         notebook: The name of the notebook in the class.
         content: The hash of the file's bytes.
         when: The time of handing in, in UTC; None if unknown.
-        order: A number that increases with later files, for files without times.
-        late: True if the LMS marks the file as late.
         lms: The system from which it came; empty for plain folders.
         number: The student's number in that system; in Moodle, a different number for each assignment.
         name: The student's name in that system.
@@ -38,8 +36,6 @@ class Collected:
     notebook: str
     content: str
     when: datetime | None = None
-    order: int = 0
-    late: bool = False
     lms: str = ""
     number: str = ""
     name: str = ""

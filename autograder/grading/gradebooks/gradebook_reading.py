@@ -18,6 +18,8 @@ import msgspec
 import sqlalchemy
 from sqlalchemy.pool import NullPool
 
+from autograder.grading.classes.class_directory import in_zone
+
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
     from datetime import tzinfo
@@ -130,11 +132,7 @@ class SubmissionEntry:
             return ""
         # The due date may have been removed after the penalty was entered.
         times = (("handed in", self.handed_in), ("due", self.due))
-        return ", ".join(
-            f"{word} {at.replace(tzinfo=UTC).astimezone(zone):%Y-%m-%d %H:%M} {zone}"
-            for word, at in times
-            if at
-        )
+        return ", ".join(f"{word} {in_zone(at.replace(tzinfo=UTC), zone)}" for word, at in times if at)
 
     def judged(self, notebook: str, cell: str) -> float | None:
         """Return the points that a cell was given automatically; None if there are none."""

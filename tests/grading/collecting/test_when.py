@@ -47,6 +47,20 @@ def test_times_are_cells_also_of_what_a_person_has_put_there(klass: TinyClass, t
     assert "Times belong into the column handed_in of collected.csv" in why(report)
 
 
+def test_times_are_shown_in_the_time_zone_of_the_class(klass: TinyClass, tmp_path: Path) -> None:
+    """The due dates that `grade` shows are in this time zone, so an instructor compares the two at a glance."""
+    klass.configure('c.NbGraderAPI.timezone = "Asia/Kolkata"')
+    folder = tmp_path / "download"
+    timed = folder / "Lab_ada_attempt_2025-10-03-14-00-00_lab_1_2.ipynb"
+    folder.mkdir()
+    timed.write_text(work(klass, 1))
+    command = ["collect", str(klass.path), str(folder), "--timezone", "Europe/Berlin"]
+    assert "handed in 2025-10-03 17:30 Asia/Kolkata" in CliRunner().invoke(cli, command).output
+    report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "lab_1_2.ipynb"): work(klass, 2)})
+    assert "handed in 2025-10-03 17:30 Asia/Kolkata: write its time under handed_in" in why(report)
+    assert stamp(klass, "ada") == "2025-10-03 12:00:00.000000 UTC"
+
+
 def test_handed_in_says_it_of_what_nothing_else_does(klass: TinyClass, tmp_path: Path) -> None:
     gathered(
         klass,
