@@ -143,7 +143,7 @@ def collect(
     Exit code 0: everything has its place; 2: the lines say which files wait, and why.
     """
     from autograder.grading.collecting import collect as collecting
-    from autograder.grading.collecting.lms_file_names import read_time
+    from autograder.grading.collecting.reading.lms_file_names import read_time
     from autograder.grading.collecting.showing import show
 
     when = read_time(handed_in) if handed_in else None

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
-    from autograder.grading.collecting.decide import Decision, Place
-    from autograder.grading.collecting.proposals import Line
+    from autograder.grading.collecting.deciding.decide import Decision, Place
+    from autograder.grading.collecting.deciding.proposals import Line
 
 
 class Submitted:

@@ -8,7 +8,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory, RefusedFile
-from autograder.grading.collecting.lms_file_names import base_and_number
+from autograder.grading.collecting.reading.lms_file_names import base_and_number
 from environment.installation import COMMAND
 
 if TYPE_CHECKING:

@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.apply import Submitted
-from autograder.grading.collecting.archives import Archives, File, NotTaken, Room
-from autograder.grading.collecting.assignment_of import AssignmentOf
 from autograder.grading.collecting.collected_csv import Table
-from autograder.grading.collecting.decide import Decision, Looks, decide
-from autograder.grading.collecting.desk import read_list, without_sandbox
+from autograder.grading.collecting.deciding.assignment_of import AssignmentOf
+from autograder.grading.collecting.deciding.decide import Decision, Looks, decide
+from autograder.grading.collecting.deciding.proposals import Edit, Proposals, entries_of, in_utc, list_trouble
+from autograder.grading.collecting.deciding.student_of import StudentOf
 from autograder.grading.collecting.inbox import Arrival, Delivery, Inbox
-from autograder.grading.collecting.named_sources import Source, note_on, own_of, source_of
-from autograder.grading.collecting.names_option import check_names
 from autograder.grading.collecting.older_class import take_over
 from autograder.grading.collecting.outcomes import CollectReport, Outcome, State
-from autograder.grading.collecting.proposals import Edit, Proposals, entries_of, in_utc, list_trouble
-from autograder.grading.collecting.student_of import StudentOf
-from autograder.grading.collecting.unpack import is_archive
+from autograder.grading.collecting.reading.archives import Archives, File, NotTaken, Room
+from autograder.grading.collecting.reading.desk import read_list, without_sandbox
+from autograder.grading.collecting.reading.named_sources import Source, note_on, own_of, source_of
+from autograder.grading.collecting.reading.names_option import check_names
+from autograder.grading.collecting.reading.unpack import is_archive
 from autograder.grading.errors import GradingError, check_known
 from autograder.grading.table.roster import enter_roster, read_roster
 from autograder.regular_files import name_as_text
@@ -31,10 +31,10 @@ if TYPE_CHECKING:
     from pathlib import Path
     from zoneinfo import ZoneInfo
 
-    from autograder.grading.collecting.decide import Place
+    from autograder.grading.collecting.deciding.decide import Place
+    from autograder.grading.collecting.deciding.proposals import Line
     from autograder.grading.collecting.inbox import Receiving
-    from autograder.grading.collecting.lists import Entry
-    from autograder.grading.collecting.proposals import Line
+    from autograder.grading.collecting.reading.lists import Entry
 
 _MOST_NAMED = 5
 

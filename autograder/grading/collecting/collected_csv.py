@@ -17,11 +17,11 @@ import msgspec
 import re2
 from babel.core import Locale, UnknownLocaleError, get_global
 
-from autograder.grading.collecting.decide import cell_in
+from autograder.grading.collecting.deciding.decide import cell_in
+from autograder.grading.collecting.deciding.proposals import Edit, in_utc
 from autograder.grading.collecting.inbox import FOLDER
-from autograder.grading.collecting.lms_file_names import read_time
 from autograder.grading.collecting.outcomes import State
-from autograder.grading.collecting.proposals import Edit, in_utc
+from autograder.grading.collecting.reading.lms_file_names import read_time
 from autograder.grading.reporting.spreadsheet import csv_rows, defused, original
 from autograder.regular_files import write_whole
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.collecting.decide import Decision
+    from autograder.grading.collecting.deciding.decide import Decision
 
 NAME = "collected.csv"
 COLUMNS = (

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from autograder.grading.classes.class_directory import SUFFIX
+from autograder.grading.collecting.deciding.proposals import Edit
 from autograder.grading.collecting.inbox import Arrival, Delivery
-from autograder.grading.collecting.proposals import Edit
 from autograder.grading.collecting.records import FOLDER, Collected, History
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 

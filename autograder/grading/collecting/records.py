@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.grading.collecting.lms_file_names import without_branch
+from autograder.grading.collecting.reading.lms_file_names import without_branch
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ import zipfile
 from pathlib import PurePath, PurePosixPath
 from typing import TYPE_CHECKING
 
-from autograder.grading.collecting.lms_file_names import read_at
+from autograder.grading.collecting.reading.lms_file_names import read_at
 from autograder.grading.exporting.layouts import known_there
 
 if TYPE_CHECKING:

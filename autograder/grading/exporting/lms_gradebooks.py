@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import re2
 from rapidfuzz import fuzz
 
-from autograder.grading.collecting.list_forms import EACH, FORMS, ListForm
+from autograder.grading.collecting.reading.list_forms import EACH, FORMS, ListForm
 from autograder.grading.errors import GradingError
 from autograder.grading.exporting.layouts import LAYOUTS
 from autograder.grading.reporting.spreadsheet import csv_rows, original

@@ -7,7 +7,7 @@ import socket
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from autograder.grading.collecting import desk_program
+from autograder.grading.collecting.reading import desk_program
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

@@ -13,10 +13,10 @@ from downloads import write_zip, zipped
 from test_collect import placed, why, work
 from tiny_class import LISTENER, TALKER
 
-from autograder.grading.collecting import archives
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.lms_file_names import base_and_number
 from autograder.grading.collecting.outcomes import State
+from autograder.grading.collecting.reading import archives
+from autograder.grading.collecting.reading.lms_file_names import base_and_number
 from autograder.grading.rebuilding.submission import read_bytes
 from autograder.regular_files import remove_unfinished
 

@@ -14,9 +14,9 @@ import pytest
 from downloads import zipped
 
 from autograder.boxes.sandbox import why_impossible
-from autograder.grading.collecting import desk
-from autograder.grading.collecting.archives import Archives, File, NotTaken, Room
-from autograder.grading.collecting.desk import read_list
+from autograder.grading.collecting.reading import desk
+from autograder.grading.collecting.reading.archives import Archives, File, NotTaken, Room
+from autograder.grading.collecting.reading.desk import read_list
 from autograder.grading.rebuilding.desk import Desk
 
 if TYPE_CHECKING:

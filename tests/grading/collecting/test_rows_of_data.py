@@ -16,7 +16,7 @@ from test_collect import placed, stamp, why, work
 from test_collected_table import edit
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.lms_file_names import read_time
+from autograder.grading.collecting.reading.lms_file_names import read_time
 from autograder.grading.errors import GradingError
 
 if TYPE_CHECKING:

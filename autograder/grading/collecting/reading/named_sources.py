@@ -18,16 +18,16 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.grading.collecting.lists import GRADESCOPE
-from autograder.grading.collecting.unpack import EMPTY
+from autograder.grading.collecting.reading.lists import GRADESCOPE
+from autograder.grading.collecting.reading.unpack import EMPTY
 from autograder.regular_files import name_as_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from autograder.grading.collecting.archives import Archives, File
-    from autograder.grading.collecting.student_of import StudentOf
+    from autograder.grading.collecting.deciding.student_of import StudentOf
+    from autograder.grading.collecting.reading.archives import Archives, File
 
 _EXPORT = re2.compile(r"^assignment_\d+_export(?: ?\(\d+\)|-\d+)?$")
 _SUBMISSION = re2.compile(r"^submission_\d+$")

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 from zoneinfo import ZoneInfo
 
 from autograder.grading.classes.class_directory import SUFFIX, reason_against_name
-from autograder.grading.collecting.assignment_of import AssignmentOf, NoTarget, is_notebook, stem_of
-from autograder.grading.collecting.desk import read_list
+from autograder.grading.collecting.deciding.assignment_of import AssignmentOf, NoTarget, is_notebook, stem_of
+from autograder.grading.collecting.deciding.student_of import Owners, StudentOf
 from autograder.grading.collecting.inbox import BY_HAND
-from autograder.grading.collecting.lists import GRADESCOPE, Entry
+from autograder.grading.collecting.reading.desk import read_list
+from autograder.grading.collecting.reading.lists import GRADESCOPE, Entry
 from autograder.grading.collecting.records import repository_in
-from autograder.grading.collecting.student_of import Owners, StudentOf
 from autograder.grading.table.roster import Identity, Roster, Student
 
 if TYPE_CHECKING:

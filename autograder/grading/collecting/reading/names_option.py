@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.grading.collecting.lms_file_names import Found, base_and_number, read_time
+from autograder.grading.collecting.reading.lms_file_names import Found, base_and_number, read_time
 from autograder.grading.errors import GradingError
 from autograder.grading.table.roster import Identity
 

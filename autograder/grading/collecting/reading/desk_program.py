@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from autograder.grading.collecting.lists import GRADESCOPE, parse_list
-from autograder.grading.collecting.unpack import Unpacking, write
+from autograder.grading.collecting.reading.lists import GRADESCOPE, parse_list
+from autograder.grading.collecting.reading.unpack import Unpacking, write
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -10,9 +10,9 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import reason_against_name
-from autograder.grading.collecting.lists import GRADESCOPE
-from autograder.grading.collecting.lms_file_names import TOLD_APART, numbers_in, plain, read_at
-from autograder.grading.collecting.names_option import read_names
+from autograder.grading.collecting.reading.lists import GRADESCOPE
+from autograder.grading.collecting.reading.lms_file_names import TOLD_APART, numbers_in, plain, read_at
+from autograder.grading.collecting.reading.names_option import read_names
 from autograder.grading.table.roster import Identity, Roster, Student
 from autograder.regular_files import name_as_text
 
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from datetime import datetime
     from pathlib import Path
 
-    from autograder.grading.collecting.lists import Entry
-    from autograder.grading.collecting.lms_file_names import Found
+    from autograder.grading.collecting.reading.lists import Entry
+    from autograder.grading.collecting.reading.lms_file_names import Found
 
 _WRITE_IT = "write the id under student in collected.csv"
 _NO_ID = f"its name does not say whose it is: {_WRITE_IT}, or add a line to students.csv"

@@ -11,10 +11,10 @@ import msgspec
 
 from autograder.boxes.channel import ChannelClosed
 from autograder.boxes.sandbox import why_impossible
-from autograder.grading.collecting.lists import Entry
+from autograder.grading.collecting.reading.lists import Entry
 from autograder.grading.rebuilding.desk import Desk, in_memory
 
-PROGRAM = "autograder.grading.collecting.desk_program"
+PROGRAM = "autograder.grading.collecting.reading.desk_program"
 _CPU_SECONDS = 200
 """The limit in seconds of the processor time for one archive, or one list."""
 _LARGEST_LIST = 50_000_000
@@ -34,12 +34,12 @@ def without_sandbox() -> str:
 
 
 def unpack(source: int, answer: int, limits: tuple[int, int, int, int], most: int) -> int:
-    """Unpack an archive; see :class:`autograder.grading.collecting.unpack.Unpacking`.
+    """Unpack an archive; see :class:`autograder.grading.collecting.reading.unpack.Unpacking`.
 
     Args:
         source: The descriptor of the archive.
         answer: The descriptor of an empty file.
-        limits: The limits of :class:`autograder.grading.collecting.unpack.Unpacking`.
+        limits: The limits of :class:`autograder.grading.collecting.reading.unpack.Unpacking`.
         most: The limit in bytes of the answer.
 
     Returns:

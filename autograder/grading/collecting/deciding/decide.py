@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.grading.classes.class_directory import in_zone
-from autograder.grading.collecting.handed_out import HandedOut
+from autograder.grading.collecting.deciding.handed_out import HandedOut
 from autograder.grading.collecting.outcomes import State
 from autograder.grading.rebuilding.desk import why_unreadable
 
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.collecting.apply import Submitted
+    from autograder.grading.collecting.deciding.proposals import Line
     from autograder.grading.collecting.inbox import Inbox
-    from autograder.grading.collecting.proposals import Line
 
 Place = tuple[str, str, str]
 """The place of a notebook: student, assignment and notebook."""

@@ -1,8 +1,8 @@
 """The files in zips and folders. A desk, a process in a box, unpacks an archive; this module reads only the answer.
 
-In the desk, :mod:`autograder.grading.collecting.unpack` writes all files of an archive, within limits, into one file on
-the disk. This module treats each name in it as text only, reads bytes up to the size limit of a notebook, and gives a
-reason for each file that cannot be taken.
+In the desk, :mod:`autograder.grading.collecting.reading.unpack` writes all files of an archive, within limits, into one
+file on the disk. This module treats each name in it as text only, reads bytes up to the size limit of a notebook, and
+gives a reason for each file that cannot be taken.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from typing import IO, TYPE_CHECKING, Self
 
 import msgspec
 
-from autograder.grading.collecting.desk import unpack
-from autograder.grading.collecting.unpack import LONGEST_LINE, LONGEST_NAME, is_left_by_a_program
+from autograder.grading.collecting.reading.desk import unpack
+from autograder.grading.collecting.reading.unpack import LONGEST_LINE, LONGEST_NAME, is_left_by_a_program
 from autograder.grading.rebuilding.desk import in_memory
 from autograder.grading.rebuilding.submission import MAX_BYTES, UnreadableSubmission, read_bytes
 from autograder.regular_files import name_as_text, opened
@@ -83,7 +83,7 @@ class Room:
 
 @dataclass(frozen=True)
 class _Unpacked:
-    """A line of the desk's answer. :mod:`autograder.grading.collecting.unpack` describes it."""
+    """A line of the desk's answer. :mod:`autograder.grading.collecting.reading.unpack` describes it."""
 
     names: tuple[str, ...]
     size: int

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import re2
 import yaml
 
-from autograder.grading.collecting.list_forms import FORMS, ListForm
-from autograder.grading.collecting.lms_file_names import read_time
+from autograder.grading.collecting.reading.list_forms import FORMS, ListForm
+from autograder.grading.collecting.reading.lms_file_names import read_time
 from autograder.grading.reporting.spreadsheet import csv_rows, original
 from autograder.grading.table.roster import Identity
 

@@ -7,7 +7,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import SUFFIX
-from autograder.grading.collecting.lms_file_names import base_and_number
+from autograder.grading.collecting.reading.lms_file_names import base_and_number
 from autograder.grading.rebuilding.desk import read_notebook
 from autograder.grading.rebuilding.submission import UnreadableSubmission
 

@@ -1,0 +1,1 @@
+"""Decides whose a collected file is, for which notebook, and which file of a student counts."""

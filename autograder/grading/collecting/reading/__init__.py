@@ -1,0 +1,1 @@
+"""Reads what is collected: archives, lists from an LMS, and the names of files."""
