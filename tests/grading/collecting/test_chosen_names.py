@@ -152,7 +152,9 @@ def test_what_one_system_reads_as_nobodys_is_not_anothers_student(klass: TinyCla
     file.write_text(work(klass, 1))
     report = collect(klass.path, [file])
     assert placed(report) == {}
-    assert "its name fits several systems, each of another student or time (ada): write the id" in why(report)
+    assert "its name fits several systems, which mean different students or times by it (ben): write" in why(
+        report
+    )
     assert "no student in the class is called mallory" in why(collect(klass.path, [file], form="canvas"))
     download = write_zip(tmp_path / "s.zip", {f"lab/{IN_BOTH}": work(klass), "lab/zusezoe_105_1_x.png": "x"})
     assert placed(collect(klass.path, [download])) == {}

@@ -214,7 +214,7 @@ class StudentOf:
         """Return why a file cannot be assigned to a student, and what to do; empty if it can be assigned."""
         if owners.found is None and owners.members:
             ids = ", ".join(one.id for one in owners.members[0])
-            return f"its name fits several systems, each of another student or time ({ids}): {_WRITE_IT}"
+            return f"its name fits several systems, which mean different students or times by it ({ids}): {_WRITE_IT}"
         if owners.found is None:
             return _NO_ID if self._roster.students else f"{_NO_ID}, which the class does not have"
         identity = owners.found.identity
