@@ -62,7 +62,9 @@ _HERE = {
     "ROSInterruptException|signal_shutdown|on_shutdown": "Leave it out. A program ends with rclpy.shutdown().",
     "spin|spinOnce|spin_some": "Write rclpy.spin(your_node) in a program, `with spinning(your_node):` in a notebook.",
 }
-"""What to write in this course instead of names from ROS 1's module rospy (or C++'s rclcpp), by the names' pattern."""
+"""Advice by pattern. A pattern matches names from ROS 1's module rospy (or C++'s rclcpp); the advice says what to write
+instead in this course.
+"""
 _TYPES = r"\w*Ints|SetBool|Trigger|Empty|Fibonacci|WalkTo"
 _PARTS = "Request|Response|Goal|Result|Feedback"
 

@@ -88,7 +88,7 @@ def _introductions(cells: list[NamedCell]) -> Iterator[str]:
     for before, one in itertools.pairwise(cells):
         said = [line for line in before.cell.source.splitlines() if line.strip() and not line.startswith("#")]
         if not _is_text(one) and not (_is_text(before) and said):
-            yield f"a cell of code is introduced: no word before line {one.cell.line}"
+            yield f"a cell of code needs text that introduces it: there is none before line {one.cell.line}"
 
 
 def _predictions(cells: list[NamedCell]) -> Iterator[str]:

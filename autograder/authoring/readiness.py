@@ -26,7 +26,7 @@ ENOUGH = {"right": 5, "wrong": 8}
 fairness is unknown.
 """
 MISTAKES = "docs/mistakes.md"
-"""The page on which students read about each diagnosis. Each has a heading that is its key."""
+"""The page on which students read about each diagnosis. The key of a diagnosis is a heading there."""
 _PACKAGE = Path(course.__file__).resolve().parents[1]
 _SETTINGS = _PACKAGE / "pyproject.toml"
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 JOBS = 4
-"""The number of answers judged at the same time. Each mostly waits."""
+"""The maximum number of answers that are judged at the same time. Each judgment mostly waits."""
 
 
 class NothingToTry(LookupError):
@@ -53,7 +53,7 @@ class Transcribed(Answer):
     """An answer whose evidence is written into a file when it is judged.
 
     Attributes:
-        folder: The folder for the files, one for each answer, such as ``wrong/topic_name.py.txt``. Each has a line
+        folder: The folder for the files, one for each answer, such as ``wrong/topic_name.py.txt``. A file has one line
             for each event.
     """
 

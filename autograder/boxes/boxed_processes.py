@@ -95,7 +95,7 @@ class ForkedProcess:
         return self._status is not None or self._lost
 
     def end_box(self) -> None:
-        """Kill every process in the box, and keep the exit status of this one."""
+        """Kill every process in the box, and keep the exit status of this process."""
         if self._box is not None:
             with contextlib.suppress(OSError):
                 self._box.end()
@@ -241,7 +241,10 @@ class WarmCommand:
         return os.read(self._output, 1 << 16) if ready else None
 
     def exit_code(self) -> int | None:
-        """Return the exit code once there is no more output, as in ``Finished.returncode``; None if it is lost."""
+        """Wait for the command's end, and return its exit code in the form of ``Finished.returncode``.
+
+        Call this only after the end of the output. Return None if the exit code is unknown.
+        """
         if not self._process.wait(_CLOSING_SECONDS):
             self._process.end_box()  # the command closed its output but goes on; this is the last chance to stop it
             self._process.wait(ANSWER_SECONDS)

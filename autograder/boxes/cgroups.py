@@ -24,7 +24,7 @@ _KINDS = ("memory", "pids", "cpu", "cpuacct")
 """The controllers that are used. Version 2 has no ``cpuacct``, because each of its groups counts processor time."""
 _PREFIX = "autograder-"
 _SURELY_LEFT = 60.0
-"""An empty group that is older than this many seconds has certainly been left behind."""
+"""The age in seconds from which an empty group has certainly been left behind."""
 _numbers = itertools.count()
 
 

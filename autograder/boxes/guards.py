@@ -240,8 +240,8 @@ def _network_of(first: int, most: int) -> _Network:
 
     Args:
         first: The PID of the box's first process, as seen from the host.
-        most: The allowed number of waiting bytes. Reading the tables of UDP and TCP takes ten milliseconds, so it is
-            skipped if all networks of the machine together have no more than this.
+        most: The maximum number of waiting bytes that is allowed. If all networks of the machine together have no more
+            than this, the UDP and TCP tables are not read, because reading them takes ten milliseconds.
     """
     net = Path(f"/proc/{first}/net")
     sockets = waiting = 0
@@ -262,15 +262,15 @@ def _network_of(first: int, most: int) -> _Network:
 
 
 def _locks_of(first: int, most: int) -> int:
-    """Count the file locks of a box, held and waited for, because the kernel's memory for them is not counted anywhere.
+    """Count the file locks that the processes of a box hold or wait for. No limit counts the kernel's memory for them.
 
-    A box's ``/proc/locks`` shows the locks of its own processes. It also shows, with -1 instead of a process, the
-    locks that belong to an open file of any process; no process in a box can make such a lock
-    (:mod:`autograder.boxes.seccomp_filter`).
+    A box's ``/proc/locks`` shows the locks of its own processes. It also shows the locks that belong to an open file
+    instead of a process, from the whole machine, with -1 as the PID. Such locks do not count: no process in a box can
+    make such a lock (:mod:`autograder.boxes.seccomp_filter`).
 
     Args:
         first: The PID of the box's first process, as seen from the host.
-        most: Reading stops above this number, because the time that the kernel needs grows with its square.
+        most: Reading stops above this number of locks, because the kernel's time grows with the square of the number.
     """
     locks, rest = 0, b""
     try:
@@ -323,7 +323,11 @@ def _exact_memory_of(process: str) -> tuple[int, int]:
 
 
 def _sizes_in(file: Path) -> Counter[str]:
-    """Return sizes by name, 0 for a missing name. Only whole lines count, because a process may choose its own name."""
+    """Return the sizes in bytes in a file such as /proc/PID/status, by the name of the field; 0 for a missing field.
+
+    Only whole lines such as ``VmPTE: 64 kB`` are read. A process chooses its own name, which is in the file as well and
+    could contain such words.
+    """
     return Counter({name: int(size) * 1024 for name, size in _SIZE.findall(file.read_text(errors="replace"))})
 
 

@@ -100,7 +100,10 @@ _DESKS: Mapping[str, Mapping[str, int]] = {
         "sendto": 206, "recvfrom": 207, "getrandom": 278,
     },
 }  # fmt: skip
-"""The further calls of a kernel's desk: it waits for its connections and uses them. It makes and starts none."""
+"""The system calls that the desk of a Jupyter kernel may make in addition to those of a reader.
+
+With them the desk waits for its existing connections and uses them. It opens no connections and starts no processes.
+"""
 _FUTEX = {"x86_64": 202, "aarch64": 98}
 _FUTEX_WAKE = (1, 129)
 """FUTEX_WAKE, and its variant for a single process (linux/futex.h). Releasing a lock calls it even if no thread waits.

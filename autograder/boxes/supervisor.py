@@ -61,7 +61,7 @@ class _Started:
     process: subprocess.Popen[bytes]
     """The bubblewrap process outside the box.
 
-    It ends when the first process of the box has ended; all other processes of the box end with that one.
+    It ends when the first process of the box has ended; all other processes of the box end with that process.
     """
     end: int
     """The pidfd of bubblewrap."""

@@ -52,8 +52,8 @@ class TextPiece:
 def difference(criterion: CriterionResult) -> tuple[TextPiece, ...]:
     """Return the difference between the first quoted text that was seen and the first one that was expected.
 
-    The result is empty if the criterion is met, if one of the two has no quoted text, or if the texts are equal or
-    unlike.
+    The result is empty if the criterion is met or if one side has no quoted text. It is also empty if the two texts are
+    equal, too long, or too different for a comparison to help.
     """
     if criterion.passed:
         return ()

@@ -1,8 +1,8 @@
 r"""Makes text from a student's program safe and legible to show.
 
 A subject may log anything: color codes, bidirectional overrides that reverse a line, a megabyte on one line. A card
-must show what was really said, so nothing is dropped silently. A special character is written as an escape that a
-Python programmer knows (``\x1b``). A long text is cut in the middle, with a mark.
+must show what the program really printed, so nothing is dropped silently. A special character is written as an escape
+that a Python programmer knows (``\x1b``). A long text is cut in the middle, with a mark.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ import re2
 # Matches a code that sets a color or style in a terminal and contains no text (ECMA-48, "SGR").
 _COLOUR_CODE = re2.compile(r"\x1b\[[0-9;:]*m")
 
-# These are kept: joiners shape Persian words and family emoji. All other format characters are invisible or reorder a
-# line.
+# The format characters that are kept: joiners shape Persian words and family emoji. All other format characters are
+# invisible or reorder a line.
 _HARMLESS_FORMAT = frozenset("\u200c\u200d\u00ad")
 
 _NAMED_ESCAPES = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}

@@ -26,11 +26,12 @@ HALF_WIDTH = 430
 """Like WIDTH, but for a check with many parts, so that a wide card can show two pictures side by side."""
 
 _MANY = 8
-"""From this number of moments in a lane, optional labels stay on one level, so that the lane stays readable."""
+"""The minimum number of moments in a lane for which optional labels stay on one level, so that the lane stays readable.
+"""
 _LEVELS = 4
 
 _FEW = 5
-"""Up to this number of moments in a lane, labels may be long."""
+"""The maximum number of moments in a lane for which labels may be long."""
 _MARK = 11.0
 """The width of a mark in pixels. Marks that are nearer than this are drawn one below the other."""
 _ROWS = 3
@@ -222,7 +223,14 @@ class _Wish:
 
 @dataclass(frozen=True)
 class _Flag:
-    """A label with a position: a leader line ``level`` rows high at ``pole``, and text from ``left`` to ``right``."""
+    """A placed label. All positions are pixels from the left, except ``level``.
+
+    Attributes:
+        level: The number of rows between the marks and the text.
+        pole: The position of the leader line, which runs from the mark up to the text.
+        left: The beginning of the text.
+        right: The end of the text.
+    """
 
     level: int
     pole: float

@@ -46,11 +46,13 @@ class Do(StrEnum):
     """The kinds of orders."""
 
     EXECUTE = "execute"
-    """Execute a cell, and answer when it has ended."""
+    """Tells the desk to have the kernel execute a cell. The desk answers when the cell has ended."""
     SETTLE = "settle"
-    """The cell was interrupted. Answer when the kernel has ended the cell, or takes requests again."""
+    """Tells the desk that the cell was interrupted. The desk answers when the kernel has ended the cell, or accepts
+    requests again.
+    """
     DRAIN = "drain"
-    """The kernel has ended. Answer when everything that it has sent has been read."""
+    """Tells the desk that the kernel has ended. The desk answers when it has read everything that the kernel sent."""
 
 
 class Order(msgspec.Struct, frozen=True):
@@ -79,7 +81,7 @@ class Said(StrEnum):
     FLOODS = "floods"
     """The cell has sent too much, and still runs."""
     OPEN = "open"
-    """The next order came before this one was finished."""
+    """The next order came before this order was finished."""
 
 
 class _Output(msgspec.Struct, frozen=True, tag_field="output_type", forbid_unknown_fields=True):

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 AGAIN_SECONDS = 10.0
 """Time limit in seconds for a cell without points that uses a name that hung before."""
 _SHARE_OF_A_CHECK = 0.25
-"""If an earlier check that uses the same name hung, a check gets this fraction of the judge's time limit. A check
-normally takes a twentieth of the limit.
+"""The fraction of the judge's time limit that a check gets if an earlier check of the same class or function hung. This
+is enough, because a check normally takes a twentieth of the limit.
 """
 
 

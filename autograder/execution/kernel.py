@@ -217,14 +217,14 @@ class Kernel:
         return self._await_answer(left, of_living=of_living)
 
     def _await_answer(self, left: Left, *, of_living: bool = True) -> Said | None:
-        """Wait for the desk's answer to the last order.
+        """Wait until the desk has answered the last order, and return the answer.
 
-        Return None if the time is up, a limit is exceeded, or the kernel or its desk has ended first; in the last case,
-        and at a limit, the kernel is killed.
+        Return None if the time is up, a limit is exceeded, the kernel has ended, or the desk has ended. If a limit is
+        exceeded or the desk has ended, also kill the kernel.
 
         Args:
             left: Returns the seconds that are left.
-            of_living: False to go on waiting even if the kernel has ended.
+            of_living: False if the kernel has ended already, so that its end and its limits no longer count.
         """
         waiting = select.poll()
         waiting.register(self._desk_says, select.POLLIN)

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 _ASK_AGAIN_S = 0.5
 _LAST_OUTPUT_S, _LONGEST_LAST_OUTPUT_S = 5.0, 20.0
-"""A cell's last outputs are no longer expected after this many seconds without a message, or in all."""
+"""Time limits in seconds for a cell's last outputs: the first without any message, the second in all."""
 _AT_ONCE = 100
 """The maximum number of messages that are read before other connections have their turn."""
 _WAITING = 500
@@ -221,7 +221,7 @@ class _Desk:
 def _connected(
     context: zmq.Context[Any], kind: int, address: str
 ) -> tuple[zmq.Socket[bytes], zmq.Socket[bytes]]:
-    """Return a socket that is connected, and one that is readable when the connection has ended."""
+    """Return a socket that is connected to the kernel, and one that becomes readable when that connection ends."""
     client: zmq.Socket[bytes] = context.socket(kind)
     client.setsockopt(zmq.RECONNECT_IVL, -1)
     client.setsockopt(zmq.RCVHWM, _WAITING)

@@ -43,7 +43,7 @@ _PRELOADED = (
 )
 _MAGIC = "autograder.notebook.cells.program_files"
 _PREPARED = ("autograder.cards.bundle",)
-"""Those of the preloaded modules whose function ``prepare`` is called."""
+"""The preloaded modules whose function ``prepare`` is called after the import."""
 
 
 def prepare(*interfaces: str) -> None:
@@ -130,7 +130,7 @@ def _arguments() -> list[str]:
 
 
 def _forget_the_fork() -> None:
-    """Reset state that a fork shares with its siblings, such as numpy's random numbers. Python reseeds ``random``."""
+    """Give this child its own random numbers. Otherwise numpy would draw the same ones in all forks of one process."""
     random.seed()
     numpy_random = sys.modules.get("numpy.random")
     if numpy_random is not None:

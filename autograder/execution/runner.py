@@ -187,8 +187,9 @@ class _Run:
         try:
             verdict = judge.close()
         except Unfinished as error:
-            # If a cell ended early while its check was unfinished, the cell did not wait. Then the failed check
-            # counts, because otherwise a student could choose when to stop a check.
+            # If the cell reached its time limit, the judge was too slow. If the cell ended before, it did not wait for
+            # the verdict. Then the check counts as failed, because otherwise a student could stop a check at a
+            # convenient moment.
             if self._ended[index] is Ended.TIMED_OUT:
                 self._judge_failed(index, cell.check, error)
             return

@@ -353,7 +353,7 @@ class _Batch:
             self._write(work)
 
     def _tasks(self, works: Sequence[Work]) -> Iterator[Task]:
-        """Yield the tasks to execute. Each is built only when the caller asks for it."""
+        """Yield the tasks to execute. A task is built only when the caller asks for it."""
         for work in works:
             for task in self._tasks_of(work.submission):
                 if task.problem:

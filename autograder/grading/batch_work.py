@@ -229,7 +229,7 @@ def would_change(
 def _foreseen(
     work: Work, entry: SubmissionEntry, by_exercise: Mapping[str, GradedCell], due: datetime | None
 ) -> SubmissionEntry:
-    """Return the gradebook entry that a submission would have after a run, with the late penalty it has now."""
+    """Predict the gradebook entry of a submission if it were graded now. The late penalty is the one in ``entry``."""
     cells = {notebook: dict(of_notebook) for notebook, of_notebook in entry.cells.items()}
     for row in () if work.written else work.rows or ():
         cell = by_exercise[row.exercise]

@@ -75,7 +75,7 @@ _NOT_ENTERED = (
 )
 """SQL condition: no entry in the gradebook is based on this evidence."""
 _RUNS = 50
-"""The number of runs whose result tables are kept."""
+"""The maximum number of runs whose result tables are kept."""
 _PATIENCE = 30.0
 """Time limit in seconds for a step to wait until another program's step ends."""
 _Decoded = TypeVar("_Decoded")
@@ -281,7 +281,7 @@ class ClassStore:
         return {name: Origin(*fields) for name, *fields in self._rows("SELECT * FROM origin")}
 
     def keep_graded_cells(self, fingerprint: str, cells: bytes) -> None:
-        """Store the graded cells that were read from the current sources, in place of all earlier ones."""
+        """Store the graded cells that were read from the current sources. They replace all earlier ones."""
         with self._step() as book:
             book.execute("DELETE FROM graded_cells")
             book.execute("INSERT INTO graded_cells VALUES (?, ?)", (fingerprint, cells))

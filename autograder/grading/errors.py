@@ -96,7 +96,7 @@ class GradebookTrouble(GradingError):
 
     Args:
         path: The class.
-        said: The message of the database.
+        said: The error message of the database.
     """
 
     def __init__(self, path: Path, said: str) -> None:

@@ -36,7 +36,7 @@ CANNOT = 2
 
 
 class _Ours(BaseConverter):
-    """A conversion of whole submissions by this package's grader, in place of nbgrader's converter.
+    """A conversion of whole submissions by this package's grader, instead of nbgrader's converter.
 
     nbgrader has already listed the folders to convert in ``assignments``.
     """

@@ -29,9 +29,11 @@ GIVE_UP_LIMIT = 12.0
 """Time limit in seconds: until then a client without a server must have ended, or have repeatedly said that it waits.
 """
 LATENESS = 1.5
-"""The longest delay in seconds between a client's start and the start of its late server."""
+"""The maximum delay in seconds between a client's start and the start of its late server."""
 LATE_AT_FIRST = 0.65
-"""The same delay as long as the run without a server can still show that the client would have waited longer."""
+"""A shorter delay in seconds, used while a later run without a server can still show that the client would have waited
+for :data:`LATENESS`.
+"""
 CLOSELY = 0.5
 """Seconds after a short patience within which a function that uses this patience as its limit has given up.
 
@@ -44,7 +46,7 @@ PATIENCES = (6.5, 6.95)
 No usual constant, such as 5 or 10, lies within this range, even with the tolerances below.
 """
 PATIENCES_WITHOUT_A_SERVER = {Pace.FAST: (0.2, 0.24), Pace.REAL_TIME: PATIENCES}
-"""The range in seconds, for each pace, in a run without a server. There the function waits for its whole patience.
+"""Like :data:`PATIENCES`, for a run without a server, by pace. In that run the function waits for its whole patience.
 
 A constant that is long enough for a late server is too long for the short range. A function that needs longer, such
 as one that waits in whole seconds, gets the long range in the second look. The waits of rclpy look four times a
@@ -53,9 +55,11 @@ second, so they take a quarter of a second here.
 TOO_LONG = 2.0
 """Seconds that a function may need beyond its patience, for making and destroying its node and for a slow machine."""
 SLACK = 1.1
-"""The same for a patience shorter than this. A slower function gets a longer patience in the second look."""
+"""Like :data:`TOO_LONG`, in seconds, for a patience shorter than this. A slower function gets a longer patience in the
+second look.
+"""
 TOO_SHORT = 0.5
-"""The smallest fraction of its patience that a function must wait."""
+"""The minimum fraction of its patience that a function must wait."""
 PART_OF_A_WAIT = 1.0
 """Seconds by which a function may end before its patience is over, because it may wait in whole seconds."""
 NOT_AVAILABLE = Outcome("not available")
@@ -63,16 +67,16 @@ NOT_AVAILABLE = Outcome("not available")
 WAITING = Outcome("not available", "waiting")
 """The words that a client must repeat if it keeps waiting."""
 AGAIN_AND_AGAIN = 3
-"""The least number of times that a waiting client must say so."""
+"""The minimum number of times that a client must report that it is still waiting."""
 SAYS_SO_TO = 8.0
-"""The time in seconds, from the client's start, at which it must still say so. A client that repeats it every four
-seconds reaches this time; one that stops after three tries does not.
+"""The minimum time in seconds from the moment when the client was first seen to its last report that it waits. A client
+that reports every four seconds reaches this time; a client that stops after three tries does not.
 """
 _CLIENTS = ("client", "action_client")
 _AT_WORK = ("log", "called", "looked")
 """The kinds of events that show that a node works or a function waits, even if the ROS graph does not show it."""
 MOMENT = 0.5
-"""The same words count once within this many seconds: a log line is recorded twice (printed and on /rosout), and a
+"""Seconds within which repeated words count only once: a log line is recorded twice (printed and on /rosout), and a
 loop may be fast.
 """
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re2
 
 SHOWN = 16
-"""The number of characters to quote from the position at which two texts differ."""
+"""The maximum number of characters to quote from the position at which two texts differ."""
 _LONG_LIST = re2.compile(r"\[(-?\d+(?:, -?\d+){4}), (?:-?\d+, ){6,}(-?\d+, -?\d+)\]")
 """Matches a list of more than a dozen numbers; the groups keep the first five and the last two."""
 _OF_ITS_KIND = {
@@ -40,7 +40,7 @@ def shortened(text: str) -> str:
 
 
 def visible(text: str) -> str:
-    """Return the text with Python escapes in place of whitespace that looks like another kind, such as a line end."""
+    """Return the text with Python escapes instead of whitespace that looks like another kind, such as a line end."""
     return "".join(
         character.encode("unicode_escape").decode() if character.isspace() and character != " " else character
         for character in text

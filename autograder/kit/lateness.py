@@ -33,12 +33,13 @@ PATIENT_WITH_AN_ANSWER = 0.9
 missed the answer.
 """
 PATIENT_WITH_A_RESULT = 4.0
-"""The corresponding limit in seconds for a goal's result, whose feedback takes longer on a busy machine. Many clients
-wait 3 or 5 seconds; the limit lies between them.
+"""Seconds: a client that waited this long for a goal's result before giving up was patient. The time is longer than for
+an answer, because feedback takes longer on a busy machine. It lies between the 3 and the 5 seconds that many clients
+wait.
 """
 TRIES = 3
-"""The number of times that a patient client which missed its answer is started again: a slow machine may miss even an
-early answer.
+"""The maximum number of times that a patient client which missed its answer is started again: a slow machine may miss
+even an early answer.
 """
 PATIENT = 1.2
 """Seconds: a client that waited this long for its server before giving up was patient. It may have missed the server
@@ -54,7 +55,7 @@ def answers_late(bench: Bench) -> float:
 def late_at_first(bench: Bench) -> float:
     """Return how many seconds late the server starts in the first run.
 
-    The judge has not yet seen then how long the client waits; the run without a server comes last.
+    In this run the judge does not yet know how long the client waits: only the last run, without a server, shows that.
     """
     return LATE_AT_FIRST if bench.pace is Pace.FAST else LATENESS
 
@@ -100,8 +101,9 @@ def called_too_early(called: str, wait: str) -> Mistake:
         found,
         f"Your client {called} before the server was there. Such a request is lost: a server that starts later never "
         "gets it.",
-        f"Wait for the server before you call: `if not your_client.{wait}(timeout_sec=5.0):` say so and end. "
-        "Without its parentheses it waits for nothing.",
+        f"Wait for the server before you call: write `if not your_client.{wait}(timeout_sec=5.0):`, and below it "
+        "report that the server is not available, and end. Without the parentheses the method is not called, and "
+        "nothing waits.",
         certain=True,
     )
 

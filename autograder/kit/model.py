@@ -255,11 +255,12 @@ class Bench(Protocol):
     def note_whether_it_spins(self) -> None:
         """Send the subject's nodes a request that every spun node answers, and record whether one does not.
 
-        If one does not, the subject is asked for the stacks of its threads, which ends a command.
+        If a node does not answer, also record the stacks of the subject's threads. If the subject is a command, this
+        ends it.
         """
 
     def note_where_it_hangs(self) -> None:
-        """Record the stacks of the subject's threads. This ends a command, so do it last in a part."""
+        """Record the stacks of the subject's threads. If the subject is a command, this ends it, so do it last."""
 
     def run_time(
         self,

@@ -133,8 +133,8 @@ def package_name(evidence: Evidence, package: str) -> Advice | None:
     names = ", ".join(known.name for known in report.packages)
     return Advice(
         f"The workspace was built, but the package {package} is not in it; there is {names}.",
-        f"<name> in package.xml counts: write {package} there, as the name in setup.py, and in setup.cfg. The folder "
-        "with your modules and the file in resource have that name, too.",
+        f"The name of a package is its <name> in package.xml. Write {package} there, as the name in setup.py, and in "
+        "the paths in setup.cfg. The folder with your modules and the file in resource need this name, too.",
     )
 
 

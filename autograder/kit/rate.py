@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part
 
 ROW = 7
-"""The number of successive messages that show a rate in real time."""
+"""The minimum number of successive messages that show a rate in real time."""
 LATE = 6
-"""One message in this many may be late."""
+"""Out of this many messages, one may be late."""
 SIMULATED_TOLERANCE = 0.05
 """The tolerance for the mean interval in simulated time, as a fraction of the reference's interval."""
 SIMULATED_JITTER = 0.1
@@ -37,8 +37,8 @@ AT_ONCE = 0.1
 UNEVEN = 0.3
 """The tolerance for a single interval in real time, as a fraction of the period."""
 ON_THE_WAY = 0.3
-"""The most seconds between the sending and the arrival of a message. If they seem more, or negative, the time of
-sending is ignored.
+"""The maximum number of seconds between the sending and the arrival of a message. If the difference is larger, or
+negative, the time of sending is ignored.
 """
 ROUNDING = 0.005
 """Seconds by which a later reading of the same clock may seem to be earlier, because of rounding."""

@@ -23,7 +23,7 @@ from autograder.masters.master_errors import CellError
 class LeaveStubs(ClearSolutions):
     """nbgrader's ClearSolutions, changed so that each removed solution leaves its own stub.
 
-    Stock nbgrader puts the same text in place of every solution. Here each region begins with the comment that
+    Stock nbgrader replaces every solution by the same text. Here each region begins with the comment that
     students get instead (``code_cells.py``), so the cell can run and says what to do. A solution of any other form is
     cleared as nbgrader does it.
     """

@@ -141,7 +141,7 @@ def _name_all(master: Path, cells: list[MasterCell], points: Points) -> Iterator
     for cell in cells:
         if cell.kind is CellRole.TEXT:
             section = _last_heading(cell.source) or section
-            # Such a cell can only be named by its text.
+            # A text cell has no grade_id, so its name is made from its text.
             yield NamedCell(cell, numbered("text-" + hashlib.sha256(cell.source.encode()).hexdigest()[:10]))
             continue
         _region_where_it_belongs(master, cell)

@@ -41,10 +41,10 @@ class Met(Message, frozen=True):
 
 
 class Sources(Message, frozen=True):
-    """The end of the sources that :class:`Collect` requests. A :class:`Source` for each of them came before.
+    """The last message of the reply to :class:`Collect`, after one :class:`Source` for each source.
 
     Attributes:
-        path: The path of the workspace or launch file among them.
+        path: The path of the workspace or launch file among the sources.
         trouble: Why there are no sources, in words for the student; empty if there are.
     """
 
@@ -66,7 +66,7 @@ class _RunMessage(Message, frozen=True):
 
 
 class Started(_RunMessage, frozen=True):
-    """The function was called; ``accepted`` are those options for which it has parameters."""
+    """The subject's function was called; ``accepted`` are those of the offered options for which it has a parameter."""
 
     accepted: list[str]
 
@@ -222,8 +222,8 @@ class Judged(Message, frozen=True, tag="verdict"):
     """The last message: the check is over.
 
     Attributes:
-        verdict: The verdict. None for a submission in its sandbox, which could otherwise choose which of two runs of
-            its notebook counts, by spoiling the first one.
+        verdict: The verdict; None if a submission in a sandbox asked for the check. The grader may run a notebook
+            twice, and a submission that knew a bad verdict could spoil the first run, so that only the second counts.
     """
 
     verdict: Verdict | None

@@ -31,7 +31,7 @@ VARIABLE = "AUTOGRADER_JOURNAL"
 NAME = ".course-journal.jsonl"
 """The name of the journal in the folder of the notebooks."""
 MOST = 4_000_000
-"""The number of bytes to read from the end of the file: about forty thousand checks."""
+"""The maximum number of bytes to read from the end of the file: about forty thousand checks."""
 
 
 @dataclass(frozen=True)

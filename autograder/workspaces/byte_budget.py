@@ -1,4 +1,4 @@
-"""A byte limit shared by a student's files: each may be small, but all of them together far too large."""
+"""A byte limit shared by a student's files: each file may be small, but all files together far too large."""
 
 from __future__ import annotations
 

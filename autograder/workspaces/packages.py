@@ -78,7 +78,7 @@ class Package:
 
     @property
     def commented(self) -> tuple[str, ...]:
-        """The dependencies that it would have in addition if lines inside comments of its package.xml counted."""
+        """The dependencies that are only inside comments of the package.xml, and therefore do not count."""
         comments = re2.findall(r"(?s)<!--(.*?)-->", _text(self.folder / "package.xml"))
         line = r"<(?:\w*depend|member_of_group)\b[^>]*>\s*([^<\s]+)\s*</"
         return tuple(name for comment in comments for name in re2.findall(line, comment))

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from autograder.workspaces.program_plans import Plan
 
 MAX_LOG = 3_000
-"""The number of characters to report from the end of a build's log."""
+"""The maximum number of characters to report from the end of a build's log."""
 
 
 def report_line(phase: str, made: Build, plan: Plan | None = None, missing: str = "") -> str:

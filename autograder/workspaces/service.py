@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 MAX_BUILDS = 20
 """The maximum number of builds that one notebook may request. After that, colcon itself works in the box."""
 PIECE = 400_000
-"""The number of bytes of an archive in one message."""
+"""The maximum number of bytes of an archive in one message."""
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 LIMIT = 600
 """Time limit in seconds for one cell; the longest cell builds a workspace."""
 AT_ONCE = 3
-"""The number of notebooks that run at the same time."""
+"""The maximum number of notebooks that run at the same time."""
 MOST_FRAMES = 60
 FRAME_SECONDS = 0.25
 RECORDED = "Recorded while the notebook ran"

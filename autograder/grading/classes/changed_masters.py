@@ -41,11 +41,13 @@ def note_origins(store: ClassStore, made: Mapping[str, tuple[Path, NotebookNode]
 
 
 def news(directory: ClassDirectory, store: ClassStore, assignments: Iterable[str]) -> list[str]:
-    """Return warnings before grading: tasks that changed since the sources were made, or that cannot be compared.
+    """Return warnings to show before grading, about masters that were changed since the class's sources were made.
+
+    If it is unknown from which masters the sources were made, there is one warning about that.
 
     Args:
         directory: The class.
-        store: The class's store, which contains the origins.
+        store: The class's store, which contains the origin of each source: the master as it was then.
         assignments: The assignments to be graded.
     """
     known = store.origins()

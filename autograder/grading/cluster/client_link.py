@@ -38,7 +38,7 @@ class ClientLink:
         self._log = unnamed_file()
         own, its_own = socket.socketpair()
         self._lines = Lines(own, sys.maxsize)
-        # It starts in the folder of this process, because Dask's settings may name certificates by relative paths.
+        # The child starts in this process's folder, because Dask's settings may name certificates by relative paths.
         client = python_child("-m", "autograder.grading.cluster.dask_client", self._address, folder=None)
         self._client = client.start(
             stdin=its_own.fileno(),

@@ -49,7 +49,7 @@ _CONNECT_SECONDS = 10
 _OFFER_SECONDS = 60.0
 """Time limit in seconds for a worker's offer. Its first attempt to make a box takes a second on a busy machine."""
 _LINK_SECONDS = 5.0
-"""After this many seconds of silence, the connection to the scheduler is checked."""
+"""Seconds of silence after which the connection to the scheduler is checked."""
 
 
 def main(address: str) -> None:

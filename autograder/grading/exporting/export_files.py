@@ -171,8 +171,9 @@ def _filled(
         )
     if doubtful:
         notices.append(
-            f"{', '.join(doubtful)}: another line may be the same student's, so these stay as they were. Write what "
-            f"the list has under {' or '.join(sure)} for each into the column {to} of students.csv"
+            f"{', '.join(doubtful)}: another line may be the same student's, so these lines stay as they were. "
+            f"Write what the list has under {' or '.join(sure)} for each of these students into the column {to} of "
+            "students.csv"
         )
     yield (
         into.name,

@@ -101,7 +101,7 @@ class Writer:
     def _convert_and_enter(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
         """Write the notebooks, then enter the grades.
 
-        The notebooks come first, because without grades they have no effect.
+        The notebooks come first: if this is interrupted between the two steps, notebooks without grades have no effect.
         """
         folder = self._folder("autograded", submission)
         _remove(folder)

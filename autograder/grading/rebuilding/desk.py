@@ -4,10 +4,10 @@
 
     cells, left_out = read_notebook(read_bytes(path))
 
-Code that has taken over a desk decides only what is said about this one file. The document that comes out is checked
-(:func:`autograder.grading.running.admission.admitted_notebook`). An impossible document, or a desk that fails, counts
-as the file's fault. On a machine that cannot make namespaces for a box, there are still the process, its limits and
-its filter of system calls.
+Code that has taken over a desk decides only what is reported about this one file. The document that comes out is
+checked (:func:`autograder.grading.running.admission.admitted_notebook`). An impossible document, or a desk that fails,
+counts as the file's fault. On a machine that cannot make namespaces for a box, there are still the process, its limits
+and its filter of system calls.
 """
 
 from __future__ import annotations
@@ -59,7 +59,9 @@ class DeskFailed(GradingError):
 
 
 class Desk:
-    """The fork server of desk processes, and the box that they enter. Both end with this object, or with this process.
+    """The fork server of desk processes, and the box that they enter.
+
+    The server and the box end with this object, or with this process.
 
     Args:
         module: The module that a desk process runs.

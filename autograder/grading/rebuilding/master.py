@@ -1,4 +1,4 @@
-"""The trusted master of a submission: the class's source notebook, with stubs in place of solutions."""
+"""The trusted master of a submission: the class's source notebook, with stubs instead of solutions."""
 
 from __future__ import annotations
 

@@ -103,7 +103,7 @@ class _Sorting:
                     built += pending
                     pending = []
                 built.append(self._filled(name, cell))
-            # Any other deleted cell is put back before the student's cells, because they may change what it defines.
+            # Any other deleted cell is put back before the student's cells, which may change what that cell defines.
             pending += [_extra(extra) for extra in extras.get(name, [])]
             for check in [check for check, anchor in late.items() if anchor == name]:
                 built += [*pending, nbformat_nodes.copied(self._master[check])]

@@ -36,7 +36,9 @@ class ShownPictures:
                 self._left[name] += 1
 
     def of(self, text: str, own: Mapping[str, Mapping[str, str]]) -> NotebookNode:
-        """Return the pictures that a text shows. Each can be used once, so that copies of a cell do not bloat a page.
+        """Return the pictures that a text shows.
+
+        A picture can be used once, so that copies of a cell do not bloat a page.
 
         Args:
             text: The text of a cell.

@@ -42,10 +42,10 @@ _NBGRADERS = _FORMGRADER / "templates"
 _BOOTSTRAP = _FORMGRADER / "static" / "node_modules" / "bootstrap" / "dist" / "css"
 _SCRIPT = re.compile(r"<script\b.*?</script\s*>", re.DOTALL | re.IGNORECASE)
 _REMEMBERED = 1024
-"""The number of highlighted pieces of code to remember. The given cells of a chapter are a few hundred."""
+"""The maximum number of highlighted pieces of code in the cache. A chapter has a few hundred given cells."""
 _REMEMBERED_CHARACTERS = 8_000_000
-"""The number of characters of rendered parts to remember. The parts that a chapter's students share have about a
-million.
+"""The maximum length, in characters, of all rendered fragments in the cache. The fragments that a chapter's students
+have in common take about a million.
 """
 _PICTURE = re2.compile(r"(?i)<img\b[^>]*")
 _SHOWS_ATTACHED = re2.compile(r'(?P<before><img\b(?:\s+[\w-]+="[^"]*")*?\s+)src="attachment:(?P<name>[^"]*)"')

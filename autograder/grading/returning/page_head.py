@@ -35,7 +35,7 @@ _CELL = "padding: 4px 14px 4px 0; vertical-align: top; text-align: left"
 
 
 def with_summary(body: str, notebook: NotebookNode, names: Mapping[str, Any]) -> str:
-    """Return a page that begins with the student and a table of exercises, in place of nbgrader's list.
+    """Return a page that begins with the student and a table of exercises, instead of nbgrader's list.
 
     Args:
         body: The page. It contains no text by a student before nbgrader's list.

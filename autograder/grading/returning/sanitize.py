@@ -72,8 +72,8 @@ _LINK = re2.compile(r"https?://\S+|mailto:[^\s:]+|#\S*|(/|/?[\w%.-][\w%./-]*)(#\
 _PICTURE = re2.compile(r"data:image/(?:png|jpeg|gif|webp);base64,([A-Za-z0-9+/=\s]*)")
 _ATTACHED = "attachment:"
 _ATTACHMENT = re2.compile(rf"{_ATTACHED}[\w.%+-]+")
-# These are the only classes that Pygments gives to pieces of code, and mistune to code blocks. Other classes could
-# make a text look like a verdict, or cover the page.
+# The allowed CSS classes: Pygments and mistune give pieces of code no others. Other classes could make a text look like
+# a verdict, or cover the page.
 _CLASSES = {name for name in STANDARD_TYPES.values() if name} | {"highlight"}
 _LANGUAGE = re2.compile(r"language-[\w+-]{1,30}")
 
@@ -133,7 +133,7 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
 
 
 def _pictures_of(cell: NotebookNode) -> list[str]:
-    """Return the pictures of a text cell in base64; each only once, however often the text shows it."""
+    """Return the pictures of a text cell in base64; each picture once, however often the text shows it."""
     attached = [data for kinds in cell.get("attachments", {}).values() for data in kinds.values()]
     return [*attached, *{found[1] for found in _PICTURE.finditer(cell.source)}]
 
@@ -155,7 +155,7 @@ def harmless_markdown(source: str, figures: tuple[str, ...] = ()) -> str:
 
     Args:
         source: A student's text cell.
-        figures: The names of the bitmaps attached to the cell. Each may be shown once.
+        figures: The names of the bitmaps attached to the cell. A bitmap may be shown once.
     """
     if len(source) > LONGEST_MARKDOWN:
         return as_typed(source)

@@ -49,7 +49,7 @@ ATTEMPTS = 3
 _RETURN_SECONDS = 60.0
 """Seconds to wait for a worker if none is left, because a worker that ended is often started again."""
 _EXTRA_SECONDS = 90.0
-"""A worker is assumed to be lost this many seconds after the time limits of its task."""
+"""Seconds after the end of the time limits of a task until its worker is assumed to be lost."""
 _MOST_IN_FLIGHT = 2_000
 _MOST_TROUBLES = 3
 

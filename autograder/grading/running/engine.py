@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from autograder.grading.task import Task
 
 _PER_CORE = 4
-"""The number of notebooks per processor. A notebook mostly waits: for a timer, for discovery, or for a program to
-start.
+"""The maximum number of notebooks per processor at the same time. A notebook mostly waits: for a timer, for discovery,
+or for a program to start.
 """
 BOX_BYTES = Limits().beside_bytes + 150_000_000
 """The memory in bytes that each further notebook may take, with its sandbox, judge and worker process."""

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from autograder.grading.task import Task
 
 ATTEMPTS = 2
-"""The number of times that a task is tried, because a worker may die."""
+"""The maximum number of times that a task is tried, because a worker may die."""
 GOODBYE_SECONDS = 2.0
 """Seconds after which a worker that was asked to end is killed, so that Ctrl-C takes less than three seconds in all."""
 _RESULT_BYTES = 64_000_000

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from autograder.grading.classes.class_directory import ClassDirectory, RefusedFile
 
 MOST = 100
-"""The maximum number of pairs of students to show. These are the closest ones, and a reader needs no more."""
+"""The maximum number of pairs of students to show. The closest pairs are shown, and a reader needs no more."""
 
 
 @dataclass(frozen=True)

@@ -119,7 +119,8 @@ def by_students(pairs: Iterable[Pair]) -> list[list[Pair]]:
 def _candidates(answers: Sequence[Compared]) -> list[tuple[Compared, Compared]]:
     """Return the pairs with enough common sequences to be worth comparing; comparing all pairs would take too long.
 
-    In a common passage, at least every seventh of the shared own words is part of a common sequence, or begins one.
+    In a common passage, at least every seventh of the shared words that the students wrote themselves is part of a
+    common sequence, or begins one.
     """
     holders: defaultdict[tuple[str, ...], list[int]] = defaultdict(list)
     for place, answer in enumerate(answers):
@@ -134,7 +135,10 @@ def _candidates(answers: Sequence[Compared]) -> list[tuple[Compared, Compared]]:
 
 
 def _common_passages(one: Compared, other: Compared) -> list[Passage]:
-    """Return the passages that two answers have in common, in the order of the first; each has an own word."""
+    """Return the passages that two answers have in common, in the order of the first answer.
+
+    Each passage contains at least one word that both students wrote themselves, and not only given code.
+    """
     numbers = {sign: number for number, sign in enumerate({*one.signs, *other.signs})}
     first, second = ([numbers[sign] for sign in answer.signs] for answer in (one, other))
     found: list[Passage] = []

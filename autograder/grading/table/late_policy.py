@@ -28,7 +28,7 @@ class LatePolicy(LateSubmissionPlugin):
         10.0,
         min=0,
         max=100,
-        help="The percentage of the points that is subtracted for each day that has begun.",
+        help="The percentage of the points that is subtracted for each day late. A day that has begun counts fully.",
     ).tag(config=True)
     grace_minutes = Float(
         0.0, min=0, help="Work that is late by at most this many minutes loses nothing."

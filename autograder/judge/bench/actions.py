@@ -1,9 +1,9 @@
-"""Actions: a server that does only what the scenario tells it to, and a client that sends goals. Both are recorded.
+"""The judge's side of actions: a server that does only what the scenario tells it to, and a client that sends goals.
 
-Both are built from the three services and two topics of an action (design.ros2.org, "Actions"), not from rclpy's
-ActionServer and ActionClient. rclpy's server decides by itself when to answer, and does not report a second cancel
-request for one goal; here each request counts. The client sees each answer as it was sent, including the refusal of a
-cancel request.
+What they send and receive is recorded. They are built from the three services and two topics of an action
+(design.ros2.org, "Actions"), not from rclpy's ActionServer and ActionClient. rclpy's server decides by itself when to
+answer, and does not report a second cancel request for one goal; here each request counts. The client sees each answer
+as it was sent, including the refusal of a cancel request.
 """
 
 from __future__ import annotations

@@ -15,7 +15,9 @@ if TYPE_CHECKING:
     """A service's callback: it takes a request and an empty response."""
 
 ATTEMPTS = 30
-"""The number of attempts to send an answer; in each the middleware waits about 0.1 s for the client's reader."""
+"""The maximum number of attempts to send an answer. In each attempt the middleware waits about 0.1 s for the client's
+reader.
+"""
 
 
 def patiently(service: Service, wanted: Callable[[], bool] = lambda: True) -> Callable[[Any, Any], None]:

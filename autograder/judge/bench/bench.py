@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from autograder.judge.subjects.subject import Subject
 
 SETTLED = {Pace.FAST: 1.0, Pace.REAL_TIME: 3.0}
-"""Once the graph has not changed for this many seconds, a command is assumed to have made all its endpoints."""
+"""Seconds without a change of the graph, by pace, after which a command is assumed to have made all its endpoints."""
 GRAPH_LOOK = 0.02
 """Seconds between two queries of the graph whose results are recorded."""
 T = TypeVar("T")
@@ -401,7 +401,7 @@ class TestBench:
                 self.note_where_it_hangs()
 
     def note_where_it_hangs(self) -> None:
-        """Record the stacks of the subject's threads. This ends a command, so do it last in a part."""
+        """Record the stacks of the subject's threads. If the subject is a command, this ends it, so do it last."""
         if not self._subject.ended:
             self._presence.note_interface()
             self._recorder.record("stack", "subject", text=self._subject.stack())

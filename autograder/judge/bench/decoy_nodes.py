@@ -1,4 +1,4 @@
-"""Nodes that the judge puts on the graph for a subject to look at."""
+"""Decoys: nodes that the judge puts on the graph only for a subject to find. They have endpoints, and do nothing."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class DecoyNodes:
-    """The judge's planted nodes, each with a participant of its own.
+    """The judge's decoy nodes, each with its own DDS participant.
 
     Each node needs its own participant, because Fast DDS accepts only one type for a topic in one participant.
     Participants are kept from part to part, because a subject that keeps running needs a fifth of a second or more to
@@ -48,7 +48,7 @@ class DecoyNodes:
         return decoy.plant(name, publishes, subscribes)
 
     def clear(self) -> None:
-        """Remove the endpoints from the graph. The nodes stay until the next planted ones replace them."""
+        """Remove the endpoints from the graph. The nodes stay until the next decoys replace them."""
         for decoy in self._decoys[: self._planted]:
             decoy.clear()
         self._planted = 0
@@ -60,7 +60,7 @@ class DecoyNodes:
 
 
 class _Decoy:
-    """A participant of the judge with its current planted node."""
+    """One DDS participant of the judge, with the decoy node that it currently shows on the graph."""
 
     def __init__(self, domain_id: int) -> None:
         self._context = Context()

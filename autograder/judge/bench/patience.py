@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 CROWDED = 4.0
-"""The number of runnable threads per processor up to which time limits keep their length."""
+"""The maximum number of runnable threads per processor with which time limits keep their length."""
 SLOWEST = 3.0
-"""The largest factor by which a busy machine makes a time limit longer."""
+"""The maximum factor by which a busy machine makes a time limit longer."""
 _LOOK_EVERY = 0.1
 _LOAD = Path("/proc/loadavg")
 

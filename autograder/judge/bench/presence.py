@@ -50,8 +50,9 @@ APPEAR = 12.0
 It is generous, because a slow start is not a mistake; a program usually needs a quarter of a second.
 """
 AT_WORK = 2
-"""The number of times in a run that this limit starts again because the subject started more processes: a command may
-build its package before it runs the program. The number is limited because a program may fork without end.
+"""The maximum number of times in a part that the time limit :data:`APPEAR` starts again because the subject has started
+more processes: a command may build its package before it runs the program. A program that forks without end would
+restart the limit forever without this maximum.
 """
 MATCH = 5.0
 """Time limit in seconds for two compatible endpoints to be matched."""
@@ -98,7 +99,10 @@ class Presence:
         return graph.subject_nodes(self._node, self._subject.keeper)
 
     def counterparts(self) -> list[graph.NodeName]:
-        """Return the subject's nodes once their names are known, those matched with the judge's endpoints first."""
+        """Return the subject's nodes that use the judge's topics; all its nodes if the judge has no topic.
+
+        Wait up to a second until their names are known.
+        """
         found: list[graph.NodeName] = []
 
         def named() -> bool:

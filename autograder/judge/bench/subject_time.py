@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 ANSWER_LIMIT = 0.5
 """Time limit in seconds of wall time for a spinning node to answer. A node that does not answer is not stepped."""
 PATIENT_ANSWER = 1.5
-"""A node that has not answered for this many seconds of wall time counts as not spun."""
+"""Time limit in seconds of wall time for an answer. A node that has not answered by then counts as not spun."""
 TURNS = 3
 """The number of rounds of an executor after which it has called the timers that are due at a new time.
 
@@ -46,7 +46,7 @@ handles only the request.
 FIRST = 100.0
 """The simulated time at the start, in seconds. The jump to it distorts the first interval, which is not counted."""
 SLOW_STEP = 0.25
-"""A step that takes longer than this many seconds of wall time is suspicious: the subject sleeps, or the machine is
+"""Time limit in seconds of wall time for a step. A longer step is suspicious: the subject sleeps, or the machine is
 overloaded.
 """
 STANDSTILL = 0.06
@@ -316,7 +316,10 @@ class SubjectTime:
                 answers(self._wire, self._recorder, node, MATCH)
 
     def _follow_clock(self) -> bool:
-        """Return True if the subject follows the judge's clock; tried once, when the judge has its first endpoint."""
+        """Return True if the subject follows the judge's simulated clock.
+
+        The judge tries to take over the subject's time only once, as soon as the judge has an endpoint.
+        """
         tried = self._clock is not None or self._clock_refused
         if not tried and (self._presence.subscriptions or self._presence.publishers):
             self._clock_refused = True

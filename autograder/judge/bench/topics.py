@@ -92,7 +92,8 @@ class RecordedSubscription(RecordedEndpoint):
 
     def _hear(self, message: Any, info: Any) -> None:
         # The publisher's own count of its messages tells how many it sent before this subscription could receive any.
-        # Its time of sending does not depend on the transport (rmw_message_info_t; provided by rmw_fastrtps).
+        # The publisher's time of sending does not depend on the transport (rmw_message_info_t; provided by
+        # rmw_fastrtps).
         self._recorder.record(
             "message",
             self.topic,

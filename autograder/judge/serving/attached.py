@@ -82,7 +82,7 @@ def imports() -> None:
     for name in ("subjects.command_subject", "subjects.remote_subject", "verdicts.trial"):
         importlib.import_module(f"autograder.judge.{name}")
 
-    # An exercise that its author is still writing may be broken. The others must work nevertheless.
+    # An exercise that its author is still writing may be broken. The other exercises must work nevertheless.
     exercises.unbroken()
     for name in (*_INTERFACES, *course.interface_modules()):
         with contextlib.suppress(ImportError):

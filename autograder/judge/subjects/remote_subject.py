@@ -1,4 +1,4 @@
-"""A subject in a notebook: the kernel runs it when the judge says so.
+"""A subject in a notebook: the kernel runs it when the judge requests this.
 
 A Node class or a function runs inside the kernel, in one participant for all of its runs. For a workspace or a launch
 file, the kernel starts a new process for each run.

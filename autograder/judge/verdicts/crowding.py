@@ -25,7 +25,9 @@ TOO_BUSY = (
 SEEN_SO_FAR = "So far the judge saw this, and it may be due to the busy machine: “{}”"
 """A sentence that quotes the diagnosis of a look that may be wrong."""
 ANSWER_WITHIN = 30.0
-"""On a crowded machine, a check in a notebook ends without a verdict after this many seconds of wall time."""
+"""Time limit in seconds of wall time for a check in a notebook on a crowded machine. The check then ends without a
+verdict.
+"""
 _EVERY = 0.1
 """Seconds between two counts of the threads."""
 

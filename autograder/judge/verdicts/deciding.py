@@ -30,7 +30,7 @@ This is needed because Python prints and drops an exception that is raised in a 
 garbage collector.
 """
 SURE = 1.0
-"""A decision that has taken this many seconds of processor time is delayed by the subject's output, not by the machine.
+"""Seconds of processor time. A decision that has taken longer is delayed by the subject's output, not by the machine.
 """
 SIGNAL = signal.SIGVTALRM
 """The signal that ends a decision. A judge that is not deciding ignores it."""

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part, Reference
 
 MAX_MOMENTS = 80
-"""The number of moments in a verdict: all important ones, and the first of the others."""
+"""The maximum number of moments in a verdict: all important ones, and the first of the others."""
 MOST_MOMENTS = 120
 """The maximum number of moments if more than that are important, as for a program that sends goals forever."""
 

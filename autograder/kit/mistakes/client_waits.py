@@ -57,10 +57,9 @@ class Wait:
         return [*found, late] if without else found
 
     def _looks_elsewhere(self, evidence: Evidence) -> bool:
-        """Return True if the client was seen to look for a server with a name other than the task's.
+        """Return True if the client was seen to look for a server other than the one that the exercise asks for.
 
-        If the client ended both with and without a server, it must have looked for another name. If it kept waiting,
-        it may have used the right name with another type.
+        A wrong name always counts. A wrong type counts only if the client kept waiting in the run without a server.
         """
         name, kind = evidence.reference.only(self.role)
         looked_for = [found for part in evidence for found in part.endpoints(self.role).items()]
@@ -72,7 +71,9 @@ class Wait:
         return giving_up.objection(evidence.part(self.absent), self.had_server(evidence), self.role)
 
     def gives_up(self, evidence: Evidence, wrong: str = "") -> Finding:
-        """Decide whether the client, without a server, ends by itself and says so, or says repeatedly that it waits.
+        """Decide whether the client does one of two right things if there is no server.
+
+        It may report the missing server and end by itself, or keep waiting and say repeatedly that it waits.
 
         Args:
             evidence: All runs of the client.
@@ -95,7 +96,8 @@ class Wait:
             "waits_forever",
             lambda evidence: self.fault(evidence).startswith("still waiting"),
             f"When there is no {self.noun}, your client is still waiting after {GIVE_UP_LIMIT:g} s.",
-            f"Give the wait a limit of a few seconds: {self._with_a_limit} say so and stop. A loop needs a count.",
+            f"Give the wait a limit of a few seconds: write {self._with_a_limit}, and below it report that the "
+            f"{self.noun} is not available, and stop. A loop needs a count.",
             certain=True,
         )
 
@@ -109,8 +111,9 @@ class Wait:
             ),
             f"The {self.noun} was there, but no {self.asks} of your client reached it, and your client waits on. A "
             f"{self.asks} that is sent before the {self.noun} is there is lost.",
-            f"Wait with a limit, and go on as soon as the {self.noun} is there: {self._with_a_limit} say so and stop. "
-            f"It returns True as soon as the {self.noun} is there, so a loop that waits begins with `while not`.",
+            f"Wait with a limit: write {self._with_a_limit}, and below it report that the {self.noun} is not "
+            f"available, and stop. wait_for_{self.noun} returns True as soon as the {self.noun} is there, so a loop "
+            "that waits begins with `while not`.",
         )
 
     def the_wrong_way_round(self) -> Mistake:
@@ -120,8 +123,8 @@ class Wait:
             self._gives_up_where_served,
             f"Your client says “{{}}” if the {self.noun} is there, and does not say it if there is none: the condition "
             "is the wrong way round.",
-            f"wait_for_{self.noun} returns True when the {self.noun} is there. Write {self._with_a_limit} above what "
-            f"your client does without a {self.noun}.",
+            f"wait_for_{self.noun} returns True when the {self.noun} is there. Write {self._with_a_limit} above the "
+            f"lines that your client has to run if there is no {self.noun}.",
             certain=True,
         )
 
@@ -143,7 +146,8 @@ class Wait:
             f"The {self.noun} was there, or started a moment late, and your client had already given up, or it went on "
             f"before it had discovered the {self.noun}.",
             f"Wait for it, with a few seconds of patience, before the first {self.asks}: "
-            f"wait_for_{self.noun}(timeout_sec=5.0). Without its parentheses it waits for nothing.",
+            f"wait_for_{self.noun}(timeout_sec=5.0). Without the parentheses the method is not called, and "
+            "nothing waits.",
         )
 
     def patience_not_kept(self) -> Mistake:

@@ -101,7 +101,10 @@ def servers(part: Part) -> int:
 
 
 def misfit(evidence: Evidence, role: str) -> str:
-    """Return what is wrong with the one server of a role, in words: name, type or number; empty if nothing is."""
+    """Return in words what is wrong with the subject's server: its name, its type, or how many there are.
+
+    Return an empty text if the subject has exactly the server of this role that the reference has.
+    """
     name, type_name = evidence.reference.only(role)
     made, noun = evidence.main.endpoints(role), role.replace("_", " ")
     if name not in made:

@@ -167,7 +167,8 @@ def _went_on_without_it(part: Part) -> bool:
 
 
 _COROUTINE = re2.compile(
-    # The warning is not matched for methods, which may be callbacks: a program may end before rclpy has run one.
+    # The warning "was never awaited" is not matched for methods. A method may be a callback, and a program may end
+    # before rclpy has run that callback.
     r"^<coroutine object (?P<returned>\S+) at |RuntimeWarning: coroutine '(?P<warned>[a-z]\w*)' was never awaited"
 )
 
@@ -263,7 +264,7 @@ def raised_lines(traceback: str) -> list[str]:
 
 
 def raised_line(traceback: str) -> str:
-    """Return the type of the exception in a traceback with the first line of its message, or an empty string."""
+    """Return the line of a traceback with the exception's type and the first line of its message; empty if none."""
     return next(iter(raised_lines(traceback)), "")
 
 

@@ -177,8 +177,8 @@ KNOWN = (
         rf"|publish\(msg\){MARKS}AttributeError: '(?:float|int)' object has no attribute 'x'",
         "A field of a message got a value that it cannot take: {what:another type, or a number that is too large}.",
         "Print the value, and its type(...), above the line that assigns it. int(...) makes a whole number of it, "
-        "float(...) a number with a point, and str(...) a string. A part with three numbers takes one by one: "
-        "command.linear.x = 0.5.",
+        "float(...) a number with a point, and str(...) a string. Set the numbers of a field with three numbers "
+        "one by one: command.linear.x = 0.5.",
     ),
     Crash(
         "field_type",

@@ -57,8 +57,8 @@ READING: Sequence[Row] = (
     (
         r"^(?:IndentationError|TabError): |^SyntaxError: 'return' outside",
         "",
-        "Indent by four spaces, without tabs, what belongs below a line that ends with a colon. All lines of one block "
-        "begin in the same column.",
+        "Indent by four spaces, without tabs, the lines that belong to a line with a colon at its end. All lines of "
+        "one block begin in the same column.",
     ),
     (
         _READS,
@@ -168,7 +168,7 @@ RUNNING: Sequence[Row] = (
     (
         r"^AttributeError: property '(?P<name>\w+)' of '(?P<class>\w+)' object has no setter",
         "{name} of {class} can only be read.",
-        "If {name} is to be a value of your own, give it another name.",
+        "If you want to store a value of your own, give it a name other than {name}.",
     ),
     (
         r"AttributeError: partially initialized module '(?P<name>[\w.]+)'",
@@ -237,8 +237,8 @@ RUNNING: Sequence[Row] = (
     (
         r"^TypeError: (?:\w+\.)*?(?P<what>\w+)(?:\.__init__)?\(\) (?:takes|missing|got an unexpected)",
         "",
-        "Compare what stands between the parentheses with the first line of {what}, def ..., or with the lab's text: "
-        "as many values in the same order, and the same name left of each =. In a method, self counts as one of them. "
+        "Compare your call with the first line of {what}, def ..., or with the lab's text. The call needs as many "
+        "values in the same order, and the same name left of each =. In a method, self counts as one of the values. "
         "If ROS is to call {what} later, write its name alone, without parentheses.",
     ),
     (
@@ -262,7 +262,7 @@ RUNNING: Sequence[Row] = (
     (
         r"^ValueError: generator already executing",
         "Two threads spin at once by the same executor. rclpy.spin(node) uses one executor for the whole program.",
-        "Spin once, by one executor that has all your nodes: executor = MultiThreadedExecutor(), "
+        "Spin in one place only, by one executor that has all your nodes: executor = MultiThreadedExecutor(), "
         "executor.add_node(...) for each of them, executor.spin(). Or give each thread an executor of its own: "
         "rclpy.spin(node, executor).",
     ),

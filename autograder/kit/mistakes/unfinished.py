@@ -128,13 +128,16 @@ def _returned_silently(evidence: Evidence) -> bool:
 
 
 def _returned_at_once(evidence: Evidence) -> bool:
-    """The same, but the function did not wait either, although it was told how long: the rest is missing."""
+    """A function returned silently, as above, and did not wait either, although it was told how long to wait.
+
+    So most of the function is missing.
+    """
     asked = any(part.of("called") or part.of("looked") for part in evidence)
     return not asked and all(map(ended_at_once, evidence)) and _returned_silently(evidence)
 
 
 def _without_node(evidence: Evidence) -> str:
-    """Return the beginning of a sentence about a subject without a node; empty if it had one."""
+    """Return how a sentence to the student begins if the subject never had a node; empty if it had one."""
     if any(part.had_node or any(map(part.of, ("log", "request", "goal", "message"))) for part in evidence):
         return ""
     ending = evidence.main.ending
@@ -143,7 +146,10 @@ def _without_node(evidence: Evidence) -> str:
 
 
 def _surely_without_node(evidence: Evidence) -> str:
-    """The same, but empty for a function that returned: its node may have ended before the graph showed it."""
+    """Return the same as :func:`_without_node`, but an empty text for a function that returned.
+
+    The node of such a function may have ended before the graph showed it.
+    """
     return "" if evidence.main.returned is not None else _without_node(evidence)
 
 

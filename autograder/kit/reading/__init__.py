@@ -1,1 +1,1 @@
-"""What the evidence says of texts, of calls of a service and of goals, for criteria and mistakes."""
+"""Functions that read the evidence for criteria and mistakes: published and reported texts, service calls, goals."""

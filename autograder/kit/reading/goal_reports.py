@@ -39,7 +39,9 @@ NO_GOAL = "no goal"
 UNASKED = "a request to cancel the goal"
 NOT_AWAITED = "it ended without taking in the answer to its goal"
 MANY_REQUESTS = 3
-"""A client may have a reason to request one result up to this many times; one with more repeats without end."""
+"""The maximum number of times that a client may have a reason to request one result. A client that requests it more
+often repeats without end.
+"""
 
 AT_ONCE = 3.6
 """Seconds: a client that ends sooner than this after an answer was sent never meant to use the answer.
@@ -122,7 +124,10 @@ def cancels_unasked(part: Part) -> bool:
 
 
 def unshown_feedback(part: Part) -> list[Event]:
-    """Return the feedback messages whose newest number the client did not print or return afterwards."""
+    """Return the feedback messages whose last number the client neither printed nor returned after the message came.
+
+    Each feedback message contains a list of numbers, and the last one is in no other message.
+    """
     return [
         event for event in part.of("feedback") if not mentions(part.said(after=event), _sequence(event)[-1])
     ]
@@ -151,7 +156,8 @@ def reports_result(part: Part) -> bool:
 
 
 def _are_in_order(numbers: Sequence[str], lines: Sequence[str]) -> bool:
-    # The numbers are long and random, so their digits cannot be confused with other text between them.
+    # Only digits are compared, whatever the client prints between the numbers. The numbers are long and random, so the
+    # other digits in the lines do not match them by chance.
     digits, place = re2.sub(r"\D", "", " ".join(lines)), 0
     for number in numbers:
         place = digits.find(number, place)

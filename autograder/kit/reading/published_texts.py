@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part
 
 SURE = 2
-"""The number of messages after which a publisher certainly existed. A single one may be missed: it can come before the
-judge can receive it.
+"""The minimum number of messages that prove that a publisher existed. A single message may be missed: it can come
+before the judge can receive it.
 """
 SLOWLY = 1.5
 """A publisher is slow if its intervals are longer than the reference's by this factor. At the end, its silence may
@@ -133,7 +133,7 @@ class Publisher:
 
     @property
     def endpoints(self) -> dict[str, str]:
-        """Its publishers as topic -> type; empty for a program that ended at once.
+        """The subject's publishers as topic -> type; empty for a program that ended at once.
 
         Whether the graph shows such short-lived publishers depends on chance. A notebook's class is held until its
         publishers are known, and a publisher with incompatible QoS is known from the mismatch that was recorded.

@@ -69,11 +69,11 @@ class Client:
         return isinstance(self.evidence, Evidence) and self.evidence.ever_had("client")
 
     def called_each_time(self) -> bool:
-        """True if each run with a service has a call. Then the number of calls did not depend on timing."""
+        """True if the client made a call in each run with a service, so its calls did not depend on timing."""
         return all(map(requests, self.served))
 
     def ended_each_time(self) -> bool:
-        """True if the client ended by itself in each run. Then nothing depended on timing."""
+        """True if the client ended by itself in each run. The judge never stopped it, so timing played no part."""
         return all(part.ending for part in self.evidence.parts)
 
     def called(self, wanted: int) -> bool:

@@ -33,11 +33,13 @@ _BRACES = re2.compile(r"\{[\pL_][^{}]*\}")
 _BYTE = ("\\x00", "\0")
 """A zero byte, as Python shows it and raw. A serialized text has such bytes before and after it."""
 MUCH = 5
-"""The number of successive characters of a text that a line contains only if it was made from that text."""
+"""The minimum number of successive characters of a text that a line contains only if it was made from that text."""
 OFTEN = 3
 """A text that is reported last may be repeated, but not this many times."""
 GROWING = 6
-"""The number of successive lines that each repeat all earlier texts. Fewer may be a look back at recent texts."""
+"""The minimum number of successive lines that each repeat all earlier texts. Fewer lines may be a look back at recent
+texts.
+"""
 
 
 def tells(line: str, text: str) -> bool:

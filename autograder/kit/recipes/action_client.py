@@ -65,8 +65,8 @@ ORDERS = {LATE: (41, 46), REFUSED: (-9, -1), ABORTED: (0, 0), ABSENT: (11, 30)}
 SHOWN_WITHIN = {Pace.FAST: 0.5, Pace.REAL_TIME: 1.5}
 """The maximum time in seconds for a client to show a feedback message before the next one is sent."""
 HASTE = {Pace.FAST: 0.1, Pace.REAL_TIME: 0.075}
-"""The same time limit, in seconds, once the client has failed to show a message. With it the goal's result comes after
-some 3.5 s, between the 3 and the 5 seconds that many clients wait.
+"""Like :data:`SHOWN_WITHIN`, in seconds, once the client has failed to show a message. With this time limit the goal's
+result comes after some 3.5 s, between the 3 and the 5 seconds that many clients wait.
 """
 AT_PACE = 3
 """The number of last feedback messages that are sent at the pace of the lab's server, even if the client has not shown
@@ -221,7 +221,8 @@ def works_on_a_goal(
     newest = bench.random.sample(range(10**8, 10**9), feedbacks)
     length = max(RESULT, bench.seen().inputs["order"] + 1)
     result = bench.random.sample(range(10**9, 2 * 10**9), length - 1)
-    # The repeated number is neither the first nor the last one, whose absence would be noticed in any case.
+    # One number occurs twice, to catch clients that leave out repeated numbers. It is neither the first nor the last
+    # one: if those are missing, this is noticed in any case.
     result.insert(-1, result[1])
     done = await_goal(bench, server, GOAL_LIMIT)
     if done:

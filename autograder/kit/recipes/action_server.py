@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 AT_ONCE = 0.3
 """Seconds: a server that computes many numbers within this time takes no time for each."""
 MANY = 2
-"""This many feedback messages in a row without an answer to the cancel request show that the server reads no requests
-while it works.
+"""The minimum number of feedback messages in a row, without an answer to the cancel request, that show that the server
+reads no requests while it works.
 """
 
 
@@ -58,7 +58,8 @@ class SendsGoals(SeenAsItIs):
                 "Make one ActionServer only, and one node.",
             ),
             Mistake("result_missing", _result_missing, certain=True),
-            # These are checked before all crashes, because a goal that should have been refused may cause a crash.
+            # The mistakes in OWN come before all crashes, because a goal that should have been refused may cause a
+            # crash.
             OWN,
             *CRASHES,
             common.endpoint_name("action_server"),

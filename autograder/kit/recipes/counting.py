@@ -123,8 +123,8 @@ class Counting:
             return Advice(
                 f"“{seen.texts[seen.greetings]}” was message {seen.greetings + seen.number_of_first} of your node: it "
                 f"published {counted(seen.greetings + unheard, 'message')} more before it than it counted{what}.",
-                "Fill each message before you publish it, and publish no other message before the one with the first "
-                "number: write a line such as “Talker started” to the log.",
+                "Fill each message before you publish it, and begin with the message with the first number. Do not "
+                "publish a line such as “Talker started”; write it to the log.",
             )
         first, begins = _first_number(seen, expected), expected.counters[0]
         return Advice(

@@ -1,6 +1,6 @@
-"""The common part of declared exercises: an author declares the right output, and the rest follows from that.
+"""The common part of declared exercises: an author declares the right output, and everything else follows from that.
 
-The rest is the scenario, the verdict and the mistakes. A ``Relay`` listens on one topic and publishes on another. A
+The kit makes the scenario, the verdict and the mistakes. A ``Relay`` listens on one topic and publishes on another. A
 ``Machine`` has a state that a service changes and a topic reports. A common wrong answer is described as a variant of
 the function that returns the right output.
 """

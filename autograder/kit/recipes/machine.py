@@ -23,8 +23,8 @@ __all__ = ["SOME_TEXT", "Machine"]
 QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
 """If no event comes for this many seconds of wall time, the judge stops waiting for an answer or a message."""
 PAUSE = 0.5
-"""How long the judge waits after each answer, in seconds of the subject's time, because a timer of the subject may
-report the change.
+"""Seconds of the subject's time that the judge waits after each answer, because a timer of the subject may report the
+change.
 """
 ON_AND_OFF = (False, True, True, False, False, True, True, False, False, True, False)
 """Requests for a state that is on or off. Each state is requested twice in a row."""

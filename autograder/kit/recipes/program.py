@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 SAYING = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
 """Time limit in seconds of wall time for the program to log its line, from the moment its node appeared."""
 LATE = 0.3
-"""Once the program has logged its line, its log counts as complete after this many seconds without any event."""
+"""Seconds without any event, after the program has logged its line, until its log counts as complete."""
 COMPARED, LONG = 200, 400
 """The maximum number of lines, and of characters of a line, to compare: comparing a flood of output would take minutes.
 """

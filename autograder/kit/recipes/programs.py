@@ -1,4 +1,7 @@
-"""A recipe for the programs of a package. Each is run as in a terminal, judged like its node, and ended with Ctrl-C."""
+"""A recipe for the programs of a package.
+
+Each program is run as in a terminal, judged like the node of its own exercise, and ended with Ctrl-C.
+"""
 
 from __future__ import annotations
 

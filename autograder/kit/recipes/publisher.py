@@ -30,15 +30,17 @@ A timer whose period is shorter than a step fires once a step. As the judge uses
 then seem uneven, and are checked again in real time.
 """
 SILENCE = {Pace.FAST: 3.0, Pace.REAL_TIME: 4.5}
-"""If no event comes for this many seconds, the judge stops waiting.
+"""Seconds without any event, by pace, after which the judge stops waiting.
 
 A message that was lost during discovery delays all later ones until the publisher's next heartbeat, 3 s later (Fast
 DDS, ``heartbeatPeriod``).
 """
 PERSISTENT = 13
-"""The number of messages in real time after which a publisher is assumed to go on: more than the ten of many loops."""
+"""The minimum number of messages in real time after which a publisher is assumed to go on: more than the ten of many
+loops.
+"""
 LOST = 1
-"""The number of messages that a program may have sent before the judge can receive them, on an idle machine."""
+"""The maximum number of messages that a program may have sent before the judge can receive them, on an idle machine."""
 PERSISTS = 1.0
 """Seconds for which a program must still run after it was heard, because simulated time may have passed within a
 moment.
@@ -110,11 +112,17 @@ class Hears:
         return len(simulated(evidence.main.of("message", topic))) >= self._messages // 2
 
     def _enough(self, before: Evidence | None) -> int:
-        """Return how many messages to wait for in real time: only those that the rate needs if more came before."""
+        """Return how many messages to wait for in real time.
+
+        If the first look already got enough messages in simulated time, only those that the rate needs.
+        """
         return self._row(before) if before is not None and self._is_simulated(before) else PERSISTENT
 
     def _row(self, before: Evidence | None) -> int:
-        """Return how many successive messages must keep the rate in real time: more after a fault in simulated time."""
+        """Return how many successive messages in real time must come at the right rate.
+
+        The number is larger if the first look, in simulated time, showed a fault.
+        """
         if before is None or not self._is_simulated(before):
             return ROW
         rate = self._simulated_rate(before)

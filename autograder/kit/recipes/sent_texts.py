@@ -12,7 +12,7 @@ SINGLY = 12
 AT_PACE = 8
 """The number of texts that are sent in real time at the given pace, without waiting for the subject."""
 TRIES = 3
-"""The number of tries, because a busy machine may be too slow for a moment."""
+"""The maximum number of tries, because a busy machine may be too slow for a moment."""
 GREETING = "Hello, world!"
 """The text with which many talkers begin their messages; some of the texts contain it."""
 KINDS = 6

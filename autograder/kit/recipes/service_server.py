@@ -26,9 +26,9 @@ AT_ONCE = 6
 SERVER_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
 """Time limit in seconds for a server on the graph to be matched with the judge's client."""
 QUIET = {Pace.FAST: 2.0, Pace.REAL_TIME: 6.0}
-"""If no event comes for this many seconds, an answer is no longer expected."""
+"""Seconds without any event, by pace, after which an answer is no longer expected."""
 SURE = 2
-"""The number of answers that prove, for a server that ended by itself, that it did serve."""
+"""The minimum number of answers that prove, for a server that ended by itself, that it did serve."""
 
 Fields = Mapping[str, Any]
 """The fields of a request or of a response, by name."""

@@ -29,7 +29,7 @@ BEFORE = 1.0
 for a listener that follows simulated time.
 """
 REPLACED = 2
-"""The number of replaced subscriptions that shows that the listener makes a new one for each text."""
+"""A listener that replaces its subscription at least this many times makes a new subscription for each text."""
 AFTERMATH = 2.5
 """Seconds to wait after the last text, to see whether the listener repeats a text or reports one that was not sent.
 They are simulated for a listener that follows simulated time.
@@ -274,7 +274,9 @@ def says_nothing_else(evidence: Evidence) -> Finding:
         seen = f"with each string all before it once more: “{anew}”"
     else:
         seen = "only what was sent" if heard_any else "it said none of the strings"
-    return Finding(heard_any and not (made_up or again or anew), "only what was sent, and once", seen)
+    return Finding(
+        heard_any and not (made_up or again or anew), "only what was sent, and each string only once", seen
+    )
 
 
 def _most_often(again: Mapping[str, int]) -> tuple[str, int]:

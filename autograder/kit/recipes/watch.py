@@ -25,11 +25,13 @@ if TYPE_CHECKING:
 SILENCE = object()
 """A state that the node must not report."""
 EARLY = 0.15
-"""How many seconds too early a message may report a state: three steps of the judge's clock."""
+"""The maximum number of seconds by which a message may report a state too early: three steps of the judge's clock."""
 BUSY = 0.25
-"""How many seconds later than the task allows a message may come in real time, because a busy machine delays a node."""
+"""The maximum number of seconds by which a message in real time may come later than the task allows, because a busy
+machine delays a node.
+"""
 GRAIN = 0.02
-"""The state is computed for moments that are this many seconds apart."""
+"""Seconds between two moments for which the state is computed."""
 
 
 @dataclass

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from types import TracebackType
 
 _NEAR = 0.75
-"""The least similarity, from 0 to 1, for a suggestion; that of ``sefl`` and ``self`` is 0.75."""
+"""The minimum similarity, from 0 to 1, for a suggestion; that of ``sefl`` and ``self`` is 0.75."""
 
 
 def meant_name(error: BaseException, trace: TracebackType | None) -> str:

@@ -64,7 +64,7 @@ class CapturedOutput:
         if self._kernel is not None:
             del self._kernel._input_request
         setattr(RcutilsLogger, "log", self._usual_log)  # noqa: B010
-        # Both streams may be the same object: restore the last replacement first.
+        # sys.stdout and sys.stderr may be the same object: restore the last replacement first.
         for stream in reversed(self._streams):
             stream.finish()
         sys.stdout, sys.stderr = self._usual_streams

@@ -39,7 +39,7 @@ SOON = 0.7
 LONG = 30.0
 """Seconds of wall time after which a running check shows what is known so far, or that the machine is busy."""
 CROWDED = 4.0
-"""A machine counts as busy if, over the last minute, it had more runnable processes per processor than this."""
+"""The number of runnable processes per processor, over the last minute, above which a machine counts as busy."""
 
 
 @dataclass

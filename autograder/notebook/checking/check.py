@@ -31,9 +31,10 @@ if TYPE_CHECKING:
 
 
 class Score(float):
-    """The points of a check. A notebook shows no bare number below the cell, because the card already says it.
+    """The points of a check, as the value of the check cell.
 
-    Stock nbgrader takes the points from the cell's value as plain text, and this is the number.
+    As plain text the value is the number, because nbgrader itself reads the points from there. As HTML it is empty, so
+    that a notebook does not show the number below the card, which already contains it.
     """
 
     def _repr_html_(self) -> str:

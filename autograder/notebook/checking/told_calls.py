@@ -30,7 +30,8 @@ TOLD: tuple[tuple[Any, str, type[Looked | Called]], ...] = (
 blocking calls use these methods, too.
 """
 LOOKS_TOLD = 10
-"""How many times in one run a look for a server is reported. A loop without a pause looks thousands of times a second.
+"""The maximum number of times that a look for a server is reported in one run. A loop without a pause looks thousands
+of times a second.
 """
 
 

@@ -1,11 +1,11 @@
-"""Watch mode: checks a class again each time its cell redefines it.
+"""Watch mode: checks a Python class or function again each time a cell redefines it.
 
 Watching begins automatically after a check that did not earn all points, or on the student's request.
 
 The cell ends as fast as before, because the check runs while the kernel is idle. A check replaces rclpy's default
 context and captures all output, so it cannot run at the same time as a cell: it stops for the next cell and starts
-again afterwards. What is watched is kept only in the kernel's memory, so a restart ends it. While a class is graded,
-nothing is watched.
+again afterwards. What is watched is kept only in the kernel's memory, so a restart ends it. While the grader executes a
+notebook, nothing is watched.
 """
 
 from __future__ import annotations
@@ -67,7 +67,8 @@ class Watch:
             # If the same cell was run again, its earlier card has already disappeared.
             self._say(f"Another cell has defined {self.name} since.", over=True)
         self.subject, self.due = subject, True
-        self._here = contextvars.copy_context()  # This context contains the cell to which output belongs.
+        # The context variables tell which cell is running, so that output can be assigned to that cell.
+        self._here = contextvars.copy_context()
         self._handle = display_card(self._card("Is checked as soon as this cell has ended."))
 
     def get_ready(self) -> None:

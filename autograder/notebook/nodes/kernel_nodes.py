@@ -178,7 +178,8 @@ def release_waiting_calls(node: Node) -> None:
     for future in list(_pending_answers(node)):
         if not future.done():
             with warnings.catch_warnings():
-                # A callback that reads the answer gets this error, as intended. rclpy would print a warning about it.
+                # A callback that reads the answer gets this error, as intended. In that case rclpy would also print a
+                # warning about the error, which is therefore turned off.
                 warnings.filterwarnings("ignore", f".* {_STOPPED}", UserWarning)
                 future.set_exception(error)
             # Mark the exception as read. Otherwise it is written to stderr when the future is collected.

@@ -50,8 +50,8 @@ def check_nodes(caller: str, nodes: tuple[Any, ...]) -> None:
         raise NodeBusyError(f"{caller}() was given the same node twice: give each node once")
     if len({id(node.context) for node in nodes}) > 1:
         raise UnusableNodeError(
-            "these nodes belong to different ROS contexts, and one executor serves only one of them: "
-            f"call {caller}() for each"
+            "these nodes belong to different ROS contexts, and one executor serves only one context: "
+            f"call {caller}() separately for the nodes of each context"
         )
 
 

@@ -27,8 +27,8 @@ PERIOD = 0.5
 WINDOW = 30.0
 """The length of the time axis, in seconds."""
 _LARGEST = 1e300
-"""Larger values, infinity and NaN are not drawn. A laser scan, for example, has ``inf`` in directions without an
-obstacle.
+"""The maximum value that is drawn. Infinity and NaN are not drawn. A laser scan, for example, has ``inf`` in directions
+without an obstacle.
 """
 _MOST = 3_000
 """The maximum number of points in a plot."""

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 LOOK_AGAIN = 0.05
 """Seconds between two checks for new messages and new topics."""
 DEPTH = 1000
-"""The number of messages on a topic that may arrive between two checks without any being lost."""
+"""The maximum number of messages on a topic that may arrive between two checks without any being lost."""
 _EVERY_NODE = ("/rosout", "/parameter_events")
 
 

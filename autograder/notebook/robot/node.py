@@ -77,7 +77,7 @@ class RobotNode(Node):
         return self._state
 
     def play(self, scene: Scene) -> None:
-        """Let a scene drive the robot, in place of an earlier scene, until another command arrives."""
+        """Let a scene drive the robot until another command arrives. The scene replaces an earlier one."""
         self._scene = scene
 
     @property

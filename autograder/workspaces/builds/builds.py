@@ -40,7 +40,9 @@ FORMAT = "3"
 MAX_LINE = 1_000
 """The maximum number of characters of an output line that are parsed."""
 NO_DEFAULTS = {"COLCON_DEFAULTS_FILE": os.devnull}
-"""Environment variables that turn off the user's own settings for colcon, because the key does not contain them."""
+"""Environment variables that make colcon ignore the user's own settings. The key of a build in the cache does not cover
+these settings, so they must not affect the build.
+"""
 _TOOLS = ("colcon_core-", "colcon_cmake-", "colcon_ros-", "setuptools-", "cmake-")
 _ENVIRONMENT = ("CC", "CXX", "CFLAGS", "CXXFLAGS", "LDFLAGS", "CMAKE_GENERATOR", "RMW_IMPLEMENTATION")
 

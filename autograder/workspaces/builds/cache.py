@@ -156,7 +156,11 @@ def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -
 
 @contextlib.contextmanager
 def _turn(file: Path, cancelled: Callable[[], bool]) -> Iterator[IO[str]]:
-    """Hold a lock file. Its last holder may have removed it with its entry; then a new file is made and locked."""
+    """Hold the lock file of a cache entry.
+
+    The previous holder may have removed the entry together with this lock file. If so, make a new lock file and lock
+    that one.
+    """
     while True:
         with file.open("a") as lock:
             await_turn(lock.fileno(), cancelled)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from autograder.workspaces.packages import Package
 
 MAX_LOG = 40_000
-"""The number of characters to keep from the end of a failed build's log."""
+"""The maximum number of characters to keep from the end of a failed build's log."""
 _REFUSED = "setup()' was never called"
 """The last line of a build contains this if setuptools refuses the arguments in setup.py. Then no log contains the
 reason.

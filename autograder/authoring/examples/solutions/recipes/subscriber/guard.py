@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Part
 
 LIMIT = 20
-"""Percent; the lowest charge without a warning."""
+"""The lowest charge without a warning, in percent."""
 PATIENCE = {Pace.FAST: 1.5, Pace.REAL_TIME: 5.0}
 """Seconds of wall time within which the last warning must have come."""
 
