@@ -267,5 +267,5 @@ class WarmCommand:
 
 
 def _returncode(status: int) -> int:
-    """Return a code as :class:`subprocess.Popen` has it, given one in which a signal is 128 plus its number."""
+    """Convert a shell's exit code, 128 plus the number of a signal, to that of :class:`subprocess.Popen`."""
     return status if status < 128 else 128 - status

@@ -155,7 +155,7 @@ def _child(mode: str, module: Any, listener: socket.socket, connection: socket.s
 
 
 def preload(modules: Iterable[str]) -> None:
-    """Import modules. A missing one is skipped; the code that needs it will report it."""
+    """Import modules, and skip missing ones. The code that needs a missing module will report it."""
     for name in modules:
         with contextlib.suppress(Exception):
             importlib.import_module(name)

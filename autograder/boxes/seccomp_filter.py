@@ -275,7 +275,10 @@ def _fail(number: int) -> _Instruction:
 
 
 def _where(call: int, decide: Sequence[_Instruction]) -> list[_Instruction]:
-    """Return instructions that decide about one call by its arguments; it is allowed unless ``decide`` refuses it."""
+    """Return instructions that decide about one system call by its arguments.
+
+    The call is allowed unless ``decide`` refuses it.
+    """
     body = [*decide, (_RETURN, 0, 0, _ALLOW)]
     return [(_JUMP_EQUAL, 0, len(body), call), *body]
 

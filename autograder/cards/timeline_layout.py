@@ -26,7 +26,8 @@ HALF_WIDTH = 430
 """Like WIDTH, but for a check with many parts, so that a wide card can show two pictures side by side."""
 
 _MANY = 8
-"""The minimum number of moments in a lane for which optional labels stay on one level, so that the lane stays readable.
+"""The maximum number of moments in a lane for which optional labels have several levels. If there are more, these
+labels stay on one level, so that the lane stays readable.
 """
 _LEVELS = 4
 

@@ -27,8 +27,8 @@ MAX_LANES = 8
 _MAX_PARTS = 12
 _LAST = {OTHER_LANES: 1, "log": 2, "printed": 3, OWN_LANE: 4}
 _TOGETHER = 3
-"""If a lane has more than this many moments at one simulated time, the clock did not cause them, so times do not show
-their order.
+"""The maximum number of moments in a lane at one simulated time that the clock can have caused. If there are more,
+their times do not show their order.
 """
 
 

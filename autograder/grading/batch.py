@@ -418,7 +418,7 @@ class _Batch:
         return read_entry(self._directory.gradebook_url, *work.key)
 
     def _make_pages(self, work: Work, entry: SubmissionEntry) -> None:
-        """Make the pages of a submission if it has none, or if they are older than its points in the gradebook."""
+        """Make the feedback pages of a submission if there are none, or if their points differ from the gradebook."""
         submission = work.submission
         if not self._feedback:
             return

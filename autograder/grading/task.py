@@ -51,7 +51,7 @@ class Task:
     boxed: bool = True
 
     def beside_others(self, beside: bool) -> Task:
-        """Return the task as a worker gets it: with its share of the memory if other tasks run, else with all of it."""
+        """Return the task with its memory limit: a share of the memory if other tasks run, else all of the memory."""
         return replace(self, limits=replace(self.limits, beside=beside))
 
     @property

@@ -74,7 +74,7 @@ class ActionCaller(Protocol):
         """Wait until the client can send goals; False if no matching server appears in ``within`` seconds."""
 
     def send_goal(self, **fields: Any) -> int:
-        """Send a goal, and request its result once it is accepted. Return its number."""
+        """Send a goal, and request the result once the goal is accepted. Return the number of the goal."""
 
     def cancel(self, goal: int) -> None:
         """Request to cancel a goal."""

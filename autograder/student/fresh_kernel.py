@@ -77,7 +77,7 @@ def _names(source: str) -> tuple[set[str], set[str]]:
 def load_ipython_extension(shell: Any) -> None:
     """Explain a ``NameError`` in a new kernel of ``./course lab``. IPython calls this when the kernel starts.
 
-    The notebook's first cell imports ``autograder.notebook``, whose own messages replace these.
+    The notebook's first cell imports ``autograder.notebook``, whose own messages about errors replace this explanation.
     """
     if os.environ.get(NOTEBOOKS_VARIABLE):
         shell.set_custom_exc((NameError,), _show)

@@ -60,7 +60,7 @@ def reset(root: Path, folder: Path, name: str, entries_in: Path | None = None) -
 
 
 def released_text(lab: Path) -> bytes:
-    """Return a lab's notebook as it was released. A hand-out contains it; otherwise it is made from the master."""
+    """Return a lab's notebook as it was released: from the hand-out, or else made from the master."""
     kept = course.released(lab)
     if kept.is_file():
         return kept.read_bytes()

@@ -54,7 +54,7 @@ def objection(entry: object) -> str:
 
 
 def _what_is_wrong(entry: str) -> str:
-    """Return the mistake in an entry point, as a sentence with a space after it; empty if it is not a known one."""
+    """Return the mistake in an entry point, as a sentence with a space after it; empty if the mistake is unknown."""
     if len(entry.strip()) <= 1:
         return "It is a single letter: put the string into a list, in square brackets. "
     if "(" in entry:

@@ -134,7 +134,7 @@ def _cells(book: Connection, assignment: str) -> dict[str, _Cells]:
 
 
 def _submission(book: Connection, assignment: str, student: str, timestamp: datetime | None) -> str:
-    """Return the id of a submission. If it is new, add it, with its timestamp in the form that nbgrader uses."""
+    """Return the id of a submission. Add a new submission first, with its timestamp in the form that nbgrader uses."""
     if not book.execute(sql("SELECT 1 FROM student WHERE id = :id"), {"id": student}).first():
         book.execute(sql("INSERT INTO student (id) VALUES (:id)"), {"id": student})
     found = book.execute(

@@ -96,9 +96,9 @@ def show(report: GradeReport, console: Console | None = None) -> None:
 
 
 def tables(rows: Sequence[Row], console: Console, *, diagnoses: bool) -> Iterator[Table]:
-    """Yield tables with a row per student and a column per exercise. If one is too wide, there are several.
+    """Yield tables with a row per student and a column per exercise.
 
-    The last of them also has the total.
+    A table that is too wide is divided into several tables. The last table also has the total.
 
     Args:
         rows: The rows to show.

@@ -75,7 +75,10 @@ class ClassTable:
                 raise MasterUnusable(reason)
 
     def of(self, student: str, assignment: str = "") -> list[Row]:
-        """Return a student's rows of all assignments, or of one with its points, even if the total leaves it out."""
+        """Return a student's rows, of all assignments or only of the named one.
+
+        The rows of a named assignment have their points even if the total leaves this assignment out.
+        """
         own = self._of_student.get(student, [])
         return [
             row for row in own if not assignment or (row.assignment == assignment and row.exercise != DROPPED)

@@ -111,7 +111,7 @@ class Child:
         return ChildResult(None, f"the judge's process ended with {how} before it had a verdict")
 
     def done(self) -> bool:
-        """Return True once the child has ended, and free it. Kill it if its time limit is over."""
+        """Return True once the child has ended or had to be killed, because its time limit was over."""
         ready, _, _ = select.select([self.reading], [], [], 0.0)
         if ready:
             self.result(within=1.0)

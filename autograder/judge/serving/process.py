@@ -171,7 +171,7 @@ class _Child:
         return self._process.pid
 
     def end(self) -> None:
-        """Wait a moment for the judge to exit, as it does when the socket of its orders is closed; then kill it."""
+        """Wait a moment for the judge to exit, then kill it. The judge exits when its socket for orders is closed."""
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(timeout=2.0)
         signal_group(self._process.pid, signal.SIGKILL)

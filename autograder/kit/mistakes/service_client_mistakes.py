@@ -78,7 +78,7 @@ ANSWER_NOT_AWAITED = mistake(
 
 
 def _dislikes_zero(evidence: Evidence) -> bool:
-    """Return True if the client is wrong only where the service answered 0."""
+    """Return True if the client is wrong only in runs in which the service's last answer is 0."""
     served = Client(evidence).served
     wrong = [part for part in served if part.ending and not reports(part)]
     zero = all(answers(part)[-1:] == [0] and not ended_before_its_answer(part) for part in wrong)

@@ -126,7 +126,7 @@ def cancels_unasked(part: Part) -> bool:
 def unshown_feedback(part: Part) -> list[Event]:
     """Return the feedback messages whose last number the client neither printed nor returned after the message came.
 
-    Each feedback message contains a list of numbers, and the last one is in no other message.
+    Each feedback message contains a list of numbers.
     """
     return [
         event for event in part.of("feedback") if not mentions(part.said(after=event), _sequence(event)[-1])

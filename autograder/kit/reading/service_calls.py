@@ -1,4 +1,4 @@
-"""A service client as it behaved in its runs, with questions about it."""
+"""Reads from the evidence how a service client behaved in its runs."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ _BYTE = ("\\x00", "\0")
 MUCH = 5
 """The minimum number of successive characters of a text that a line contains only if it was made from that text."""
 OFTEN = 3
-"""A text that is reported last may be repeated, but not this many times."""
+"""The minimum number of reports that count as a repetition, if only the text that is reported last is repeated."""
 GROWING = 6
 """The minimum number of successive lines that each repeat all earlier texts. Fewer lines may be a look back at recent
 texts.
@@ -152,7 +152,7 @@ def _guessed(part: Part, sent: Sequence[str]) -> Iterator[str]:
 
 
 def changed(part: Part, sent: Sequence[str], text: str) -> list[str]:
-    """Return the lines in which the subject reported something else where a sent text belongs."""
+    """Return the lines in which the subject reported something else instead of a sent text."""
     found = _frames(part, sent)
     if not found:
         # Whether a line is affected depends on the texts. If even the first text is changed, none is reported

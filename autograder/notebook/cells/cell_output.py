@@ -148,10 +148,10 @@ _COUNTS = "get_line_number_of_frame"
 def point_at_raising_lines() -> None:
     """Make a traceback's arrow point at the line that raised, even if a ``finally`` follows.
 
-    IPython decides by its length whether to treat a frame's file in a faster way. A cell has no file, so IPython 9
-    takes each cell for a long file. The faster way puts the arrow at the frame's last line, which is the clean-up if
-    there is a ``finally``, and not the line that raised (Python's data model, "Traceback objects"). This function
-    lets IPython count a cell's lines as if they were a file. Outside IPython it does nothing.
+    IPython treats the frames of a long file in a faster way than those of a short file. A cell has no file, so IPython
+    9 takes each cell for a long file. The faster way puts the arrow at the frame's last line, which is the clean-up if
+    there is a ``finally``, and not the line that raised (Python's data model, "Traceback objects"). This function lets
+    IPython count a cell's lines as if they were a file. Outside IPython it does nothing.
     """
     if notebook_shell() is None:
         return

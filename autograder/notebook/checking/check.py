@@ -42,7 +42,7 @@ class Score(float):
 
 
 class CardPlace(Protocol):
-    """What shows a check's card and its progress."""
+    """The display of a check's card and its progress."""
 
     def doing(self, what: str) -> None:
         """Show the current step, in a few words."""

@@ -45,7 +45,7 @@ _LAST_GRACE = 1.0
 """Seconds for a callback to end after it was interrupted."""
 _ATTEMPTS = 3
 _LONG_WAIT = 1.0
-"""Seconds. If a call had waited longer than this for its answer when its node was stopped, it counts as hung."""
+"""Seconds. If a call has waited longer than this for its answer when its node is stopped, the call counts as hung."""
 _MAX_FAILED_WAITS = 10
 
 
