@@ -6,14 +6,10 @@ test sees the results of the other students.
 
 from __future__ import annotations
 
-import contextlib
 import ctypes
 import os
 import random
-import resource
 import signal
-import socket
-import threading
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -21,9 +17,10 @@ import msgspec
 import re2
 
 from autograder.execution import kernel_desk, kernel_process
+from tests.boxes.reach import reached
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from autograder.execution.desk_messages import Order, Said
 
@@ -142,25 +139,5 @@ def too_many_outputs(desk: _HostileDesk, number: int) -> None:
 
 def reach(desk: _HostileDesk, number: int) -> None:
     """Say what a desk can reach."""
-    attempts: dict[str, Callable[[], Any]] = {
-        "a process": os.fork,
-        "a thread": threading.Thread(target=print).start,
-        "a program": lambda: os.execv("/bin/true", ["true"]),
-        "a file": lambda: os.open("/etc/passwd", os.O_RDONLY),
-        "a folder": lambda: list(os.scandir("/")),
-        "a new file": lambda: os.open("/tmp/left", os.O_WRONLY | os.O_CREAT),
-        "memory that stays": lambda: os.memfd_create("left"),
-        "a socket": socket.socket,
-        "a pipe": os.pipe,
-        "all processes": lambda: os.kill(-1, signal.SIGKILL),
-        "its parent": lambda: os.kill(os.getppid() or 1, 0),
-        "a limit": lambda: resource.setrlimit(resource.RLIMIT_CPU, (99, 99)),
-        "its end": lambda: signal.signal(signal.SIGXCPU, signal.SIG_IGN),
-        "its end's delay": lambda: signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGXCPU]),
-    }
-    reached = []
-    for name, attempt in attempts.items():
-        with contextlib.suppress(OSError, RuntimeError, ValueError):
-            attempt()
-            reached.append(name)
-    desk.tell_text(f"reached: {', '.join(reached)}.")
+    delay = {"its end's delay": lambda: signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGXCPU])}
+    desk.tell_text(f"reached: {reached(delay)}.")

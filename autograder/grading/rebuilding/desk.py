@@ -220,9 +220,8 @@ def _desk() -> Desk:
         if not _desks:
             desk = Desk()
             try:
-                checked(
-                    desk.answer(_SAMPLE)
-                )  # tried before the first student's file, so that a failure here is not blamed on a file
+                # Tried before the first student's file, so that a failure here is not blamed on a file.
+                checked(desk.answer(_SAMPLE))
             except UnreadableSubmission as error:
                 desk.close()
                 raise ChannelClosed(f"not even a sample ({error})") from error

@@ -67,15 +67,16 @@ def what_and_where(traceback: str) -> str:
     return f"{line.strip()}{where}"
 
 
-def raised(how: str, traceback: str) -> Advice:
+def raised(how: str, traceback: str, next_step: str = "") -> Advice:
     """Return the advice for an exception that is not a known mistake.
 
     Args:
         how: The consequence of the exception; the sentence begins with it.
         traceback: The traceback of the exception.
+        next_step: What to do now; by default the advice that fits such an exception.
     """
-    why, next_step = meaning(traceback)
-    return Advice(f"{how}: {what_and_where(traceback)}{why and f'. {why}'}", next_step, traceback)
+    why, usual = meaning(traceback)
+    return Advice(f"{how}: {what_and_where(traceback)}{why and f'. {why}'}", next_step or usual, traceback)
 
 
 _EXECUTOR = "rclpy/executors.py"
@@ -91,12 +92,11 @@ def _crashed(evidence: Evidence) -> Advice | None:
         return None
     outermost = _FRAME.search(traceback)
     if outermost and outermost["file"].endswith(_LOGGING):
-        why, _ = meaning(traceback)
-        return Advice(
-            f"A line could not be logged: {what_and_where(traceback)}{why and f'. {why}'}",
+        return raised(
+            "A line could not be logged",
+            traceback,
             "Python names the line of your code below the words `Call stack`. Give logging one argument for each "
             "placeholder of its text, such as %s, or write an f-string.",
-            traceback,
         )
     spun = _was_spun(evidence) or _EXECUTOR in traceback
     return raised(

@@ -72,10 +72,6 @@ class Client:
         """True if the client made a call in each run with a service, so its calls did not depend on timing."""
         return all(map(requests, self.served))
 
-    def ended_each_time(self) -> bool:
-        """True if the client ended by itself in each run. The judge never stopped it, so timing played no part."""
-        return all(part.ending for part in self.evidence.parts)
-
     def called(self, wanted: int) -> bool:
         """Return True if the client made exactly this many calls in each run with a service."""
         return all(len(requests(part)) == wanted for part in self.served)

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Part
     from autograder.kit.model import Bench, Exercise
 
+SILENCE = object()
+"""What the author's function returns if the subject must publish nothing: no value, or no word of a state."""
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 

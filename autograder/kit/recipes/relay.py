@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from autograder.kit.model import Pace
-from autograder.kit.recipes.declared import Declared, picked, put, variant
+from autograder.kit.recipes.declared import SILENCE, Declared, picked, put, variant
 from autograder.kit.recipes.own_scenario import once_met
 from autograder.kit.rules import same
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Part
     from autograder.kit.recipes.own_scenario import Met
 
+__all__ = ["NAN", "NUMBER", "SILENCE", "WHOLE", "Relay"]
+
 NAN = float("nan")
 NUMBER, WHOLE = object(), object()
 """Placeholders in the inputs for random numbers: multiples of a quarter, or whole numbers. No number is drawn twice."""
-SILENCE = object()
-"""The value that stands for "publish nothing after this input"."""
 PATIENCE = {Pace.FAST: 2.0, Pace.REAL_TIME: 6.0}
 """Time limit in seconds of wall time for the last message to come."""
 

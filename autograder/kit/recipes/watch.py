@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from autograder.kit.in_words import counted
 from autograder.kit.model import STEP, Finding
-from autograder.kit.recipes.declared import Declared, pick, variant
+from autograder.kit.recipes.declared import SILENCE, Declared, pick, variant
 from autograder.kit.recipes.own_scenario import once_met
 from autograder.kit.rules import Given, in_words, reported_at, same, value
 
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from autograder.kit.recipes.own_scenario import Met
     from autograder.kit.rules import State
 
-SILENCE = object()
-"""A state that the node must not report."""
+__all__ = ["SILENCE", "Watch"]
+
 EARLY = 0.15
 """The maximum number of seconds by which a message may report a state too early: three steps of the judge's clock."""
 BUSY = 0.25

@@ -67,8 +67,12 @@ def read_list(name: str, data: bytes) -> list[Entry] | None:
 
 
 def _ask(source: int, answer: int, most: int, **call: object) -> int:
+    desk = None
     try:
-        return _desk().ask(source, answer, most, _CPU_SECONDS, call)
+        desk = _desk()
+        return desk.ask(source, answer, most, _CPU_SECONDS, call)
     except ChannelClosed:  # the system has killed it, usually because memory is short
+        if desk:
+            desk.close()
         _desk.cache_clear()
         return -signal.SIGKILL
