@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import io
 import shutil
 import tarfile
@@ -13,11 +12,12 @@ from typing import TYPE_CHECKING
 import pytest
 from downloads import zipped
 
+from autograder.boxes import desk as desk_of_boxes
+from autograder.boxes.desk import Desk
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.collecting.reading import desk
 from autograder.grading.collecting.reading.archives import Archives, File, NotTaken, Room
 from autograder.grading.collecting.reading.desk import read_list
-from autograder.grading.rebuilding.desk import Desk
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -150,7 +150,7 @@ def test_a_folder_of_a_download_has_so_many_files(archives: Archives, tmp_path: 
 def taken_over(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """The program of the desk is one that an archive has taken over."""
     hostile = Desk("tests.grading.collecting.hostile_desk_program", {"PYTHONPATH": str(ROOT)})
-    monkeypatch.setattr(desk, "_desk", functools.cache(lambda: hostile))
+    monkeypatch.setattr(desk.desk, "_desk", hostile)
     yield
     hostile.close()
 
@@ -188,8 +188,8 @@ def test_many_archives_need_one_box(
             super().__init__(module)
             made.append(self)
 
-    monkeypatch.setattr(desk, "Desk", Counted)
-    desk._desk.cache_clear()
+    monkeypatch.setattr(desk_of_boxes, "Desk", Counted)
+    desk.desk.close()
     for _ in range(3):
         assert within(archives, tmp_path, archive(["a.ipynb"])) == {"a.ipynb": b"x"}
     assert len(made) == 1
@@ -201,8 +201,8 @@ def test_without_a_sandbox_the_same_limits_hold(
     which = shutil.which
     monkeypatch.setattr(shutil, "which", lambda name: None if name == "bwrap" else which(name))
     monkeypatch.setattr(desk, "why_impossible", why_impossible.__wrapped__)  # not what an earlier test found
-    monkeypatch.setattr(desk, "_desk", functools.cache(lambda: Desk(desk.PROGRAM)))
+    desk.desk.close()
     assert within(archives, tmp_path, archive(["a.ipynb"])) == {"a.ipynb": b"x"}
     assert "unpacks to 60 MB" in refusals(archives, tmp_path, [archive(["a.ipynb"], said=60_000_000)])[0]
     assert "bubblewrap is not installed" in desk.without_sandbox()
-    desk._desk().close()
+    desk.desk.close()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import random
 import shutil
 from pathlib import Path
@@ -11,10 +12,12 @@ from typing import TYPE_CHECKING
 import pytest
 from tiny_class import LISTENER, TALKER, FakeEngine, TinyClass
 
+from autograder.boxes import desk as desk_of_boxes
 from autograder.boxes.channel import ChannelClosed
+from autograder.boxes.desk import Desk
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.rebuilding import desk
-from autograder.grading.rebuilding.desk import Desk, DeskFailed, checked, read_notebook, why_unreadable
+from autograder.grading.rebuilding.desk import DeskFailed, checked, document_of, read_notebook, why_unreadable
 from autograder.grading.rebuilding.desk_process import answer_to
 from autograder.grading.rebuilding.parsing import parse
 from autograder.grading.rebuilding.submission import MAX_CELL_CHARACTERS, UnreadableSubmission
@@ -50,7 +53,7 @@ def hostile() -> Iterator[Desk]:
 @pytest.fixture
 def taken_over(hostile: Desk, monkeypatch: pytest.MonkeyPatch) -> Desk:
     """The desk of this process is one whose program students can choose."""
-    monkeypatch.setattr(desk, "_desks", [hostile])
+    monkeypatch.setattr(desk._desk, "_desk", hostile)
     monkeypatch.setattr(desk, "CPU_SECONDS", 1)
     return hostile
 
@@ -76,7 +79,7 @@ def test_a_desk_reads_what_its_parser_reads() -> None:
 
 def test_a_desk_is_in_a_box_if_one_can_be_had() -> None:
     read_notebook(desk._SAMPLE)
-    assert desk._desks[0].is_boxed is not bool(why_impossible())
+    assert desk._desk.is_unboxed is bool(why_impossible())
 
 
 @pytest.mark.parametrize("act", FAULTS)
@@ -85,7 +88,7 @@ def test_hostile_code_at_a_desk_is_the_fault_of_its_own_file(taken_over: Desk, a
     assert FAULTS[act] in said
     assert said.isprintable()
     assert why_unreadable(b"[]") == "The file is JSON, but not a Jupyter notebook."
-    assert desk._desks == [taken_over], "the others need no new desk"
+    assert desk._desk._desk is taken_over, "the others need no new desk"
 
 
 def test_a_desk_reaches_nothing_not_even_without_a_box(
@@ -98,7 +101,7 @@ def test_a_desk_reaches_nothing_not_even_without_a_box(
     try:
         assert not plain.is_boxed
         with pytest.raises(UnreadableSubmission, match=r"^reached: $"):
-            checked(plain.answer(notebook("reach")))
+            checked(document_of(plain, notebook("reach")))
     finally:
         plain.close()
 
@@ -161,12 +164,13 @@ def test_ten_thousand_mutated_documents_are_refused_or_harmless() -> None:
 def test_a_lost_desk_is_no_file_s_fault(monkeypatch: pytest.MonkeyPatch) -> None:
     lost = [ChannelClosed("killed")] * 2
 
-    def answer(self: Desk, data: bytes) -> bytes:
+    def ask(self: Desk, source: int, answer: int, *_: object) -> int:
         if lost:
             raise lost.pop()
-        return answer_to(data)
+        os.write(answer, answer_to(os.pread(source, 1_000, 0)))
+        return 0
 
-    monkeypatch.setattr(Desk, "answer", answer)
+    monkeypatch.setattr(Desk, "ask", ask)
     assert read_notebook(notebook(""))[1] == 0
     lost = [ChannelClosed("killed")] * 9
     with pytest.raises(DeskFailed, match=r"killed.*short of memory"):
@@ -177,8 +181,8 @@ def test_a_desk_that_cannot_read_a_sample_reads_no_student_s_file(
     hostile: Desk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(desk, "_SAMPLE", notebook("crash"))
-    monkeypatch.setattr(desk, "_desks", [])
-    monkeypatch.setattr(desk, "Desk", lambda: hostile)
+    monkeypatch.setattr(desk._desk, "_desk", None)
+    monkeypatch.setattr(desk_of_boxes, "Desk", lambda _: hostile)
     monkeypatch.setattr(hostile, "close", lambda: None)
     with pytest.raises(DeskFailed, match="not even a sample"):
         read_notebook(notebook(""))

@@ -19,9 +19,9 @@ from typing import IO, TYPE_CHECKING, Self
 
 import msgspec
 
+from autograder.boxes.desk import in_memory
 from autograder.grading.collecting.reading.desk import unpack
 from autograder.grading.collecting.reading.unpack import LONGEST_LINE, LONGEST_NAME, is_left_by_a_program
-from autograder.grading.rebuilding.desk import in_memory
 from autograder.grading.rebuilding.submission import MAX_BYTES, UnreadableSubmission, read_bytes
 from autograder.regular_files import name_as_text, opened
 from autograder.temporary_folders import unnamed_file

@@ -2,35 +2,26 @@
 
 from __future__ import annotations
 
-import atexit
 import functools
-import os
 import signal
 
 import msgspec
 
 from autograder.boxes.channel import ChannelClosed
+from autograder.boxes.desk import KeptDesk, answer_in, in_memory
 from autograder.boxes.sandbox import why_impossible
 from autograder.grading.collecting.reading.lists import Entry
-from autograder.grading.rebuilding.desk import Desk, in_memory
 
-PROGRAM = "autograder.grading.collecting.reading.desk_program"
+desk = KeptDesk("autograder.grading.collecting.reading.desk_program", attempts=1)
 _CPU_SECONDS = 200
 """The limit in seconds of the processor time for one archive, or one list."""
 _LARGEST_LIST = 50_000_000
 """The limit in bytes of the answer about a list."""
 
 
-@functools.cache
-def _desk() -> Desk:
-    desk = Desk(PROGRAM)
-    atexit.register(desk.close)
-    return desk
-
-
 def without_sandbox() -> str:
     """Return why archives or lists were read without a sandbox; empty if there is one, or if there were none."""
-    return why_impossible() if _desk.cache_info().currsize and not _desk().is_boxed else ""
+    return why_impossible() if desk.is_unboxed else ""
 
 
 def unpack(source: int, answer: int, limits: tuple[int, int, int, int], most: int) -> int:
@@ -59,7 +50,7 @@ def read_list(name: str, data: bytes) -> list[Entry] | None:
     with in_memory(data) as source, in_memory() as answer:
         if _ask(source, answer, _LARGEST_LIST, name=name):
             return None
-        document = os.pread(answer, os.fstat(answer).st_size, 0)
+        document = answer_in(answer, _LARGEST_LIST)
     try:
         return msgspec.json.decode(document, type=list[Entry] | None)
     except msgspec.MsgspecError:
@@ -67,12 +58,7 @@ def read_list(name: str, data: bytes) -> list[Entry] | None:
 
 
 def _ask(source: int, answer: int, most: int, **call: object) -> int:
-    desk = None
     try:
-        desk = _desk()
         return desk.ask(source, answer, most, _CPU_SECONDS, call)
     except ChannelClosed:  # the system has killed it, usually because memory is short
-        if desk:
-            desk.close()
-        _desk.cache_clear()
         return -signal.SIGKILL
