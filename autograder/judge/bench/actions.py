@@ -1,9 +1,9 @@
 """The judge's side of actions: a server that does only what the scenario tells it to, and a client that sends goals.
 
-What they send and receive is recorded. They are built from the three services and two topics of an action
-(design.ros2.org, "Actions"), not from rclpy's ActionServer and ActionClient. rclpy's server decides by itself when to
-answer, and does not report a second cancel request for one goal; here each request counts. The client sees each answer
-as it was sent, including the refusal of a cancel request.
+Both record what they send and receive. Both use the three services and two topics of an action directly
+(design.ros2.org, "Actions"), without rclpy's ActionServer and ActionClient. rclpy's server decides by itself when to
+answer, and does not report a second request to cancel the same goal. This server answers when the scenario says so, and
+records each request. This client records each answer, including the refusal to cancel a goal.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ FEEDBACK_MATCH = 3.0
 
 
 class ScriptedActionServer:
-    """A server for one action. It accepts all goals (or refuses all); the newest goal is the current one.
+    """An action server that accepts all goals, or refuses all. The goal that was accepted last is the current one.
 
     Attributes:
         services: The full names of the action's services.
@@ -94,7 +94,7 @@ class ScriptedActionServer:
                 strict=True,
             )
         ]
-        # rclpy answers a request when its callback returns; these answers are sent at a time of their own.
+        # rclpy answers a request as soon as its callback returns. LateAnswers delays the answer.
         self._late = [
             LateAnswers(goals, goal_answer_takes, sending=self._note_goal_answer),
             LateAnswers(cancels, cancel_answer_takes, sending=self._note_cancel_answer),
@@ -104,10 +104,10 @@ class ScriptedActionServer:
         made.set()
 
     def await_goal(self, within: float) -> bool:
-        """Wait until a goal has arrived and been answered; False if none came in ``within`` seconds.
+        """Wait until a goal has arrived and was answered. Return False if none came within ``within`` seconds.
 
-        Feedback that is sent before the client's subscription is discovered would be lost, so this waits for the
-        subscription, too.
+        This also waits until the client's subscription to feedback is discovered, because earlier feedback would be
+        lost.
         """
         if not self._await("goal", within):
             return False
@@ -120,11 +120,11 @@ class ScriptedActionServer:
         return True
 
     def await_cancel(self, within: float) -> bool:
-        """Wait for a request to cancel; False if none came in ``within`` seconds of wall time."""
+        """Wait for a request to cancel a goal. Return False if none came within ``within`` seconds of wall time."""
         return self._await("cancel", within, wall=True)
 
     def await_result_request(self, within: float) -> bool:
-        """Wait for a request for the result; False if none came in ``within`` seconds."""
+        """Wait for a request for a goal's result. Return False if none came within ``within`` seconds."""
         return self._await("result_request", within)
 
     def send_feedback(self, **fields: Any) -> None:
@@ -136,7 +136,7 @@ class ScriptedActionServer:
         self._feedback.publish(message)
 
     def finish(self, status: str, **fields: Any) -> None:
-        """End the current goal with a status from :data:`STATUS` and this result."""
+        """End the current goal with a status, which is a key of :data:`STATUS`, and with a result with these fields."""
         response = self._type.Impl.GetResultService.Response()
         response.status = STATUS[status]
         filled(response.result, fields)
@@ -218,11 +218,11 @@ class ScriptedActionServer:
         self.say_status()
 
     def say_status(self) -> None:
-        """Publish the goal's status on the status topic: when it changes, and when the client requests the result.
+        """Publish the current goal's status on the action's status topic.
 
-        It is not published automatically with the answer to the goal, nor with the feedback that directly follows.
-        The status in a new goal handle is UNKNOWN, which is 0. A client that reads it to learn whether its goal was
-        accepted must not be right by chance. Later, the scenario publishes the status.
+        The server does this by itself if the status changes or the client requests the result, but not if it accepts a
+        goal. A goal handle of rclpy has the status UNKNOWN until a status arrives. So a client that looks at the
+        status, not at the answer, to learn whether its goal was accepted finds UNKNOWN and is not right by chance.
         """
         line = GoalStatus(goal_info=GoalInfo(goal_id=self._goal_id), status=self._status)
         self._statuses.publish(GoalStatusArray(status_list=[line]))
@@ -234,7 +234,7 @@ def goal_text(goal_id: Any) -> str:
 
 
 class RecordedActionClient(Client):
-    """Implements :class:`autograder.kit.counterparts.ActionCaller`."""
+    """An action client that records events. It implements :class:`autograder.kit.counterparts.ActionCaller`."""
 
     def __init__(
         self,
@@ -250,12 +250,12 @@ class RecordedActionClient(Client):
         super().__init__(wire, recorder, action, f"{self._parts_of}/send_goal", server_is_gone)
         self._goals: list[UUID] = []
         node, self._parts = wire.node, interface(type_name).Impl
-        # The feedback subscription is made first. Endpoints are announced in order, so a server that can answer the
-        # services also knows this subscription, and no feedback is lost.
+        # The feedback subscription is made before the clients. Endpoints are announced in order, so a server that has
+        # discovered the clients has also discovered this subscription, and no feedback is lost.
         self._feedback = node.create_subscription(
             self._parts.FeedbackMessage,
             f"{self._parts_of}/feedback",
-            self._hear,  # type: ignore[arg-type]  # rclpy gives the message info to whoever takes two arguments
+            self._hear,  # type: ignore[arg-type]  # a callback with two parameters also gets the message info
             QoSProfile(depth=100),
         )
         self._send = node.create_client(self._parts.SendGoalService, f"{self._parts_of}/send_goal")
@@ -263,7 +263,7 @@ class RecordedActionClient(Client):
         self._result = node.create_client(self._parts.GetResultService, f"{self._parts_of}/get_result")
 
     def send_goal(self, **fields: Any) -> int:
-        """Send a goal. Return its number."""
+        """Send a goal with these fields. Return the goal's number, counted from 0."""
         number = len(self._goals)
         self._goals.append(UUID(uuid=list(uuid.uuid4().bytes)))
         request = self._parts.SendGoalService.Request(goal_id=self._goals[number])
@@ -310,14 +310,14 @@ class RecordedActionClient(Client):
         self._note("cancel_answer", number, accepted=accepted, return_code=code)
 
     def _note(self, kind: str, goal: int, **data: Any) -> None:
-        """Record the server's answer with its time of sending, so that later events can be compared with it."""
+        """Record an answer of the server, with the time of its arrival."""
         self._recorder.record(kind, self._name, goal=goal, arrived=time.time(), **data)
 
     def _hear(self, message: Any, info: Any) -> None:
         known = [goal_text(goal) for goal in self._goals]
         heard = goal_text(message.goal_id)
         number = known.index(heard) if heard in known else -1
-        # The time of sending does not depend on how busy this process is (rmw_message_info_t).
+        # The time at which the server sent the message does not depend on how busy the judge is (rmw_message_info_t).
         sent = info["source_timestamp"] / 1e9
         self._recorder.record(
             "feedback_heard", self._name, goal=number, fields=to_data(message.feedback), sent=sent

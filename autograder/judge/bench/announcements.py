@@ -1,8 +1,8 @@
 """Detects that a process has made a node, even if the process ends before the ROS graph shows the node.
 
-A DDS participant announces itself when it is made, and rmw_fastrtps makes it with a process's first node. The graph
-needs several more messages in both directions, for which a program that ends at once may not live long enough. But by
-then it has sent its announcement, which waits in the sockets that are opened here.
+A DDS participant announces itself when it is created, and rmw_fastrtps creates it together with a process's first node.
+Before the graph shows that node, several more messages must be exchanged. A program that ends at once may end before
+that. But its announcement has then arrived at the sockets of this module.
 
 Participants announce themselves to a multicast group or, if discovery is limited to this machine, to the ports of the
 first participants on it (DDSI-RTPS 2.5, 9.6.1).
@@ -47,7 +47,7 @@ nor keep the judge from other work.
 
 
 class Announcements:
-    """Listens for announcements on a domain until it is closed. A socket that cannot be opened is left out.
+    """Listens for the announcements of DDS participants. If a socket cannot be opened, it does without that socket.
 
     Args:
         domain_id: The ROS domain.
@@ -68,7 +68,7 @@ class Announcements:
         self._thread.start()
 
     def heard(self) -> frozenset[bytes]:
-        """The ids of the processes that have announced a participant so far."""
+        """Return the DDS ids of the processes that have announced a participant so far."""
         with self._lock:
             self._take()
             return frozenset(self._heard)
@@ -95,7 +95,7 @@ class Announcements:
 
 
 def process_of(node: Node) -> bytes:
-    """Return the process that made a node, as in :class:`Announcements`; empty if the node has no ``/rosout``."""
+    """Return the DDS id of the process that made a node; empty if the node has no subscription to ``/rosout``."""
     infos = node.get_subscriptions_info_by_topic("/rosout")
     own = (bytes(info.endpoint_gid) for info in infos if info.node_name == node.get_name())
     return next((identifier[: _PREFIX.stop - _PREFIX.start] for identifier in own), b"")
@@ -108,7 +108,7 @@ def _waiting(listening: socket.socket) -> Iterator[bytes]:
 
 
 def _listening(address: str, udp_port: int, *options: tuple[int, int, int | bytes]) -> socket.socket | None:
-    """Return a socket that listens on this address and port; None if it cannot be opened."""
+    """Return a UDP socket that listens on this address and port; None if it cannot be opened."""
     listening = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         for option in options:

@@ -1,4 +1,4 @@
-"""Sends answers of the judge's services at the right time, and only once the client can receive them."""
+"""Delays the answers of the judge's services until the scenario wants them and the client can receive them."""
 
 from __future__ import annotations
 
@@ -21,11 +21,15 @@ reader.
 
 
 def patiently(service: Service, wanted: Callable[[], bool] = lambda: True) -> Callable[[Any, Any], None]:
-    """Return a function with which the service sends its answers; it keeps trying as long as answers are wanted.
+    """Make a service wait with each answer until the client can receive it. Return the new function that sends answers.
 
-    A client that sends its request at once may not be able to receive yet. The middleware waits 0.1 s for it, then
-    drops the answer and warns ("client will not receive response", rmw_fastrtps_shared_cpp/rmw_response.cpp). On a
-    busy machine a right client would then wait forever.
+    A new client can often send a request before it can receive an answer. The middleware waits 0.1 s for the client,
+    then drops the answer and warns ("client will not receive response", rmw_fastrtps_shared_cpp/rmw_response.cpp). On a
+    busy machine a correct client would then wait forever. So each answer is sent again until there is no warning.
+
+    Args:
+        service: The service.
+        wanted: Returns False once answers are not wanted any more.
     """
     usual = service.send_response
 
@@ -33,8 +37,8 @@ def patiently(service: Service, wanted: Callable[[], bool] = lambda: True) -> Ca
         for _ in range(ATTEMPTS):
             if not wanted():
                 return
-            # The warning is recorded and not turned into an error: compiled code would replace that by a different
-            # error.
+            # The warning is recorded, not raised as an error, because rclpy's compiled code would raise a different
+            # error instead.
             with _warnings_belong_to_all_threads, warnings.catch_warnings(record=True) as complaints:
                 warnings.simplefilter("always", RuntimeWarning)
                 usual(response, header)
@@ -49,10 +53,11 @@ _warnings_belong_to_all_threads = threading.Lock()
 
 
 def once_it_is_set(made: threading.Event, take: Take) -> Take:
-    """Return a callback that waits for the event before it takes its first request.
+    """Return a service callback that waits for the event ``made`` before it calls ``take``.
 
-    A service works from the moment it is created. A client that waits for it may send a request before ``patiently``
-    has replaced the function that sends answers; that answer would be sent without waiting for the client.
+    A service can receive a request as soon as it is created, before :func:`patiently` has replaced the function that
+    sends answers. Without the event, the answer to such a request would be sent by the usual function and could be
+    lost.
     """
 
     def wait_and_take(request: Any, response: Any) -> Any:
@@ -63,11 +68,11 @@ def once_it_is_set(made: threading.Event, take: Take) -> Take:
 
 
 class LateAnswers:
-    """Sends the answers of a service some time after their requests, and serves other requests meanwhile.
+    """Delays each answer of a service. The service goes on taking requests meanwhile.
 
     Args:
         service: The service.
-        seconds: Wall time in seconds from a request to its answer.
+        seconds: The delay from a request to its answer, in seconds of wall time.
         sending: Called with each answer just before it is sent.
     """
 
@@ -88,7 +93,7 @@ class LateAnswers:
     def close(self) -> None:
         """Stop sending answers. Call this before the service is destroyed."""
         self._closed = True
-        with self._delivering:  # an answer that is being sent right now still needs the service
+        with self._delivering:  # wait, because an answer that is being sent right now still needs the service
             pass
 
     def _send(self, response: Any, header: Any) -> None:

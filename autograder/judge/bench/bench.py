@@ -1,7 +1,7 @@
-"""The bench: implements the methods that a scenario calls.
+"""Implements the bench, whose methods a scenario calls.
 
-A bench serves one look, that is, one execution of a scenario with one subject: a fast one or, to confirm it, one in
-real time.
+A bench is for one look, that is, one execution of a scenario with one subject: a fast look in simulated time or, to
+confirm its result, a look in real time.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ T = TypeVar("T")
 
 
 def _of_a_part(made: T | None) -> T:
-    """Return something that exists once a part has begun.
+    """Return ``made``, which is None only before the scenario's first part.
 
     Raises:
         RuntimeError: No part has begun yet.
@@ -88,7 +88,8 @@ class TestBench:
         self._recorder = Recorder(hurry)
         self._wire: Wire | None = None
         self._decoys: DecoyNodes | None = None
-        # If all runs are in the notebook's process, announcements cannot tell one run from the next.
+        # A notebook's kernel announces one participant for all runs, so announcements would not tell one run from the
+        # next.
         self._announcements = None if subject.shares_participant else Announcements(domain_id)
         self._older_processes: set[bytes] = set()
         self._open = contextlib.ExitStack()
@@ -111,8 +112,8 @@ class TestBench:
         if self._wire is None or not (self._subject.shares_participant and self._clean):
             self._close_wire()
             self._wire, self._decoys = Wire(self._domain_id), DecoyNodes(self._domain_id)
-            # One log reader for all parts of a participant, because a new one would receive the log of earlier parts
-            # again.
+            # Each participant of the judge gets one log reader for all parts, because a new reader would receive the
+            # log lines of earlier parts again.
             self._log = LogReader(self._wire, self._recorder)
             self._subject.renew()
             self._recorder.take_in = partial(self._wire.take_in, lambda: self._recorder.count)
@@ -124,14 +125,17 @@ class TestBench:
         )
 
     def again(self, name: str = "") -> None:
-        """Begin a part again, the last one if no name is given, and discard its record so far."""
+        """Discard the record of a part (by default, of the last one) and run this part again."""
         self.stop()
         dropped = next(part for part in reversed(self.parts) if name in ("", part.name))
         self.parts.remove(dropped)
         self.part(dropped.name, **dropped.inputs)
 
     def keep(self, name: str) -> bool:
-        """In the second look, reuse the first look's record of a part in which the subject ended by itself."""
+        """Reuse the first look's record of this part if the subject ended by itself in it. Return True if so.
+
+        The record is not reused if the part's inputs say how long a function has to wait.
+        """
         known = self.before.part(name) if self.before else Part(name)
         if known.ending is None or patience(known) is not None:
             return False
@@ -140,7 +144,7 @@ class TestBench:
         return True
 
     def stop(self) -> None:
-        """End the subject, keep the record of the part, and remove what the judge made for the part."""
+        """End the part: record the subject's last state, stop the subject, and remove the judge's endpoints."""
         if not self._in_part:
             return
         self._in_part = False
@@ -148,7 +152,8 @@ class TestBench:
         self._presence.note_how_it_leaves()
         self._presence.note_whom_it_met()
         self._presence.note_short_life()
-        # A subject ended by Ctrl-C may stay on the graph for a while; a new participant of the judge's never sees it.
+        # After Ctrl-C, the old endpoints of the subject may stay on the graph for a while. Then the next part gets a
+        # new participant of the judge, which never discovers them.
         self._clean = self._subject.ended and not self._recorder.part().of("subject", INTERRUPTED)
         self.parts.append(self._recorder.part())
         self._subject.stop()
@@ -160,7 +165,7 @@ class TestBench:
             raise JudgeFailed(f"the judge's own node failed: {self.wire.failure!r}")
 
     def close(self) -> None:
-        """End everything. This may be called at any time."""
+        """Stop the subject and remove everything from the graph. This may be called at any time."""
         try:
             self.stop()
         finally:
@@ -173,7 +178,7 @@ class TestBench:
             self._decoys.close()
             self._wire.close()
             self._wire = self._decoys = None
-            # The judge's endpoints disappear together with its participant; no later subject discovers them.
+            # The endpoints disappear together with the judge's participant, so the next subject cannot discover them.
             self._gone = set()
 
     @property
@@ -194,7 +199,7 @@ class TestBench:
     # --- the subject ---------------------------------------------------------------------------------------
 
     def start(self, *arguments: Any, **options: Any) -> None:
-        """Start the subject, once its participant knows which of the judge's endpoints are new and which are gone."""
+        """Start the subject once it has discovered the judge's new endpoints and lost the removed ones."""
         if (self._there or self._gone) and not self._subject.knows(there=self._there, gone=self._gone):
             self.unmet = True
         if self._announcements is not None:
@@ -206,11 +211,11 @@ class TestBench:
         return self._announcements is not None and bool(self._announcements.heard() - self._older_processes)
 
     def release(self) -> None:
-        """Spin a subject that was constructed and held back so far."""
+        """Spin the node of a notebook's class, which was only constructed so far."""
         self._subject.release()
 
     def press_ctrl_c(self, within: float) -> bool:
-        """Interrupt the subject and wait until it has ended. The state of the graph is recorded first."""
+        """Record the graph, then send Ctrl-C to the subject. Return True if it ends within ``within`` seconds."""
         if self._subject.ended:
             return False
         self._presence.note_interface()
@@ -223,11 +228,14 @@ class TestBench:
         return self.await_end(within)
 
     def await_end(self, within: float) -> bool:
-        """Wait until the subject has ended by itself."""
+        """Wait until the subject has ended by itself. Return False if it has not within ``within`` seconds."""
         return self._recorder.wait(lambda: self._subject.ended, within)
 
     def await_endpoint(self, role: str, name: str) -> bool:
-        """Wait until the subject's endpoint exists and is matched; release a subject that makes it only when spun."""
+        """Wait until the subject has this endpoint and it is matched with the judge's. Return True if so.
+
+        If a notebook's class has not made the endpoint in the constructor, spin its node and wait again.
+        """
         at = self._real(name)
         there = self._presence.await_endpoint(role, at)
         if there or not self._subject.may_make_more:
@@ -252,7 +260,7 @@ class TestBench:
         return self._presence.await_interface(lambda interface: any(interface[role] for role in roles))
 
     def watch_graph(self, condition: Callable[[Evidence], bool], within: float) -> bool:
-        """Wait until a condition on the graph holds. Each change of the graph is recorded."""
+        """Wait until a condition on the graph holds. Record each change of the graph meanwhile."""
 
         def look() -> Evidence:
             self._presence.note_interface()
@@ -266,7 +274,7 @@ class TestBench:
     # --- counterparts --------------------------------------------------------------------------------------
 
     def listen(self, topic: str, type_name: str, *, latched: bool = False) -> None:
-        """Subscribe as the course's listener does or, if ``latched``, as a late listener that wants old messages."""
+        """Subscribe with the QoS of the course's listener; if ``latched``, with one that also receives old messages."""
         at = self._real(topic)
         subscription = RecordedSubscription(
             self.wire, self._recorder, topic, type_name, at=at, latched=latched
@@ -291,12 +299,12 @@ class TestBench:
         return publisher
 
     def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> None:
-        """Put a node on the graph until the next part plants others. A run begins once the subject knows it."""
+        """Put a decoy node on the graph. The subject is started only when it has discovered the node's endpoints."""
         assert self._decoys is not None
         self._there |= self._decoys.plant(name, publishes=publishes, subscribes=subscribes)
 
     def serve(self, service: str, type_name: str, answer: Answer, *, hold: int = 0) -> RecordedServer:
-        """Serve until the part ends. The answer to request number ``hold`` waits until it is released."""
+        """Offer a service until the part ends. The answer to request number ``hold`` waits for ``release()``."""
         self._get_ready_to_serve(service)
         at = self._real(service)
         server = RecordedServer(self.wire, self._recorder, service, type_name, answer, at=at, hold=hold)
@@ -305,7 +313,7 @@ class TestBench:
         return server
 
     def call(self, service: str, type_name: str) -> RecordedCaller:
-        """Make a client for the subject's service, until the part ends."""
+        """Create a client of the subject's service. It is removed when the part ends."""
         caller = RecordedCaller(
             self.wire,
             self._recorder,
@@ -318,7 +326,7 @@ class TestBench:
         return caller
 
     def call_action(self, action: str, type_name: str) -> RecordedActionClient:
-        """Make a client for the subject's action, until the part ends."""
+        """Create a client of the subject's action. It is removed when the part ends."""
         caller = RecordedActionClient(
             self.wire,
             self._recorder,
@@ -331,7 +339,7 @@ class TestBench:
         return caller
 
     def serve_action(self, action: str, type_name: str, **how: Any) -> ScriptedActionServer:
-        """Serve an action until the part ends. The scenario decides each step of its server."""
+        """Offer an action until the part ends. The scenario decides when the server sends feedback and results."""
         self._get_ready_to_serve(action)
         server = ScriptedActionServer(
             self.wire,
@@ -347,12 +355,12 @@ class TestBench:
         return server
 
     def _get_ready_to_serve(self, name: str) -> None:
-        """Discover existing clients, because a request of an unknown client would be dropped; record the moment."""
+        """Wait until existing clients are discovered, because unknown clients get no answer. Record the time."""
         self._recorder.take_in()
         self._recorder.record("serving", name)
 
     def _announce(self, services: Iterable[str]) -> None:
-        # The judge's own participant may still see removed endpoints, so those are subtracted.
+        # The judge's participant may still see endpoints that the judge has removed. Subtract them.
         self._there |= graph.server_endpoints(self.wire.node, services) - self._gone
 
     # --- time ----------------------------------------------------------------------------------------------
@@ -365,11 +373,11 @@ class TestBench:
         quiet: float | None = None,
         step: float = STEP,
     ) -> bool:
-        """Let ``seconds`` of the subject's time pass; stop earlier if ``until`` holds or nothing happens."""
+        """Let ``seconds`` pass for the subject, in simulated time if possible; stop earlier if ``until`` holds."""
         return self._time.run(seconds, until=until, quiet=quiet, step=step)
 
     def pass_time(self, seconds: float, role: str, name: str) -> None:
-        """Let simulated seconds pass for a subject in real time; if it does not follow, let real seconds pass."""
+        """Speed up the clock of a subject in real time until ``seconds`` have passed; if it refuses, wait as long."""
         self._time.lend(seconds, role, self._real(name))
 
     def let_wait(self, seconds: float) -> None:
@@ -377,23 +385,23 @@ class TestBench:
         self._recorder.wait(lambda: self._subject.ended, seconds, wall=True)
 
     def settle(self) -> None:
-        """Wait until the subject has handled what it received, if its nodes still answer."""
+        """Wait until the subject has handled the messages that it received. Nodes that do not answer are skipped."""
         self._time.settle()
 
     def await_attention(self) -> None:
-        """Query each node that the judge is matched with, from a client announced after the judge's publishers."""
+        """Wait until each node that the judge is matched with has discovered the judge's publishers."""
         self._time.await_attention()
 
     def doubt(self) -> None:
-        """Require that this look is confirmed by a second one in real time."""
+        """Mark this look as doubtful, so that a second look in real time must confirm it."""
         self.doubtful = True
 
     def note_whether_it_spins(self) -> None:
         """Request a parameter from each node of the subject, and record which node does not answer."""
         nodes = self._presence.counterparts()
         if not nodes:
-            # A program that has destroyed its nodes is about to end. Wait for that, because how it ends says more than
-            # nodes that do not answer.
+            # A program that has destroyed its nodes is about to end. Wait for the end, because the exit code and the
+            # last lines of output tell more than missing answers.
             self.await_end(MATCH)
         for node in nodes:
             if not self._subject.ended and not answers(self.wire, self._recorder, node):
@@ -401,7 +409,7 @@ class TestBench:
                 self.note_where_it_hangs()
 
     def note_where_it_hangs(self) -> None:
-        """Record the stacks of the subject's threads. If the subject is a command, this ends it, so do it last."""
+        """Record the stacks of the subject's threads. This ends a command, so call it last."""
         if not self._subject.ended:
             self._presence.note_interface()
             self._recorder.record("stack", "subject", text=self._subject.stack())
@@ -409,18 +417,19 @@ class TestBench:
     def wait_until(
         self, condition: Callable[[Evidence], bool], within: float, *, quiet: float | None = None
     ) -> bool:
-        """Wait until a condition on the evidence of this part holds; give up if the subject has ended."""
+        """Wait until a condition on this part's evidence holds or the subject has ended. Return True if it holds."""
         return self._wait_for(condition, self._evidence, within, quiet=quiet)
 
     def _wait_for(
         self, condition: Callable[[Evidence], bool], look: Callable[[], Evidence], within: float, **how: Any
     ) -> bool:
-        """Return True if the condition held when last checked; it is not checked again, as it may have changed."""
+        """Wait until a condition holds or the subject has ended. Return what the condition last returned."""
         held = False
 
         def over() -> bool:
             nonlocal held
-            # Read this before the evidence, so that the evidence has everything that came before the end.
+            # Ask first whether the subject has ended. Then the evidence, read afterwards, has everything from before
+            # the end.
             ended = self._subject.ended
             held = condition(look())
             return held or ended
@@ -443,6 +452,6 @@ class TestBench:
         self._recorder.record("type", service, type=made, same=seen == expected, fields=service_fields(like))
 
     def note_its_log(self) -> None:
-        """Record each different text that the subject logs once, for the reference output."""
+        """Record each distinct text in the subject's log, for the reference output."""
         for text in dict.fromkeys(event.data["text"] for event in self._recorder.part().of("log")):
             self._recorder.record("said", "log", text=text)

@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 class DecoyNodes:
     """The judge's decoy nodes, each with its own DDS participant.
 
-    Each node needs its own participant, because Fast DDS accepts only one type for a topic in one participant.
+    Each node needs its own participant, because within one participant Fast DDS accepts only one type for each topic.
     Participants are kept from part to part, because a subject that keeps running needs a fifth of a second or more to
-    discover a new one. A participant exists only as long as it has a node (rmw_fastrtps), so an old node is removed
-    only when the next one exists.
+    discover a new participant. A participant exists only as long as it has a node (rmw_fastrtps), so an old node is
+    removed only when the next node exists.
     """
 
     def __init__(self, domain_id: int) -> None:
@@ -36,7 +36,7 @@ class DecoyNodes:
     def plant(
         self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]
     ) -> set[Endpoint]:
-        """Put a node with these topics on the graph, with the usual QoS. Nothing spins the node.
+        """Put a node on the graph that publishes and subscribes to these topics, with the usual QoS. Nothing spins it.
 
         Returns:
             The identifiers of the node's endpoints on these topics.
@@ -54,7 +54,7 @@ class DecoyNodes:
         self._planted = 0
 
     def close(self) -> None:
-        """Remove everything from the graph."""
+        """Remove the decoy nodes and their participants."""
         while self._decoys:
             self._decoys.pop().close()
 

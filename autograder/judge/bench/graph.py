@@ -1,6 +1,6 @@
-"""Nodes and endpoints on the ROS graph other than the judge's, that is, those of the subject.
+"""Queries for the subject's nodes and endpoints: all on the ROS graph that are not the judge's.
 
-rclpy has no event for changes of the graph, so these queries are polled. A query takes well under a millisecond.
+rclpy has no event for changes of the graph, so callers repeat these queries. A query takes well under a millisecond.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ Interface = dict[str, dict[str, str]]
 
 
 def subject_nodes(judge: Node, keeper: str) -> list[NodeName]:
-    """Return every node on the domain, each name once, except the judge's and one keeper.
+    """Return the names of all nodes on the domain, each once, except the judge's and the keeper's.
 
     Args:
         judge: The judge's node.
@@ -69,9 +69,9 @@ def subject_nodes(judge: Node, keeper: str) -> list[NodeName]:
 
 
 def survey(judge: Node) -> Interface:
-    """Return the endpoints of all of the subject's nodes, without those that every node has.
+    """Return the endpoints of all of the subject's nodes, without those that every node has, such as ``/rosout``.
 
-    Keepers need no exception here: they have only endpoints that every node has.
+    The keeper (:func:`subject_nodes`) need not be left out, because it has only endpoints that every node has.
     """
     found: Interface = {role: {} for role in ROLES}
     for end in topic_ends(judge):
@@ -122,12 +122,12 @@ def topic_ends(judge: Node) -> list[TopicEnd]:
 
 
 def _process(gid: bytes) -> int:
-    """Return the process id in an endpoint's identifier. Fast DDS writes it into the fifth and sixth byte."""
+    """Return the lower 16 bits of the process id, which Fast DDS writes into an endpoint's identifier; 0 if unknown."""
     return int.from_bytes(gid[4:6], "little") if gid[:2] == _FAST_DDS else 0
 
 
 def counterparts(judge: Node, heard: list[str], spoken: list[str]) -> list[NodeName]:
-    """Return the subject's nodes that use these topics, as soon as their names are known.
+    """Return those of the subject's nodes that use these topics and whose names are already known.
 
     Args:
         judge: The judge's node.
@@ -148,10 +148,10 @@ def owners(judge: Node, role: str, name: str) -> list[NodeName]:
 
 
 def shows(judge: Node, marker: str) -> bool:
-    """Return True if a node is known to have both a publisher and a subscription with this name, the marker's.
+    """Return True if a node on the graph has both a publisher and a subscription on the topic ``marker``.
 
-    A marker is made after everything else, so it is discovered last: endpoints of one kind are announced in order
-    (DDSI-RTPS, 8.5.4).
+    The notebook makes the marker's publisher and subscription last, and endpoints of one kind are announced in order
+    (DDSI-RTPS, 8.5.4). So once the marker is on the graph, all other endpoints are, too.
     """
     return any(
         marker in dict(_ask(Node.get_publisher_names_and_types_by_node, judge, node))
@@ -195,10 +195,10 @@ hexadecimal.
 
 
 def server_endpoints(node: Node, services: Iterable[str]) -> set[Endpoint]:
-    """Return the endpoints of these services on a node that serves them.
+    """Return the DDS endpoints of these services, which the node serves.
 
-    A service consists of a reader of requests and a writer of replies (rmw_fastrtps_shared_cpp,
-    namespace_prefix.cpp). A client considers the service ready when it knows both.
+    In DDS, a service consists of a reader of requests and a writer of replies (rmw_fastrtps_shared_cpp,
+    namespace_prefix.cpp). A client considers the service ready when it has discovered both.
 
     Args:
         node: The node.
@@ -213,9 +213,9 @@ def topic_endpoints(node: Node, topics: Iterable[str]) -> set[Endpoint]:
 
 
 def _endpoints(node: Node, topics: Iterable[str]) -> set[Endpoint]:
-    """Return a node's endpoints, with identifiers that are the same for every participant of the domain.
+    """Return a node's endpoints on these topics, with the identifiers by which all participants know them.
 
-    Names are not enough, because an endpoint of an earlier run may be removed and its name used again.
+    A topic's name does not identify an endpoint, because the next run may use the name of a removed endpoint again.
 
     Args:
         node: The node.

@@ -1,6 +1,7 @@
-"""ROS interfaces found by name, messages as plain data, and type hashes.
+"""Finds ROS interfaces by name, converts messages to plain data, and computes type hashes.
 
-A type hash (REP-2016) is how DDS discovery describes the fields of an interface. The package's name is part of it.
+DDS discovery describes the definition of an interface by a type hash (REP-2016). The hash also depends on the name of
+the package.
 """
 
 from __future__ import annotations
@@ -61,7 +62,7 @@ def to_data(message: Any) -> Any:
 
 
 def filled(message: Any, fields: Mapping[str, Any]) -> Any:
-    """Set fields of a message and return the message. A mapping stands for a message, even inside a list.
+    """Set fields of a message and return the message. Nested messages are given as mappings, also in lists.
 
     Raises:
         AttributeError: The message has no field with that name.
@@ -108,7 +109,7 @@ def expected_hashes(type_name: str, package: str) -> dict[str, str]:
         package: The name of the other package.
 
     Raises:
-        LookupError: The type is not installed.
+        LookupError: The type is not installed, or contains other interfaces.
     """
     home, kind, name = type_name.split("/")
     parts = _description(home, kind, name)["type_description_msg"]["referenced_type_descriptions"]

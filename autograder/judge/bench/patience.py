@@ -1,7 +1,7 @@
 """Time limits for a student's program that get longer while the machine is busy.
 
-A limit that is generous on an idle machine is too short if thirty processes wait for a processor: a right program
-would be late. So a second of the limit lasts longer while the machine is busy, up to ``SLOWEST`` seconds.
+A limit that is generous on an idle machine is too short if thirty processes wait for a processor: a correct program
+would exceed it. So a second of the limit lasts longer while the machine is busy, up to ``SLOWEST`` seconds.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _LOAD = Path("/proc/loadavg")
 
 
 class Patience:
-    """A time limit that runs more slowly while the machine is busy.
+    """A time limit that gets longer while the machine is busy.
 
     Args:
         seconds: The time limit in seconds, on an idle machine.
@@ -43,14 +43,14 @@ class Patience:
         self.restart()
 
     def restart(self) -> None:
-        """Start the time limit again."""
+        """Start the time limit again from the beginning."""
         self._used = 0.0
         self._at = self._looked = self._now()
         self._factor = 1.0
 
     @property
     def left(self) -> float:
-        """The rest of the time limit, in seconds on an idle machine; zero or negative if the limit is reached."""
+        """The time that is left, in seconds of an idle machine; zero or negative if the limit is reached."""
         now = self._now()
         if now - self._looked >= _LOOK_EVERY:
             self._factor = self.slowness()
@@ -61,7 +61,7 @@ class Patience:
 
 
 def machine_slowness() -> float:
-    """Return the factor by which time limits are longer at the moment on this machine."""
+    """Return the factor by which the present load of this machine lengthens time limits."""
     return slowness(runnable_threads(), os.cpu_count() or 1)
 
 
@@ -74,7 +74,7 @@ def runnable_threads() -> int:
 
 
 def slowness(runnable: float, processors: int) -> float:
-    """Return the factor by which time limits are longer with this load.
+    """Return the factor by which a load lengthens time limits.
 
     Args:
         runnable: The number of threads that run or wait for a processor.

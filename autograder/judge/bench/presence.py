@@ -1,7 +1,7 @@
-"""The subject's endpoints and nodes on the ROS graph in one part, recorded as they come and go.
+"""Watches the subject's nodes and endpoints on the ROS graph during one part, and records each change.
 
-The endpoints of a program disappear when it ends. So everything that is seen is recorded at once, and never queried
-again.
+The endpoints of a program disappear when it ends. So the result of each query is recorded at once. A second query could
+find less.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
 
 
 class Settling:
-    """Tells when a command has something on the graph, and this has not changed for a while.
+    """Tells when a command's nodes and endpoints have not changed for a while.
 
     Args:
-        seconds: The length of that while, in seconds of patience (:mod:`autograder.judge.bench.patience`). On a busy
-            machine a program may have made its node, and still wait for a processor before it makes the endpoints.
+        seconds: How long they must not have changed, in seconds of patience (:mod:`autograder.judge.bench.patience`).
+            On a busy machine, a program that has made its node may wait for a processor before it makes its endpoints.
     """
 
     def __init__(self, seconds: float) -> None:
@@ -36,7 +36,7 @@ class Settling:
         self._patience = Patience(seconds)
 
     def unchanged(self, interface: graph.Interface, nodes: int) -> bool:
-        """Return True if the graph has nodes and is the same as ``seconds`` ago."""
+        """Return True if there are nodes, and the graph has not changed for this time."""
         state = (nodes, interface)
         if state != self._last:
             self._last = state
@@ -66,14 +66,15 @@ class Presence:
     """The subject's nodes and endpoints on the graph, as the judge's node sees them.
 
     Attributes:
-        subscriptions: The judge's subscriptions by the real names of their topics.
-        publishers: The judge's publishers by the real names of their topics.
+        subscriptions: The judge's subscriptions, by the names that the subject uses for their topics.
+        publishers: The judge's publishers, by the names that the subject uses for their topics.
 
     Args:
         node: The judge's node.
-        recorder: Records what is seen.
+        recorder: The record of the part.
         subject: The subject.
-        settled: If the graph has not changed for this many seconds, a command is assumed to have made everything.
+        settled: If the graph has not changed for this many seconds, a command is assumed to have made all its
+            endpoints.
         announced: Returns True if a process of the subject is known to have made a node.
     """
 
@@ -101,7 +102,7 @@ class Presence:
     def counterparts(self) -> list[graph.NodeName]:
         """Return the subject's nodes that use the judge's topics; all its nodes if the judge has no topic.
 
-        Wait up to a second until their names are known.
+        This waits up to a second until the names of these nodes are discovered.
         """
         found: list[graph.NodeName] = []
 
@@ -130,14 +131,14 @@ class Presence:
         }
         counterpart = counterparts.get(role, {}).get(name)
         if counterpart is None or counterpart.type_name != self._recorder.part().endpoints(role)[name]:
-            return True  # The judge has no endpoint that could match.
+            return True  # no endpoint of the judge can match it
         return self._recorder.wait(
             lambda: counterpart.matched > 0 or self._subject.ended or self._mismatched(counterpart.topic),
             MATCH,
         )
 
     def await_node(self) -> bool:
-        """Wait for a node of the subject on the graph. It counts if a subject that ended had one."""
+        """Wait for a node of the subject on the graph. Return True also if a subject that has ended had a node."""
         nodes: list[graph.NodeName] = []
 
         def there() -> bool:
@@ -162,11 +163,11 @@ class Presence:
         return alive
 
     def await_interface(self, there: Callable[[graph.Interface], bool]) -> graph.Interface:
-        """Wait until a condition on the graph holds, the subject has ended, or it has certainly made everything.
+        """Wait until a condition on the graph holds, the subject has ended, or all its endpoints are on the graph.
 
         Returns:
-            The endpoints at the last query. They are recorded as they were seen and not queried again, because the
-            endpoints of a program disappear when it ends.
+            The endpoints that the last query found. The same ones are recorded: a new query could find less, because
+            the endpoints of a program disappear when it ends.
         """
         settled = Settling(self._settled)
         interface: graph.Interface = {}
@@ -174,7 +175,8 @@ class Presence:
         def over() -> bool:
             nonlocal interface
             marker = self._subject.marker
-            # The marker is checked before the endpoints, because everything made before it is announced before it.
+            # Look for the marker first. The subject announces it last, so if it is on the graph, the survey below finds
+            # all endpoints.
             all_made = marker is not None and graph.shows(self._node, marker)
             interface = graph.survey(self._node)
             if there(interface) or self._subject.ended or all_made:
@@ -186,10 +188,10 @@ class Presence:
         return interface
 
     def _await_appearance(self, condition: Callable[[], bool]) -> None:
-        """Wait for the first sign of a started subject; the time limit restarts while it keeps starting processes."""
+        """Wait until a condition holds, at most :data:`APPEAR`; wait again if the subject starts more processes."""
         patience = Patience(APPEAR)
-        # A command's runner starts the command at once. So a process that begins in the second half of the time shows
-        # that work goes on.
+        # A command's runner starts the command at once. So a process that begins in the second half of the time limit
+        # shows that something else, such as a build, is going on.
         earlier: frozenset[int] | None = None
 
         def overdue() -> bool:
@@ -240,9 +242,9 @@ class Presence:
             self._recorder.record("interface", "graph", **seen)
 
     def note_how_it_leaves(self) -> None:
-        """If a program's endpoints have disappeared from the graph because it is ending, wait for its end.
+        """If all endpoints of a program have disappeared, the program is ending: wait for its end.
 
-        Otherwise the recorded exit code and last lines would depend on the moment of the query.
+        Without this wait, chance would decide whether the exit code and the last lines of output are recorded.
         """
         surveys = self._recorder.part().of("interface", "graph")
         had_endpoints = [any(survey.data[role] for role in graph.ROLES) for survey in surveys]
@@ -250,10 +252,10 @@ class Presence:
             self._recorder.wait(lambda: self._subject.ended, MATCH)
 
     def note_short_life(self) -> bool:
-        """If a subject has ended and the graph never showed its node, record that it had made one.
+        """If a subject has ended and the graph never showed its node, record that the subject had made a node.
 
         Returns:
-            True if the subject had made a node. Whether it is found must not depend on the speed of discovery.
+            True if the subject has ended and had made a node. The result does not depend on the speed of discovery.
         """
         if not self._subject.ended or not self._announced():
             return False
@@ -263,7 +265,7 @@ class Presence:
         return True
 
     def note_whom_it_met(self) -> None:
-        """Record endpoints that were matched with the judge's: they existed, even if the graph never showed them."""
+        """Record the subject's endpoints that were matched with the judge's, even if the graph never showed them."""
         known = self._recorder.part()
         for role, ends in self._met().items():
             for name, type_name in ends.items():
@@ -281,7 +283,7 @@ class Presence:
             role: {
                 name: end.type_name
                 for name, end in ends.items()
-                # Skip topics on which the judge is at both ends: it would match itself.
+                # Skip topics on which the judge is at both ends, because its own endpoints match.
                 if name not in others and any(event.data["count"] for event in part.of("matched", end.topic))
             }
             for role, ends, others in sides

@@ -1,9 +1,9 @@
-"""Waits until the middleware's threads have passed on everything that had arrived.
+"""Waits until the middleware's threads have processed every message that has arrived.
 
-The judge learns of a program's end through a pipe, and of its messages through the middleware. So it may learn of the
-end first, while the thread that received a message still waits for a processor. A message wakes its receiver at once
-(futex(7), udp(7)). So a thread that sleeps has nothing left to do, and a thread that has slept since the end has done
-it.
+The judge learns of a program's end through a pipe, but of the program's messages through threads of the middleware.
+When the end is known, such a thread may have been woken by a message and still wait for a processor. A message wakes
+its thread at once (futex(7), udp(7)). So a thread that sleeps has nothing left to do, and a thread that was awake has
+processed its messages once it has slept.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class _Thread:
 
 
 def await_turns(patience: Patience) -> bool:
-    """Wait until each thread that is awake has slept. Return True if all have, before the patience was used up."""
+    """Wait until each thread of the middleware that is awake has slept. Return False if the time is up before that."""
     return all(_await_turn(patience) for _ in range(TURNS))
 
 
@@ -59,7 +59,7 @@ def _await_turn(patience: Patience) -> bool:
 
 
 def _look(tasks: Iterable[int]) -> dict[int, _Thread]:
-    """Return the state of each thread that still exists."""
+    """Return the states of these threads, without those that have ended."""
     found: dict[int, _Thread] = {}
     for task in tasks:
         try:

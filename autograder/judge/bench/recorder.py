@@ -32,13 +32,14 @@ _SPEECH = ("output", "log")
 
 
 class Recorder:
-    """A growing list of events, with a condition variable to wait on.
+    """The events of the current part, in order of time. Threads can wait for the next event.
 
-    Times are in seconds since :meth:`begin`; ``began_at`` is the Unix time of that moment. ``simulated_now`` is
-    called at each event, so that a message is stored with the simulated time of its arrival.
+    The times of events are in seconds since :meth:`begin`.
 
     Attributes:
-        take_in: Waits until everything that was sent to the judge so far is recorded.
+        take_in: A function that waits until everything that was sent to the judge so far is recorded.
+        simulated_now: The simulated time, in seconds, which is stored with each event; None in real time.
+        began_at: The Unix time at which the part began.
     """
 
     def __init__(self, hurry: Callable[[], None] = lambda: None) -> None:
@@ -62,7 +63,7 @@ class Recorder:
         self.began_at = time.time()
 
     def begin(self, name: str, inputs: Mapping[str, Any]) -> None:
-        """Begin a new part, and forget the events of the part before."""
+        """Begin a new part, and forget the events of the previous one."""
         with self._changed:
             self._events = []
             self._said = self._size = 0
@@ -74,7 +75,7 @@ class Recorder:
             self.began_at = time.time()
 
     def in_this_part(self) -> Callable[..., None]:
-        """Return a :meth:`record` for the current part only; events that come later are dropped.
+        """Return a function like :meth:`record`, which records only in the current part and does nothing after that.
 
         This is for threads that may still read a run's output when the next run begins.
         """
@@ -133,7 +134,7 @@ class Recorder:
 
     @property
     def count(self) -> int:
-        """Return the number of events so far, of all parts."""
+        """The number of events so far, of all parts."""
         return self._count
 
     def part(self) -> Part:
@@ -158,8 +159,7 @@ class Recorder:
             poll: Seconds until the condition is checked again without an event. Callers that query the graph, which
                 has no events, use a few milliseconds.
             quiet: Give up earlier if nothing was recorded for this many seconds of patience.
-            wall: True to count wall time: for a wait that sets the judge's own pace and is not a limit for the
-                subject.
+            wall: True to count wall time: for a wait that is a step of the scenario and not a limit for the subject.
 
         Returns:
             True if the condition held in time.
@@ -190,13 +190,13 @@ def _is_speech(event: Event) -> bool:
 
 
 def _kept(data: Any, limit: int) -> tuple[Any, int]:
-    """Return a copy of the data of an event, and the number of characters that it counts as.
+    """Return a shortened copy of an event's data, and the number of characters that it counts as.
 
-    The copy is cut to the size that a verdict can use, because a subject may send gigabytes.
+    Texts and lists are cut to a length that a verdict can use, because a subject may send gigabytes.
     """
     if isinstance(data, str):
-        # JSON may contain a lone surrogate, which cannot be encoded. It is replaced, or a verdict that quotes it
-        # could not be written.
+        # Text from JSON may contain a lone surrogate, which UTF-8 cannot encode. Replace it, because otherwise a
+        # verdict that quotes the text could not be written.
         text = data if data.isascii() else data[:limit].encode("utf-8", "replace").decode() + data[limit:]
         return (text if len(text) <= limit else f"{text[:limit]}…"), min(len(text), limit)
     if isinstance(data, dict):

@@ -1,4 +1,4 @@
-"""Services: the judge serves as the scenario says, and calls the subject's services. Both sides are recorded."""
+"""The judge's side of services: a server that answers as the scenario says, and a client. Both record events."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ Answer = Callable[[Mapping[str, Any]], Mapping[str, Any]]
 
 
 class RecordedServer:
-    """A service of the judge, until it is closed. One of its answers may be held back until it is released.
+    """A service that the judge offers until :meth:`close`. One answer may be held back until :meth:`release`.
 
     Attributes:
-        services: The full names of the services.
+        services: The full name of the service, in a tuple.
     """
 
     def __init__(
@@ -47,7 +47,7 @@ class RecordedServer:
             service: The full name of the service as the evidence shows it.
             type_name: The service type, such as ``"std_srvs/srv/Empty"``.
             answer: Returns the response to a request.
-            at: The full name that the subject's client really uses, if that differs.
+            at: The full name that the subject's client uses for the service, if this name is different.
             hold: Which request, counted from 1, is answered only after :meth:`release`; 0 for none.
         """
         self._wire = wire
@@ -105,13 +105,13 @@ lost.
 
 
 class Client(ABC):
-    """The common part of the judge's clients of services and actions: they wait for a server and count servers.
+    """Base class of the judge's service client and action client. It waits for a server and counts servers.
 
     Args:
         wire: The judge's participant.
         recorder: Records requests and answers.
         name: The full name of the service or action as the evidence shows it.
-        service: The real name of the service whose servers are counted.
+        service: The name that the subject uses for the service whose servers are counted.
         server_is_gone: Returns True if waiting for a server has become useless, because the subject has ended.
     """
 
@@ -125,7 +125,7 @@ class Client(ABC):
         self._server_is_gone = server_is_gone
 
     def await_server(self, within: float) -> bool:
-        """Wait until a server is matched, and record the number of servers."""
+        """Wait until a server is matched, and record the number of servers. Return True if one is matched."""
         self._recorder.wait(lambda: self._ready() or self._server_is_gone(), within, poll=GRAPH_POLL)
         self._note_servers()
         return self._ready()
@@ -140,7 +140,7 @@ class Client(ABC):
 
 
 class RecordedCaller(Client):
-    """Implements :class:`autograder.kit.counterparts.Caller`."""
+    """A service client that records events. It implements :class:`autograder.kit.counterparts.Caller`."""
 
     def __init__(
         self,
@@ -161,10 +161,11 @@ class RecordedCaller(Client):
         return bool(self._client.service_is_ready())
 
     def ask(self, *requests: Mapping[str, Any]) -> None:
-        """Send requests, one directly after the other."""
+        """Send all requests without waiting for an answer between them."""
         numbered = list(enumerate(requests, self._calls))
         self._calls += len(numbered)
-        # All calls are recorded before the first is sent, so that the record does not depend on who is faster.
+        # Record all calls before the first is sent. Otherwise chance would decide whether an answer is recorded before
+        # a later call.
         for number, fields in numbered:
             self._recorder.record("asked", self._name, call=number, fields=dict(fields))
         for number, fields in numbered:
@@ -172,7 +173,7 @@ class RecordedCaller(Client):
             future.add_done_callback(lambda done, number=number: self._take(number, done.result()))
 
     def await_answers(self, quiet: float) -> bool:
-        """Wait until every call is answered; give up when nothing was recorded for ``quiet`` seconds."""
+        """Wait until every call is answered. Return False if nothing was recorded for ``quiet`` seconds before that."""
         self._recorder.wait(
             lambda: self._all_answered() or self._server_is_gone(), self._calls * quiet, quiet=quiet
         )

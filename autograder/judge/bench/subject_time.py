@@ -1,10 +1,10 @@
-"""The time of the subject in one part: stepped if the subject follows the judge's clock, otherwise wall time.
+"""Lets time pass for the subject: simulated time if the subject follows the judge's clock, otherwise wall time.
 
-In simulated time the judge publishes ``/clock`` and steps it, so that seconds take milliseconds. After each step it
+In simulated time the judge publishes ``/clock`` in steps, so that seconds take milliseconds. After each step, the judge
 sends requests to the subject's parameter service. The answers prove that the subject's executor has called the timers
 of this step, so the result does not depend on how busy the machine is. A subject that does not follow the clock
-(``time.sleep``, or a loop that spins only sometimes) reveals itself: it publishes while the clock stands still, or
-its executor answers slowly. The judge then looks again in real time.
+(``time.sleep``, or a loop that spins only sometimes) reveals itself: it publishes while the clock stands still, or its
+executor answers slowly. Then the judge looks again in real time.
 """
 
 from __future__ import annotations
@@ -62,9 +62,9 @@ _QUESTION = GetParameters.Request(names=[_SIM_TIME])
 class NodeClock:
     """Publishes ``/clock`` for one node of the subject, and checks whether the node keeps up.
 
-    An answer from the node's parameter service proves that its executor has made a round since the request. An
-    executor takes one request of a service in each round (rclpy/executors.py, ``_take_service``). So several requests
-    that are sent together prove as many rounds, in the time of one exchange of messages.
+    An answer from the node's parameter service proves that its executor has made a round since the request. An executor
+    takes one request of a service in each round (rclpy/executors.py, ``_take_service``). So the answers to three
+    requests that are sent together prove three rounds, in the time of one exchange of messages.
     """
 
     def __init__(self, wire: Wire, recorder: Recorder, node: NodeName) -> None:
@@ -75,7 +75,7 @@ class NodeClock:
         self._get = wire.node.create_client(GetParameters, f"{node.full}/get_parameters")
 
     def follow(self, simulated: bool) -> bool:
-        """Tell the node to follow simulated time, or real time again. Return True if it accepted."""
+        """Tell the node to follow simulated time, or real time again. Return True if the node has accepted this."""
         value = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=simulated)
         request = SetParameters.Request(parameters=[Parameter(name=_SIM_TIME, value=value)])
         answer = ask(self._recorder, self._set, request, ANSWER_LIMIT)
@@ -100,14 +100,14 @@ class NodeClock:
         return ask(self._recorder, self._get, _QUESTION, ANSWER_LIMIT, turns=TURNS) is not None
 
     def lend(self, seconds: float, until: Callable[[], bool]) -> bool:
-        """Let seconds pass for a node in real time, so that its timers fire now as they would later.
+        """Make a node in real time follow simulated time for some seconds, so that its timers fire sooner.
 
-        This shows within milliseconds what a program's timers would do in the next seconds. The node's clock
-        continues from its current time, and real time is restored afterwards, so nothing that the node has begun is
-        lost. Code that does not follow a clock, such as a thread that sleeps, is not shown.
+        This shows within milliseconds what a program's timers would do in the next seconds. The node's clock continues
+        from its current time, and the node follows real time again afterwards, so nothing that the node has begun is
+        lost. Code that uses no ROS clock, such as a thread that sleeps, does not get faster.
 
         Args:
-            seconds: The maximum number of seconds to pass.
+            seconds: The maximum number of simulated seconds.
             until: Time stops passing when this function returns True.
 
         Returns:
@@ -136,7 +136,7 @@ def ask(recorder: Recorder, client: Any, request: Any, limit: float, *, turns: i
         recorder: The record of the part. Each new event ends a wait for the answer.
         client: The client of the service.
         request: The request.
-        limit: Time limit for each round, in seconds of wall time.
+        limit: Time limit in seconds for the service to appear, and again for each answer.
         turns: The number of executor rounds to wait for: the request is sent this many times at once, and the last
             answer counts.
     """
@@ -158,7 +158,7 @@ def _is_there(future: Any, limit: float) -> bool:
 
 
 def answers(wire: Wire, recorder: Recorder, node: NodeName, limit: float = PATIENT_ANSWER) -> bool:
-    """Return True if a node answers, within ``limit`` seconds, a request that every spun node answers."""
+    """Return True if a node answers a request for a parameter in time. Every node that is spun can do that."""
     client = wire.node.create_client(GetParameters, f"{node.full}/get_parameters")
     try:
         return ask(recorder, client, _QUESTION, limit) is not None
@@ -167,7 +167,7 @@ def answers(wire: Wire, recorder: Recorder, node: NodeName, limit: float = PATIE
 
 
 class SimulatedClock(NodeClock):
-    """Steps the clock of one node of the subject.
+    """A simulated clock for one node of the subject, which moves in steps.
 
     Attributes:
         doubtful: True if the result must be confirmed in real time, because a step took too long or another node
@@ -195,13 +195,13 @@ class SimulatedClock(NodeClock):
         """Keep the clock still for a moment. Return True if the subject stays silent meanwhile.
 
         Args:
-            silent: Returns True as long as no message has come since it was created.
+            silent: Returns True as long as the subject has published nothing more.
         """
         self._recorder.wait(lambda: not silent(), STANDSTILL)
         return silent()
 
     def run(self, seconds: float, until: Callable[[], bool], step: float = STEP) -> bool:
-        """Let ``seconds`` of simulated time pass in steps of ``step`` seconds, or less if ``until`` holds earlier.
+        """Let ``seconds`` of simulated time pass in steps of ``step`` seconds; stop earlier if ``until`` holds.
 
         Returns:
             True if the subject's executor answered after each step.
@@ -228,14 +228,14 @@ class SimulatedClock(NodeClock):
 
 
 class SubjectTime:
-    """Lets time pass for the subject, and checks whether its nodes keep up.
+    """Lets time pass for the subject, in simulated time if possible, and checks whether its nodes keep up.
 
     Args:
         wire: The judge's participant.
         recorder: The record of the part. Each new event ends a wait.
         subject: The subject.
         presence: The subject's nodes, and which of the judge's endpoints they are matched with.
-        opened: Everything that is made here and has to be closed at the end of the part.
+        opened: The clock is added to this stack, which is closed at the end of the part.
         pace: Decides whether simulated time is tried at all.
         doubt: Called if an observation must be confirmed in real time.
     """
@@ -269,7 +269,9 @@ class SubjectTime:
         quiet: float | None = None,
         step: float = STEP,
     ) -> bool:
-        """Let ``seconds`` of the subject's time pass; stop earlier if ``until`` holds or nothing happens.
+        """Let ``seconds`` pass for the subject; stop earlier if ``until`` holds or the subject has ended.
+
+        In real time, also stop if nothing was recorded for ``quiet`` seconds.
 
         Returns:
             False if simulated time could not go on because the subject's executor no longer answers.
@@ -285,7 +287,7 @@ class SubjectTime:
         return True
 
     def lend(self, seconds: float, role: str, name: str) -> None:
-        """Let simulated seconds pass for the node with this endpoint; if it does not follow, let real seconds pass."""
+        """Lend a simulated clock to the node with this endpoint for some seconds. If the node refuses, wait as long."""
         for node in graph.owners(self._wire.node, role, name):
             if node.full not in self._deaf:
                 with contextlib.closing(NodeClock(self._wire, self._recorder, node)) as clock:
@@ -294,7 +296,7 @@ class SubjectTime:
         self._recorder.wait(lambda: self._subject.ended, seconds, wall=True)
 
     def settle(self) -> None:
-        """Wait until the subject has handled what it received: each node then answers two requests.
+        """Wait until the subject has handled the messages it received: until each node has answered two new requests.
 
         Nodes that have already failed to answer in this part are skipped.
         """
@@ -306,10 +308,10 @@ class SubjectTime:
                 self._deaf.add(node.full)
 
     def await_attention(self) -> None:
-        """Query each node that the judge is matched with, from a client that is announced after the judge's publishers.
+        """Wait until each node that the judge is matched with has discovered the judge's publishers.
 
-        A participant's announcements arrive in order (DDSI-RTPS, 8.5.4), so a node that answers this client also
-        knows the publishers.
+        The judge sends each node a request from a new client. The judge's announcements arrive in order (DDSI-RTPS,
+        8.5.4), so a node that can answer the new client has discovered the older publishers, too.
         """
         for node in self._presence.counterparts():
             if not self._subject.ended:
@@ -327,9 +329,10 @@ class SubjectTime:
         return self._clock is not None
 
     def _clock_taken_over(self) -> SimulatedClock | None:
-        """Return a clock that the subject follows; None if there is no node to step, or it stays in its own time."""
+        """Return a clock that the subject follows; None if the subject has no node, or does not follow the clock."""
         if any(self._wire.node.count_publishers(topic) > 1 for topic in self._presence.subscriptions):
-            # Two nodes with the same name share their parameter services, so one of them would stay in real time.
+            # Several publishers may belong to nodes with the same name. Their parameter services then have the same
+            # names, too, so one of the nodes would stay in real time.
             self._doubt()
             return None
         node = next(iter(self._presence.counterparts()), None)
@@ -339,7 +342,8 @@ class SubjectTime:
         self._open.callback(stepped.close)
         if stepped.take_over() and stepped.stands_still(self._silence()):
             return stepped
-        # The subject may obey later and then stop, so only a new run in real time can decide.
+        # The subject may switch to simulated time later and then stand still, because nobody steps the clock. So only a
+        # new run in real time can decide.
         self._recorder.simulated_now = None
         if self._presence.subscriptions:
             self._doubt()
@@ -353,5 +357,5 @@ class SubjectTime:
             return sum(len(seen.of("message", topic)) for topic in self._presence.subscriptions)
 
         before = heard()
-        # One message may still have been on its way when the clock stopped, so one is allowed.
+        # One message is allowed, because it may have been on its way when the clock stopped.
         return lambda: heard() <= before + 1

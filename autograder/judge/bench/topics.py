@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from autograder.judge.bench.recorder import Recorder
     from autograder.judge.bench.wire import Wire
 
-# Reliable like the course's own listener, so that a message which cannot reach that listener does not reach this one
-# either; with a large queue, so that nothing is lost while the judge is slow.
+# This QoS is reliable like that of the course's listener, so the judge hears a publisher only if that listener can hear
+# it. The queue is longer, so that nothing is lost while the judge is slow.
 _AS_THE_LISTENER = QoSProfile(depth=1000)
 _AS_A_LATE_LISTENER = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _LOG_HISTORY = QoSProfile(
@@ -31,12 +31,12 @@ _LOG_HISTORY = QoSProfile(
 
 
 class RecordedEndpoint:
-    """A publisher or subscription of the judge. It records which endpoints match it and which do not (QoS).
+    """A publisher or subscription of the judge. It records endpoints that match, and those with incompatible QoS.
 
     Attributes:
-        matched: The number of the subject's endpoints that match it now.
+        matched: The number of the subject's endpoints that are matched with this endpoint now.
         topic: The topic's name as the evidence shows it.
-        type_name: The type of its messages.
+        type_name: The message type, such as ``"std_msgs/msg/String"``.
     """
 
     def __init__(self, recorder: Recorder, topic: str, type_name: str) -> None:
@@ -47,8 +47,8 @@ class RecordedEndpoint:
 
     def _match(self, info: Any) -> None:
         self.matched = info.current_count
-        # The total count is used because an endpoint that exists only for a moment is reported once, when it is
-        # already gone.
+        # An endpoint that exists only for a moment is reported once, when it is already gone. Then only the total count
+        # shows that it existed.
         self._recorder.record("matched", self.topic, count=info.total_count, now=info.current_count)
 
     def _mismatch(self, info: Any) -> None:
@@ -76,14 +76,14 @@ class RecordedSubscription(RecordedEndpoint):
             recorder: Records messages and matches.
             topic: The topic's name as the evidence shows it.
             type_name: The message type, such as ``"std_msgs/msg/String"``.
-            at: The name that the subject really uses for the topic, if that differs.
+            at: The name that the subject uses for the topic, if this name is different.
             latched: True to receive messages that were sent before the subscription existed.
         """
         super().__init__(recorder, topic, type_name)
         self.subscription = wire.node.create_subscription(
             interface(type_name),
             at or topic,
-            self._hear,  # type: ignore[arg-type]  # rclpy gives the message info to whoever takes two arguments
+            self._hear,  # type: ignore[arg-type]  # a callback with two parameters also gets the message info
             _AS_A_LATE_LISTENER if latched else _AS_THE_LISTENER,
             event_callbacks=SubscriptionEventCallbacks(
                 matched=self._match, incompatible_qos=self._mismatch, use_default_callbacks=False
@@ -91,9 +91,9 @@ class RecordedSubscription(RecordedEndpoint):
         )
 
     def _hear(self, message: Any, info: Any) -> None:
-        # The publisher's own count of its messages tells how many it sent before this subscription could receive any.
-        # The publisher's time of sending does not depend on the transport (rmw_message_info_t; provided by
-        # rmw_fastrtps).
+        # The sequence number, which the publisher counts, shows how many messages were sent before this subscription
+        # could receive any. The time stamp of the publisher does not depend on the transport (rmw_message_info_t;
+        # provided by rmw_fastrtps).
         self._recorder.record(
             "message",
             self.topic,
@@ -138,6 +138,6 @@ class LogReader:
     def _hear(self, line: Any) -> None:
         sent = line.stamp.sec + line.stamp.nanosec / 1e9
         if sent < self._recorder.began_at:
-            return  # This line is from an earlier part, logged by a node of the same participant, and arrived late.
+            return  # a late line of an earlier part, logged by a node of the same participant
         text, level = line.msg, int(line.level)
         self._recorder.record("log", line.name, text=text, level=level, sent=sent, arrived=time.time())

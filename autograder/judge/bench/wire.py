@@ -1,4 +1,4 @@
-"""The judge's own node, in a ROS context of its own, spun by a thread of its own."""
+"""The judge's own node, which has its own ROS context and is spun by its own thread."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ class JudgeFailed(RuntimeError):
 
 
 class _QuietNode(Node):
-    """A node whose endpoints have only the events that were requested.
+    """A node whose endpoints report only the QoS events that were requested.
 
-    rclpy gives each endpoint two events that only log a warning. The executor checks all events of its node in each
-    round, and a check in simulated time has some hundred rounds.
+    By default, rclpy gives each endpoint two events that only log a warning. The executor would check all of them in
+    each round, and a check in simulated time has some hundred rounds.
     """
 
     def create_publisher(self, *arguments: Any, **options: Any) -> Any:
@@ -50,13 +50,13 @@ class _QuietNode(Node):
 
 
 class Wire:
-    """A participant of the judge on one domain. Each part gets a new one, which subjects discover at once.
+    """The judge's DDS participant on one ROS domain, with one node. A new participant is discovered at once.
 
     Attributes:
         node: The judge's node. It has no parameter services and no log topic, so that it adds almost nothing to the
             graph.
         executor: Spins the node in a thread of its own.
-        failure: The exception of the judge's own code that ended that thread; None if there is none.
+        failure: The exception of a callback of the judge that ended this thread; None if there was none.
     """
 
     def __init__(self, domain_id: int) -> None:
@@ -105,13 +105,13 @@ class Wire:
         before = -1
         while before != written_down():
             before = written_down()
-            # A process that a subject left behind may go on sending forever.
+            # The time is limited, because a process that a subject left behind may go on sending forever.
             if patience.left <= 0 or not self._take_one_of_each(patience):
                 return False
         return True
 
     def _take_one_of_each(self, patience: Patience) -> bool:
-        """Let the executor take at most one message or call from each endpoint. Return False if there was no time.
+        """Wait while the executor makes a round, which takes at most one message from each endpoint. False if too late.
 
         An executor begins each round with its tasks and then takes what has arrived (rclpy/executors.py,
         _wait_for_ready_callbacks). So two tasks, one after the other, enclose one whole round.
