@@ -1,7 +1,7 @@
 """``python -m autograder.judge --socket PATH``: run the judge for one notebook.
 
-With ``--attached LISTENER ORDERS`` instead, run a judge that a grader controls. It judges only the checks that the
-grader orders; both arguments are descriptors of inherited sockets.
+With ``--attached LISTENER ORDERS``, run a judge that a grader controls. This judge runs only the checks that the grader
+orders. Both arguments are file descriptors of inherited sockets.
 """
 
 from __future__ import annotations
@@ -11,10 +11,10 @@ from pathlib import Path
 
 
 def main() -> None:
-    """Prepare ROS, then serve until stdin or the grader's orders end."""
+    """Prepare ROS, then serve until stdin is closed or the grader disconnects."""
     parser = argparse.ArgumentParser(prog="python -m autograder.judge", description=__doc__)
     where = parser.add_mutually_exclusive_group(required=True)
-    where.add_argument("--socket", type=Path, help="where notebooks reach the judge")
+    where.add_argument("--socket", type=Path, help="the Unix socket at which notebooks reach the judge")
     where.add_argument(
         "--attached", type=int, nargs=2, metavar=("LISTENER", "ORDERS"), help="descriptors of two sockets"
     )

@@ -1,8 +1,8 @@
 """Set the environment variables that a judge's or subject's process needs before it imports ROS.
 
-Measured with Jazzy's Fast DDS: a participant announces itself every 3 s. So a participant that is older than about a
-second often discovers a new process only seconds later. With the profile next to this file, the judge's participants
-announce themselves every 100 ms. Subjects do not need the profile.
+A participant of Jazzy's Fast DDS announces itself every 3 s (measured). So a participant that is older than about a
+second often discovers a new process only seconds after it started. With the profile next to this file, the judge's
+participants announce themselves every 100 ms. Subjects do not need the profile.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ PROFILE = Path(__file__).with_name("fastdds_profile.xml")
 OF_THE_JUDGE = {
     "FASTDDS_DEFAULT_PROFILES_FILE": str(PROFILE),
     "FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILE),
-    # Without this, Fast DDS also obeys a DEFAULT_FASTRTPS_PROFILES.xml in the current folder.
+    # Without this variable, Fast DDS also reads a file DEFAULT_FASTRTPS_PROFILES.xml in the current folder.
     "SKIP_DEFAULT_XML_FILE": "1",
 }
 """Environment variables for the judge's process that a subject must not have."""
 
 
 def ros_environment() -> dict[str, str]:
-    """Return the variables that judge and subject share: ROS on loopback only, plain logs, messages over UDP.
+    """Return the environment variables for judge and subject: ROS on loopback only, plain logs, messages over UDP.
 
-    Messages do not use shared memory, because two sandboxes do not share it. Nevertheless, if discovery is limited to
-    this machine, rmw_fastrtps creates shared memory (:mod:`autograder.judge.serving.domain`).
+    Messages do not use shared memory, because two sandboxes have no memory in common. rmw_fastrtps creates shared
+    memory nevertheless if discovery is limited to this machine (:mod:`autograder.judge.serving.domain`).
     """
     return {
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
@@ -40,17 +40,17 @@ def ros_environment() -> dict[str, str]:
 
 
 def boxed_ros_environment() -> dict[str, str]:
-    """Return the variables for judge and subject in sandboxes that share only a network.
+    """Return the environment variables for judge and subject in two sandboxes that have only a network in common.
 
-    The discovery range must not be limited in that case. Otherwise rmw_fastrtps itself chooses the transports,
-    including shared memory, whatever ``FASTDDS_BUILTIN_TRANSPORTS`` says (participant.cpp): judge and subject would
-    discover each other and exchange no message. No other program is on such a network anyway.
+    The discovery range is not limited to this machine here. If it were, rmw_fastrtps would ignore
+    ``FASTDDS_BUILTIN_TRANSPORTS`` and use shared memory (participant.cpp): judge and subject would discover each other,
+    but no message would arrive. No other program is on such a network anyway.
     """
     return {**ros_environment(), "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
 
 
 def prepare_judge(*, boxed: bool = False) -> None:
-    """Set up this process as a judge. Call this before rclpy is imported.
+    """Set the environment variables of this process for a judge. Call this before rclpy is imported.
 
     Args:
         boxed: True if only the judge and its subject are on this network.
@@ -62,7 +62,7 @@ def prepare_judge(*, boxed: bool = False) -> None:
 
 
 def subject_environment(domain_id: int, *, boxed: bool = False) -> dict[str, str]:
-    """Return the environment for a command that is a subject: the user's own, with the domain of the check."""
+    """Return the environment variables for a command as the subject: the user's own, with the domain of the check."""
     environment = {name: value for name, value in os.environ.items() if name not in OF_THE_JUDGE}
     if typed := environment.pop(TYPED_PYTHONPATH, ""):
         environment["PYTHONPATH"] = os.pathsep.join(filter(None, (typed, environment.get("PYTHONPATH"))))
@@ -75,7 +75,7 @@ def subject_environment(domain_id: int, *, boxed: bool = False) -> dict[str, str
 
 
 def provide_log_folder() -> None:
-    """Create a folder for ROS logs unless ``ROS_LOG_DIR`` names one. It is removed when this process ends.
+    """Create a folder for ROS logs unless ``ROS_LOG_DIR`` names one. The new folder is removed when this process ends.
 
     Without a folder rclpy fails to start, with "Failed opening file" from rcl_logging_spdlog.
     """

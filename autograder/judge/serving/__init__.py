@@ -1,1 +1,1 @@
-"""A judge as a process: it listens, forks a child for each check, and exchanges that check's messages."""
+"""The judge's process: it listens, forks a child for each check, and the child exchanges messages with the notebook."""

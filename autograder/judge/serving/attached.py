@@ -1,4 +1,4 @@
-"""Run a judge on inherited file descriptors. A fork server in the judge's sandbox starts it here."""
+"""Run a judge on inherited file descriptors. The fork server in the judge's sandbox calls this module."""
 
 from __future__ import annotations
 
@@ -44,9 +44,9 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
 def environment(*, boxed: bool) -> dict[str, str]:
     """Return the environment variables of a new judge: ROS settings and the folder of the course.
 
-    :func:`autograder.judge.settings.prepare_judge` sets the same ones in a process that already runs.
+    :func:`autograder.judge.settings.prepare_judge` sets the same ROS variables in a process that already runs.
 
-    The folder for logs is not included, because it is inside the sandbox.
+    ``ROS_LOG_DIR`` is not included, because the folder for logs is inside the sandbox.
     """
     return {
         **course.variables(),
@@ -77,12 +77,12 @@ _INTERFACES = (
 def imports() -> None:
     """Import the judge, every exercise, the course's interfaces and their compiled type supports.
 
-    Forked checks then start without importing. This creates no node and no thread.
+    Then a forked check starts without importing. No node and no thread is created here, so forking stays safe.
     """
     for name in ("subjects.command_subject", "subjects.remote_subject", "verdicts.trial"):
         importlib.import_module(f"autograder.judge.{name}")
 
-    # An exercise that its author is still writing may be broken. The other exercises must work nevertheless.
+    # Skip broken exercises: one that its author is still writing must not stop the others.
     exercises.unbroken()
     for name in (*_INTERFACES, *course.interface_modules()):
         with contextlib.suppress(ImportError):

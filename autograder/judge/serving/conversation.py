@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from autograder.messages.lines import Message
 
 FIRST_WORD = 5.0
-"""Time limit in seconds for a notebook's first message."""
+"""Time limit in seconds for a notebook's first message, which requests a check."""
 MAX_NAME = 100
-"""The maximum number of characters that are read of an exercise's name."""
+"""The maximum number of characters of an exercise's name; the rest is ignored."""
 
 
 def converse(connection: socket.socket, order: Open | None) -> Report:
@@ -39,7 +39,7 @@ def converse(connection: socket.socket, order: Open | None) -> Report:
 
     Args:
         connection: The socket to the notebook.
-        order: The only check that is allowed; None if the notebook may request any check.
+        order: The grader's order for the only allowed check; None if the notebook may request any check.
 
     Returns:
         The report with the verdict; an empty report if no allowed check was requested.
@@ -50,7 +50,7 @@ def converse(connection: socket.socket, order: Open | None) -> Report:
     try:
         first = lines.hear(Check)
     except Hangup:
-        return Report()  # the other side connected and sent nothing
+        return Report()  # the notebook connected and sent nothing
     except NotUnderstood:
         _tell(lines, Refused("the first message must request a check"))
         return Report()
@@ -69,28 +69,28 @@ def converse(connection: socket.socket, order: Open | None) -> Report:
         return Report()
     subject: RemoteSubject | PathSubject
     if wanted.workspaces and exercise.runner:
-        # The notebook's own description of its subject is ignored, because the grader judges the sources.
+        # Ignore how the notebook describes its subject, because the grader builds and runs the sources.
         subject = PathSubject(lines, exercise.id, wanted.workspaces)
     elif exercise.runner and first.kind == "path":
         subject = RemotePath(lines)
     else:
         subject = RemoteSubject(lines, is_class=first.kind == "class")
-    # A grader repeats a check, with nothing else running, if an overloaded machine may have spoiled it. So the report
-    # to a grader says whether that is possible.
+    # If the load of the machine may have spoiled the check, a student's check ends without a verdict. A grader gets a
+    # verdict that is marked as crowded, and repeats the check while nothing else runs.
     seed = own_seed(wanted.seed, exercise.id)
     report, checked = _report(exercise, subject, seed, wanted, marks_crowded=order is not None)
     _tell(lines, Judged(None if wanted.boxed else _shown(exercise, report)))
-    # The notebook already continues, so packing the evidence makes no student wait.
+    # The notebook has its verdict and continues while the evidence is packed here.
     return replace(report, evidence=keeping.packed(checked)) if wanted.evidence and checked else report
 
 
 def own_seed(seed: str, exercise_id: str) -> str:
-    """Derive the seed of one check. Students see it on the card, but cannot compute another check's seed from it."""
+    """Derive the seed of one check. A student sees this seed on the card, but cannot compute other seeds from it."""
     return hashlib.sha256(f"{len(seed)}:{seed}{exercise_id}".encode()).hexdigest()[:16]
 
 
 def _tell(lines: Lines, message: Message) -> None:
-    # The verdict is valid even if the notebook has disconnected.
+    # If the notebook has disconnected, the verdict is valid nevertheless.
     with contextlib.suppress(Hangup):
         lines.say(message)
 

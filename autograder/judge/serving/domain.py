@@ -1,9 +1,9 @@
 """Lease a separate ROS domain for each check, so that other programs on this machine do not disturb it.
 
-First, remove the shared memory that killed programs of earlier checks have left behind. If discovery is limited to
-this machine, rmw_fastrtps creates half a megabyte of shared memory for each participant, whichever transports are
-configured (participant.cpp). A program that is killed does not remove it, and the memory stays in use until ``fastdds
-shm clean`` runs. One day of killed programs left 12 GB.
+Also remove the shared memory that killed programs of earlier checks have left behind. If discovery is limited to this
+machine, rmw_fastrtps creates half a megabyte of shared memory for each participant, even if no transport uses it
+(participant.cpp). A program that is killed does not remove its memory, which stays in use until ``fastdds shm clean``
+runs. In one day, killed programs left 12 GB.
 """
 
 from __future__ import annotations
@@ -26,22 +26,25 @@ __all__ = ["NoFreeDomainError", "lease", "remove_abandoned", "remove_if_abandone
 FOLDER = Path("/dev/shm")
 _SUFFIX = "_el"
 _LOCKS = f"fastrtps_{'[0-9a-f]' * 16}{_SUFFIX}"
-"""The names of lock files that Fast DDS locks for as long as the owner of a segment lives (RobustExclusiveLock.hpp).
-The files of ports have other names; several programs share them, so they stay.
+"""A pattern for the lock files of shared memory segments. The program that owns a segment holds its lock as long as the
+program runs (RobustExclusiveLock.hpp). Segments for ports have other names. They stay, because several programs share
+them.
 """
 AGE = 60.0
-"""Age in seconds from which an unlocked lock file counts as abandoned. A younger one may just be being created."""
+"""The age in seconds from which an unlocked lock file counts as abandoned. The owner of a younger one may still be
+about to lock it.
+"""
 
 
 @contextlib.contextmanager
 def lease(*, alone: bool = False) -> Iterator[int]:
-    """Reserve a free domain id while the block runs. The reservation ends with the process, however it ends.
+    """Reserve a free domain id while the block runs. It becomes free when the process ends, even by a crash.
 
     Shared memory that killed programs of earlier checks left behind is removed first.
 
     Args:
-        alone: True if only the judge and its subject are on this network. The check then works even if the
-            subject has taken the ports of all domains.
+        alone: True if only the judge and its subject are on this network. Then a random domain id is used if none is
+            free, so a subject that has taken the ports of all domains does not stop its check.
 
     Raises:
         NoFreeDomainError: All domains are in use.
@@ -64,8 +67,8 @@ def remove_abandoned(folder: Path = FOLDER, age: float = AGE) -> None:
     """Remove the shared memory of this user's programs that have ended.
 
     Args:
-        folder: The folder of the segments.
-        age: Age in seconds. Younger segments stay.
+        folder: The folder with the segments and their lock files.
+        age: Younger segments stay; in seconds.
     """
     with contextlib.suppress(OSError):
         for lock in folder.glob(_LOCKS):
@@ -74,14 +77,14 @@ def remove_abandoned(folder: Path = FOLDER, age: float = AGE) -> None:
 
 
 def remove_if_abandoned(lock: Path, made_before: float) -> None:
-    """Remove a segment and its lock file if its owner has ended.
+    """Remove a shared memory segment and its lock file if the program that owns them has ended.
 
     Args:
-        lock: The lock file of the segment.
-        made_before: Unix time in seconds. Younger segments stay.
+        lock: The path of the lock file.
+        made_before: Unix time in seconds. Segments that were made later stay.
 
     Raises:
-        OSError: The owner still runs (BlockingIOError), or the segment no longer exists.
+        OSError: The owner still runs (BlockingIOError), or the lock file no longer exists.
     """
     found = lock.lstat()
     if found.st_uid != os.getuid() or found.st_mtime > made_before:

@@ -1,4 +1,4 @@
-"""Run part of the judge in a child process, so that the parent can report whatever happens to it."""
+"""Run a check in a child process, so that the parent can report it if the child crashes or hangs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _ENDINGS = (signal.SIGINT, signal.SIGTERM)
 LAST_WORDS = 2.0
-"""Seconds of wall time in which a judge must decide once the time limit of its check is reached."""
+"""After the time limit of a check, the seconds of wall time that the judge has for its verdict before it is killed."""
 
 
 @dataclass(frozen=True)
@@ -29,10 +29,10 @@ class ChildResult:
     """The result of a child process, or the reason why there is none.
 
     Attributes:
-        data: The bytes that the child returned; None if it returned nothing.
+        data: The bytes that the child sent to its parent; None if it sent nothing.
         trouble: Why there is no data, as a text for people; empty if there is data.
-        hurried: True if the child was killed before its own time limit.
-        unfinished: True if the child was killed at a time limit, its own or a shorter one.
+        hurried: True if the child was killed at a shorter limit than its own (``within`` of :meth:`Child.result`).
+        unfinished: True if the child was killed at any time limit.
     """
 
     data: bytes | None
@@ -42,13 +42,13 @@ class ChildResult:
 
 
 class Child:
-    """A forked child process that computes some bytes. Fork it only while the parent has no other threads."""
+    """A forked child process that computes some bytes. Create it only while this process has no other threads."""
 
     def __init__(self, work: Callable[[], bytes], limit: float, *, close: Sequence[int] = ()) -> None:
         """Fork and start the child.
 
         Args:
-            work: Runs in the child.
+            work: Computes the bytes, in the child.
             limit: Seconds of wall time after which the child is killed.
             close: File descriptors that the child must not keep.
         """
@@ -58,8 +58,9 @@ class Child:
         self._received = bytearray()
         self.reading, writing = os.pipe()
         parent = os.getpid()
-        # Python loses an exception, and with it a Ctrl-C, that a signal handler raises inside a fork hook. And a
-        # signal that arrives before the child has set its handlers would end the child.
+        # Block signals while forking, for two reasons. Python drops an exception, and so a Ctrl-C, that a signal
+        # handler raises inside a fork hook. And a signal that arrives before the child has set its handlers would kill
+        # the child.
         mask = signal.pthread_sigmask(signal.SIG_BLOCK, {*_ENDINGS, SIGNAL})
         self.pid = os.fork()
         if self.pid == 0:
@@ -77,8 +78,8 @@ class Child:
     def result(self, *, within: float | None = None) -> ChildResult:
         """Wait for the child's result, at most until the child's time limit.
 
-        At the limit, a judge that is deciding is told to stop; it then reports that the subject's output keeps it
-        from deciding. A judge that is still watching the subject is killed.
+        At the limit, a child that is computing the verdict is told to stop. It then returns a verdict which says that
+        the subject's output is too long to judge. A child that is still observing the subject is killed.
 
         Args:
             within: A shorter limit, in seconds from now.
@@ -111,7 +112,7 @@ class Child:
         return ChildResult(None, f"the judge's process ended with {how} before it had a verdict")
 
     def done(self) -> bool:
-        """Return True once the child has ended or had to be killed, because its time limit was over."""
+        """Return True if the child has ended. A child whose time limit is over is killed first."""
         ready, _, _ = select.select([self.reading], [], [], 0.0)
         if ready:
             self.result(within=1.0)
@@ -122,7 +123,7 @@ class Child:
         return False
 
     def kill(self) -> None:
-        """Kill the child at once; its subject ends with it."""
+        """Kill the child at once. The subject's processes end together with the child."""
         try:
             os.kill(self.pid, signal.SIGKILL)
             os.waitpid(self.pid, 0)
@@ -132,13 +133,13 @@ class Child:
 
 
 def _leave(*_: object) -> NoReturn:
-    """Exit at once and end everything that the subject has started, because the verdict is no longer needed."""
+    """Exit without a verdict, because nobody waits for it. First end everything that the subject has started."""
     end_descendants(LEFTOVERS)
     os._exit(1)
 
 
 def _run(work: Callable[[], bytes], writing: int) -> None:
-    """Do the child's work, then call os._exit: with ROS threads, a normal exit of the interpreter is unsafe."""
+    """Send the result of ``work`` to the parent, then call os._exit: with ROS threads, a normal exit is unsafe."""
     code = 1
     try:
         data = work()

@@ -1,4 +1,4 @@
-"""Control a judge process from the grader: start it, open and close checks, read its verdicts."""
+"""Control a judge process from the grader: start the judge, open and close checks, and read the verdicts."""
 
 from __future__ import annotations
 
@@ -26,11 +26,12 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 START_LIMIT = 60.0
-"""Time limit in seconds of wall time for starting a judge; on an idle machine it takes well under one second."""
+"""Time limit in seconds of wall time for starting a judge, which takes well under one second on an idle machine."""
 ANSWER_LIMIT = 30.0
 """Time limit in seconds of wall time for a judge's answer to an order."""
 _REPORT_BYTES = 64_000_000
-"""The maximum size of a report in bytes; larger than any reference output and any verdict with its evidence."""
+"""The maximum size of a judge's report in bytes. Every reference output and every verdict with its evidence is smaller.
+"""
 
 
 class JudgeDied(RuntimeError):
@@ -38,26 +39,28 @@ class JudgeDied(RuntimeError):
 
 
 class StartedJudge(Protocol):
-    """A judge process, inside or outside a sandbox."""
+    """A running judge process, inside or outside a sandbox."""
 
     def end(self) -> None:
-        """End the process and everything that it has forked. This may be called twice."""
+        """End the process and everything that it has forked. A second call does nothing."""
         ...
 
 
 Start = Callable[[int, int], StartedJudge]
-"""A function that starts a judge with a listening socket and a connected socket for orders. The caller still owns both.
+"""A function that starts a judge. Its arguments are the descriptors of a listening socket for notebooks and of a
+connected socket for the grader's orders; the caller closes both.
 """
 
 
 class JudgeProcess:
-    """A judge that the grader controls. Only a verdict returned by :meth:`close` is a grade."""
+    """A judge that the grader controls. Grades come only from :meth:`close`, never from what the notebook received."""
 
     def __init__(self, socket_path: Path, *, seed: str, start: Start | None = None) -> None:
-        """Set the path of the socket at which the student's kernel reaches the judge.
+        """Prepare a judge. Entering the context starts it.
 
         Args:
-            socket_path: The path of a Unix socket, at most 107 bytes long (unix(7)).
+            socket_path: The path of the Unix socket at which the student's kernel reaches the judge, at most 107 bytes
+                (unix(7)).
             seed: The seed of all random inputs. Each exercise derives its own seed from it.
             start: Starts the judge; by default as a plain child process.
         """
@@ -66,7 +69,7 @@ class JudgeProcess:
         self.workspaces = ""
         """Path at which the judge reaches the grader's workspace service; empty if there is none."""
         self.keeps_evidence = False
-        """True if reports carry the evidence of their verdicts."""
+        """True if reports contain the evidence of their verdicts."""
         self.is_boxed = False
         """True if the judge runs in a sandbox next to the sandbox of the submission."""
         self._start = start or _Child
@@ -74,10 +77,10 @@ class JudgeProcess:
         self._orders: Lines | None = None
 
     def __enter__(self) -> Self:
-        """Start the process and wait until it listens.
+        """Start the judge's process and wait until it listens.
 
         Raises:
-            JudgeDied: The process did not start.
+            JudgeDied: The judge did not start, or not in time.
         """
         own, its_own = socket.socketpair()
         self._orders = Lines(own, _REPORT_BYTES)
@@ -97,7 +100,7 @@ class JudgeProcess:
         self.stop()
 
     def open(self, exercise_id: str, *, record: bool = False) -> None:
-        """Allow one check of this exercise.
+        """Allow the notebook to request one check of this exercise.
 
         Raises:
             JudgeDied: The judge does not run any more.
@@ -106,7 +109,7 @@ class JudgeProcess:
         self._order(Open(exercise_id, seed, record, self.workspaces, self.keeps_evidence, self.is_boxed))
 
     def close(self) -> Verdict | None:
-        """Close the opened check and return its verdict; None if the notebook did not request it or got no verdict.
+        """End the opened check. Return its verdict; None if the notebook did not request the check or got no verdict.
 
         Raises:
             JudgeDied: The judge does not run any more.
@@ -114,7 +117,7 @@ class JudgeProcess:
         return self.close_report().verdict
 
     def close_report(self) -> Report:
-        """Close the opened check and return the whole report, including a recording and a reason for a missing verdict.
+        """End the opened check. Return the whole report, which says why if there is no verdict.
 
         Raises:
             JudgeDied: The judge does not run any more, or its answer is not a report.
@@ -136,7 +139,7 @@ class JudgeProcess:
 
     def _order(self, order: Open | Close) -> bytes:
         if self._orders is None:
-            raise JudgeDied("the judge was never started or is stopped")
+            raise JudgeDied("the judge was never started, or was stopped")
         try:
             self._orders.say_json(msgspec.json.encode(order))
         except Hangup as error:
@@ -154,7 +157,7 @@ class JudgeProcess:
 
 
 class _Child:
-    """A judge that runs as a child of this process."""
+    """A judge that runs as a child of this process, without a sandbox."""
 
     def __init__(self, listener: int, orders: int) -> None:
         words = ("-m", "autograder.judge", "--attached", str(listener), str(orders))
@@ -171,7 +174,7 @@ class _Child:
         return self._process.pid
 
     def end(self) -> None:
-        """Wait a moment for the judge to exit, then kill it. The judge exits when its socket for orders is closed."""
+        """Wait two seconds for the judge to exit, which it does when its socket for orders is closed; then kill it."""
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(timeout=2.0)
         signal_group(self._process.pid, signal.SIGKILL)

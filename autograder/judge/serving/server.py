@@ -1,7 +1,7 @@
-"""Serve checks: a judge process, ready with all imports, forks a child for each requested check.
+"""Serve checks: a judge process that has imported everything forks a child for each requested check.
 
-The parent has imported ROS but created no node and no thread. So forking is safe, and each check begins with a new
-participant, which discovers its subject at once.
+The judge process has imported ROS but created no node and no thread. So forking is safe, and each check begins with a
+new DDS participant, which discovers the subject at once.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 REFUSE_LIMIT = 0.5
-"""Seconds to wait for the request of a notebook that will be refused."""
+"""Seconds to wait for the request of a notebook before it is refused."""
 CLOSE_LIMIT = 10.0
-"""Seconds that a check may still take after its cell has ended. By then the kernel has usually ended, or soon will."""
+"""Seconds that a check may still take after its cell has ended. Usually the kernel has ended, too, or ends soon."""
 
 
 class JudgeServer:
-    """A judge on a Unix socket. If a grader controls it, it answers only the check that was opened, and only once."""
+    """A judge that listens on a Unix socket. If a grader controls it, it runs each opened check only once."""
 
     def __init__(self, listener: socket.socket, *, controlled: bool) -> None:
-        """Take over a listening Unix socket."""
+        """Prepare to serve on a listening Unix socket; ``controlled`` says whether a grader sends orders."""
         self._controlled = controlled
         self._order: Open | None = None
         self._child: Child | None = None
@@ -44,7 +44,7 @@ class JudgeServer:
         self._listener = listener
 
     def serve(self, control: BinaryIO, answers: BinaryIO) -> None:
-        """Serve until ``control`` ends, so that a judge does not outlive the process that started it."""
+        """Serve until ``control`` is closed, that is, at most until the process that started the judge ends."""
         with selectors.DefaultSelector() as selector:
             selector.register(self._listener, selectors.EVENT_READ, self._listener)
             selector.register(control, selectors.EVENT_READ, control)
@@ -83,7 +83,7 @@ class JudgeServer:
                 self._children[child.pid] = child
 
     def _obey(self, control: BinaryIO, answers: BinaryIO) -> bool:
-        """Read and carry out one order. Return False if there are no more orders."""
+        """Read and carry out one order of the grader. Return False if the grader has disconnected."""
         line = control.readline()
         if not line:
             return False
@@ -104,7 +104,8 @@ class JudgeServer:
             return msgspec.json.encode(Report())
         outcome = child.result(within=CLOSE_LIMIT)
         if outcome.hurried:
-            # The cell ended before its check did. So the notebook gave up; the judge did not fail.
+            # The cell ended before its check did: the notebook gave up, and the judge did not fail. So report no
+            # trouble.
             return msgspec.json.encode(Report())
         if outcome.data is None or b"\n" in outcome.data:
             trouble = outcome.trouble or "the judge sent more than one report"
@@ -112,14 +113,14 @@ class JudgeServer:
         return outcome.data
 
     def _reap(self) -> None:
-        """Wait for children whose notebooks already have their verdicts (if no grader controls this judge)."""
+        """Remove the children that have ended, so that no zombie is left (if no grader controls this judge)."""
         for pid, child in list(self._children.items()):
             if child.done():
                 del self._children[pid]
 
 
 def _refuse(connection: socket.socket, why: str) -> None:
-    """Read a request, then refuse it: closing a socket with unread data would lose the answer (unix(7), ECONNRESET)."""
+    """Read a request, then refuse it. Closing with unread data would lose the answer (unix(7), ECONNRESET)."""
     with contextlib.suppress(OSError):
         connection.settimeout(REFUSE_LIMIT)
         connection.recv(65536)
@@ -127,7 +128,7 @@ def _refuse(connection: socket.socket, why: str) -> None:
 
 
 def run(path: Path) -> None:
-    """Serve every notebook that connects, until stdin ends. Everything printed goes to stderr."""
+    """Serve every notebook that connects, until stdin is closed. Everything that is printed goes to stderr."""
     answers = private_stdout()
     sys.stdout = sys.stderr
     try:

@@ -50,11 +50,11 @@ def check_and_keep(
     cwd: Path | None = None,
     box: Box | None = None,
 ) -> tuple[Verdict, bytes]:
-    """Run a command as the subject of an exercise.
+    """Judge a command as the subject of an exercise.
 
     Args:
-        exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
-        command: The program and its arguments. An exercise with inputs appends them.
+        exercise_id: The id of the exercise, such as ``"lab_1_2.talker"``.
+        command: The program and its arguments. If the exercise has inputs, they are appended as further arguments.
         seed: The seed of the random inputs; the default is a new one.
         cwd: The folder in which to run the command.
         box: The sandbox to run it in; None to run it with all rights of the user.
@@ -78,7 +78,7 @@ def check_and_keep(
         verdict, checked = checked_here(exercise, command, chosen, cwd, box)
         return msgspec.json.encode(Report(verdict, evidence=_packed(checked)))
 
-    settings.provide_log_folder()  # created here and not in the child, which exits without cleaning up
+    settings.provide_log_folder()  # created in the parent, because the child exits without removing it
     outcome = Child(report, exercise.limit + FOR_BUILDS + SPARE).result()
     if outcome.data is None:
         advice = f"Run `{COMMAND} doctor`."
@@ -89,7 +89,7 @@ def check_and_keep(
 
 
 def as_run(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> Sequence[str]:
-    """Return the command to run. For a path that is given instead of a command, this is a runner with that path."""
+    """Return the command to run. If a path is given instead of a command, this is a runner followed by the path."""
     runner = python_child("-m", "autograder.workspaces", exercise.id).command
     if is_path(exercise, command, cwd):
         return [*runner, command[0]]
@@ -105,8 +105,7 @@ def is_path(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> boo
 
 
 def _search_path(cwd: Path | None) -> str | None:
-    # A name without a slash may also be in the folder in which the command will run; a name with a slash is relative
-    # to it.
+    # shutil.which looks up names without a slash in these folders. The command's working folder is one of them.
     return os.environ.get("PATH") if cwd is None else f"{os.environ.get('PATH', '')}:{cwd}"
 
 
@@ -119,7 +118,7 @@ def _packed(checked: Checked | None) -> bytes:
 def checked_here(
     exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None, box: Box | None = None
 ) -> tuple[Verdict, Checked | None]:
-    """Judge a command in this process, which was forked for that. The evidence is None if the judge itself failed."""
+    """Judge a command in this process, a child forked for that. Instead of evidence, return None if the judge failed."""
     settings.prepare_judge(boxed=box is not None)
     if box is not None:
         box.enter()

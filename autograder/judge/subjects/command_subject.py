@@ -1,4 +1,4 @@
-"""Run any command as a subject: a script, a colcon executable, a C++ node, a launch file."""
+"""Run any command as a subject, such as a script, ``ros2 run`` or ``ros2 launch``."""
 
 from __future__ import annotations
 
@@ -44,24 +44,24 @@ LEFTOVERS = 1.0
 
 
 class Box(Protocol):
-    """A sandbox that keeps commands from the user's files and network. The judge's process joins its network."""
+    """A sandbox that keeps commands from the user's files and network. The judge's process joins this network."""
 
     def enter(self) -> None:
-        """Join the sandbox's network. Called once, before ROS is imported.
+        """Move this process into the sandbox's network. Call this once, before ROS is imported.
 
         Raises:
             OSError: This machine does not allow it.
         """
 
     def start_of(self, command: Sequence[str], environment: Mapping[str, str]) -> tuple[list[str], list[int]]:
-        """Return the command line that runs a command in the sandbox, and descriptors to pass on and then close."""
+        """Return the command line that runs a command in the sandbox, and descriptors to pass to it and then close."""
 
     def limit(self) -> None:
-        """Apply the limits of the sandbox; called in the child process."""
+        """Apply the limits of the sandbox to this process, a child that is about to run the command."""
 
 
 class CommandSubject(InOwnProcesses):
-    """A command in a session of its own. All its output is read; at the end, everything that it started is ended."""
+    """A command that runs in a new session. Its output is recorded, and at the end all its processes are ended."""
 
     def __init__(self, command: Sequence[str], cwd: Path | None = None, box: Box | None = None) -> None:
         self._command = list(command)
@@ -72,11 +72,11 @@ class CommandSubject(InOwnProcesses):
         self._done = threading.Event()
         self._dying = threading.Event()
         self._last_words: list[str] = []
-        # Processes that a subject leaves behind become children of this process, so that it can find and kill them.
+        # Processes that a subject leaves behind become children of the judge, so that the judge can find and kill them.
         adopt_orphans()
 
     def begin(self, domain_id: int) -> None:
-        """Remember the ROS domain for the environment of the command."""
+        """Set the ROS domain for the command's environment variables."""
         self._domain_id = domain_id
 
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
@@ -120,15 +120,16 @@ class CommandSubject(InOwnProcesses):
     def _in_the_child(self) -> None:
         if self._box is not None:
             self._box.limit()
-        # A judge that was started in the background of a shell ignores Ctrl-C, but its subjects must not.
+        # If the judge was started in the background of a shell, it ignores SIGINT. Its subjects must not ignore SIGINT,
+        # too.
         signal.signal(signal.SIGINT, signal.SIG_DFL)
         die_with_parent()
 
     def release(self) -> None:
-        """Do nothing: a command runs from its start."""
+        """Do nothing, because a command is never held back."""
 
     def interrupt(self) -> None:
-        """Send SIGINT to the command's process group, as a terminal does."""
+        """Send SIGINT to the command's process group, as Ctrl-C in a terminal does."""
         if self._process is not None and self._process.poll() is None:
             signal_group(self._process.pid, signal.SIGINT)
 
@@ -145,7 +146,7 @@ class CommandSubject(InOwnProcesses):
         """Abort the command, and return the stacks that Python's faulthandler prints.
 
         The process that hangs may be a child of the command: ``ros2 run`` starts the student's program and waits for
-        it. So children are aborted first, one at a time, so that their lines do not mix.
+        it. So children are aborted first. They are aborted one at a time, so that their stacks do not mix.
         """
         process = self._process
         if process is None or self.ended:
@@ -180,11 +181,11 @@ class CommandSubject(InOwnProcesses):
             reader.start()
         code = process.wait()
         for reader in readers:
-            # All output must be read before the end is recorded. But a grandchild may hold the pipe open, so the wait
-            # has a limit.
+            # All output must be read before the end is recorded. The wait has a limit, because a grandchild may hold
+            # the pipe open.
             reader.join(timeout=READ_LIMIT)
         if self._dying.is_set():
-            record("subject", "aborted", code=code)  # not an end of its own: the judge aborted the command
+            record("subject", "aborted", code=code)  # the command did not end by itself: the judge aborted it
             done.set()
         else:
             end("exited", done.set, code=code)

@@ -1,7 +1,7 @@
-"""A subject in a notebook that is a workspace or launch file: the grader builds and runs it, and reports.
+"""A workspace or launch file as the subject of a notebook's check, built and run by the grader's workspace service.
 
-The notebook sends only the sources. The workspace service of the grader (:mod:`autograder.workspaces.service`) writes
-them to files, builds and runs them, and sends the reports and the output of the programs.
+The notebook sends only the sources. The workspace service (:mod:`autograder.workspaces.service`) writes them to files,
+builds and runs them, and sends the judge its reports and the programs' output.
 """
 
 from __future__ import annotations
@@ -35,17 +35,17 @@ MAX_TEXT = 4_000
 
 
 class PathSubject(InOwnProcesses):
-    """A :class:`autograder.judge.subjects.subject.Subject` that the workspace service builds and runs.
+    """A workspace or launch file that the grader's workspace service builds and runs.
 
     Attributes:
-        trouble: Why the submission cannot be judged, if the workspace service failed; otherwise empty.
+        trouble: Why the workspace service failed, as a text for people; empty if it did not fail.
     """
 
     def __init__(self, notebook: Lines, exercise: str, socket_path: str) -> None:
-        """Prepare to judge a path on a connection that is already open.
+        """Prepare to judge a workspace or launch file.
 
         Args:
-            notebook: The connection to the notebook.
+            notebook: The open connection to the notebook, which sends the sources.
             exercise: The exercise's id.
             socket_path: The socket of the workspace service.
         """
@@ -69,7 +69,7 @@ class PathSubject(InOwnProcesses):
 
         Raises:
             JudgeFailed: The workspace service does not answer.
-            Hangup: The notebook hung up before it had sent everything.
+            Hangup: The notebook disconnected before it had sent all sources.
         """
         sources, wrong = self._collected()
         try:
@@ -86,7 +86,7 @@ class PathSubject(InOwnProcesses):
         self._check()
 
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
-        """Have the workspace service build the workspace, unless it is built already, and run it.
+        """Have the workspace service run the subject, and build a workspace first unless it is built already.
 
         Raises:
             JudgeFailed: The workspace service has ended.
@@ -102,7 +102,7 @@ class PathSubject(InOwnProcesses):
         self._say(workspaces.Start(self._run, tuple(map(str, arguments))))
 
     def release(self) -> None:
-        """Do nothing: a program runs from its start."""
+        """Do nothing, because a program is never held back."""
 
     def interrupt(self) -> None:
         """Have the workspace service send Ctrl-C to the program."""
@@ -114,7 +114,7 @@ class PathSubject(InOwnProcesses):
         return self._ended.is_set()
 
     def stack(self) -> str:
-        """Return no stack: the program is not a child of this process."""
+        """Return an empty text: the program is not a child of this process, so its stacks are unknown."""
         return ""
 
     def stop(self) -> None:
@@ -147,7 +147,7 @@ class PathSubject(InOwnProcesses):
             raise JudgeFailed(self.trouble or f"the grader's workspace service is gone: {error}") from error
 
     def _collected(self) -> tuple[list[Source], str]:
-        """Return the sources that the notebook sends, or the reason why they cannot be used."""
+        """Return the sources that the notebook sends, and the reason if they cannot be used."""
         self._notebook.say(Collect())
         sources: list[Source] = []
         room = MAX_HELD
@@ -206,5 +206,5 @@ class PathSubject(InOwnProcesses):
 
 
 def as_words(text: str) -> str:
-    """Return a line of a program's output, changed if it could be taken for a report of the runner."""
+    """Return a line of a program's output, with a space before it if it looks like a report of the runner."""
     return f" {text[:MAX_TEXT]}" if text.startswith(REPORTS) else text[:MAX_TEXT]

@@ -1,7 +1,7 @@
-"""A subject in a notebook: the kernel runs it when the judge requests this.
+"""A subject that a notebook's kernel runs when the judge requests it.
 
-A Node class or a function runs inside the kernel, in one participant for all of its runs. For a workspace or a launch
-file, the kernel starts a new process for each run.
+A Node class or a function runs inside the kernel, with the same DDS participant in all runs. For a workspace or a
+launch file, the kernel starts a new process for each run.
 """
 
 from __future__ import annotations
@@ -42,20 +42,20 @@ STOP_LIMIT = 3.0
 
 
 class RemoteSubject:
-    """A :class:`autograder.judge.subjects.subject.Subject` that a notebook's kernel runs."""
+    """A Node class or a function that a notebook's kernel runs."""
 
     shares_participant = True
     in_a_notebook = True
     is_building = False
 
     def __init__(self, lines: Lines, *, is_class: bool = False) -> None:
-        """Prepare to judge a notebook's subject on a connection that is already open.
+        """Prepare to judge a class or function in a notebook.
 
         Args:
-            lines: The connection to the notebook.
-            is_class: True if the subject is a class. Its constructor must return before the run goes on.
+            lines: The open connection to the notebook.
+            is_class: True if the subject is a class. Then :meth:`start` waits until the constructor has returned.
         """
-        # The name is random in each check, so that no student's code can contain it.
+        # The keeper's name is random in each check, so that no student's code can contain it.
         self.keeper = f"_check_keeper_{secrets.token_hex(8)}"
         self._lines = lines
         self._is_class = is_class
@@ -83,15 +83,15 @@ class RemoteSubject:
         self._ready.wait(STOP_LIMIT)
 
     def tell_so_far(self, words: str) -> None:
-        """Have the notebook's card show these words while the check goes on."""
+        """Have the notebook show these words on the card while the check goes on."""
         self._tell(checks.SoFar(words))
 
     def renew(self) -> None:
-        """Have the notebook open a new context for the next run."""
+        """Have the notebook open a new ROS context for the next run."""
         self._fresh = True
 
     def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
-        """Ask the notebook whether its own participant has discovered these endpoints, and lost the others."""
+        """Have the notebook wait until its participant sees the endpoints in ``there`` and none in ``gone``."""
         self._answered.clear()
         self._seen_as_told = False
         fresh, self._fresh = self._fresh, False
@@ -99,7 +99,7 @@ class RemoteSubject:
         self._tell(checks.Meet(fresh, sorted(there), sorted(gone), max(0.0, self._news_left)))
         self._answered.wait(max(0.0, self._news_left) + STOP_LIMIT)
         self._news_left -= time.monotonic() - asked_at
-        # A notebook that has disconnected is not waited for. It gets no points.
+        # A notebook that has disconnected cannot answer. The run begins without an answer, and gets no points.
         return self._seen_as_told or self._gone.is_set()
 
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
@@ -114,7 +114,8 @@ class RemoteSubject:
         if self._is_class and not recorder.wait(
             lambda: self._marker is not None or self.ended, CONSTRUCT_LIMIT
         ):
-            # From here on the subject is judged like a program, because the constructor may do all of the work.
+            # The constructor itself may do all of the work, for example spin. So go on and judge the subject like a
+            # program.
             recorder.record("subject", "never_constructed")
 
     def interrupt(self) -> None:
@@ -124,7 +125,8 @@ class RemoteSubject:
     def release(self) -> None:
         """Have the notebook spin the node.
 
-        If the node may now make more endpoints, the marker no longer shows that it has made all of them.
+        A node with a timer or thread may now make more endpoints. So the marker is dropped, because it no longer shows
+        that all endpoints exist.
         """
         if self._may_make_more:
             self._marker, self._may_make_more = None, False
@@ -136,21 +138,21 @@ class RemoteSubject:
         return self._ended or self._gone.is_set()
 
     def processes(self) -> frozenset[int]:
-        """Return an empty set: the subject runs in the notebook's kernel, next to other processes of the kernel."""
+        """Return an empty set: which of the kernel's processes the subject has started is unknown."""
         return frozenset()
 
     @property
     def marker(self) -> str | None:
-        """The topic that the notebook makes once the subject's constructor has returned; None if unknown."""
+        """The topic that the notebook creates after the subject's constructor has returned; None before that."""
         return self._marker or None
 
     @property
     def may_make_more(self) -> bool:
-        """True for a node that has a timer or a thread of its own, until it is released."""
+        """True if the node is not spun yet and has a timer or thread, which may make more endpoints."""
         return self._may_make_more
 
     def stack(self) -> str:
-        """Ask the notebook for the stacks of the subject's threads."""
+        """Return the stacks of the subject's threads. The text is empty if the notebook does not answer in time."""
         self._told_stack.clear()
         self._stack = ""
         self._tell(checks.Stack(self._run))
@@ -189,7 +191,7 @@ class RemoteSubject:
                 self._seen_as_told = seen
                 self._answered.set()
             case checks.Check() | Source() | checks.Sources():
-                pass  # these messages are sent only at the beginning of a conversation
+                pass  # the notebook may send these messages only at the beginning, so ignore them now
             case _ if message.run == self._run and self._recorder is not None:
                 self._take_of_run(message, self._recorder)
 
@@ -227,13 +229,12 @@ class RemoteSubject:
 
 
 class RemotePath(InOwnProcesses, RemoteSubject):
-    """A workspace or a launch file whose programs the notebook's kernel starts."""
+    """A workspace or launch file whose programs the notebook's kernel starts."""
 
     in_a_notebook = True
     is_building = True
 
     def __init__(self, lines: Lines) -> None:
-        """Prepare to judge a path on a connection that is already open."""
         super().__init__(lines)
         self.keeper = InOwnProcesses.keeper
 

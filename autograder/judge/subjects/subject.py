@@ -1,4 +1,4 @@
-"""The interface of a subject for the judge: it starts, communicates over ROS, and may end."""
+"""The interface through which the judge starts, observes and ends a subject."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 class Subject(Protocol):
-    """A subject: a node class or a function in a notebook, or a command.
+    """A class or function in a notebook, a command, a workspace, or a launch file, which the judge observes.
 
     Implementations write into the recorder: an ``output`` event for each line of output, and ``subject`` events named
     ``constructed``, ``returned``, ``raised`` or ``exited``.
@@ -24,37 +24,39 @@ class Subject(Protocol):
     """The name of the node that keeps the participant alive and has no endpoints of its own; empty if there is none."""
 
     def begin(self, domain_id: int) -> None:
-        """Prepare for the first run, on the ROS domain of this check; called once."""
+        """Prepare for the first run, on the ROS domain of this check. The judge calls this once."""
 
     def tell_so_far(self, words: str) -> None:
-        """Tell the waiting student in one sentence what the judge knows so far. Only a notebook shows it."""
+        """Tell the waiting student in one sentence what the judge knows so far. Only a notebook shows this sentence."""
 
     @property
     def is_building(self) -> bool:
         """True until the packages of a workspace are built for the first time; False if nothing has to be built."""
 
     def renew(self) -> None:
-        """Use a new participant for the next run, because an old one would discover the judge's new one only slowly."""
+        """Use a new participant for the next run. An old one would discover the judge's new participant only slowly."""
 
     def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
-        """Wait until the participant of the next run sees the judge's new endpoints and no longer the removed ones.
+        """Wait until the participant of the next run sees the judge's new endpoints, and the removed ones no longer.
 
-        Each participant discovers endpoints by itself. Without this wait, a subject could still see a service of an
-        earlier run and call it.
+        Without this wait, a subject could still see a service of an earlier run and call it.
+
+        Args:
+            there: The new endpoints.
+            gone: The removed endpoints.
 
         Returns:
-            False if the participant did not see this within a generous time limit, or if the notebook does not
-            answer.
+            False if the participant did not get there within a generous time limit, or if the notebook does not answer.
         """
 
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
         """Start a run."""
 
     def release(self) -> None:
-        """Let a held run spin its node."""
+        """Spin the node of a run that was held back after the constructor."""
 
     def interrupt(self) -> None:
-        """Send Ctrl-C, as a terminal does. A run that ends after that counts as ended by itself."""
+        """Send Ctrl-C, as a terminal does. If the run then ends, it counts as ended by itself."""
 
     @property
     def ended(self) -> bool:
@@ -62,11 +64,11 @@ class Subject(Protocol):
 
     @property
     def marker(self) -> str | None:
-        """A topic that appears on the graph after everything that the subject creates, or None."""
+        """The name of a topic that is on the graph only after all of the subject's endpoints; None if there is none."""
 
     @property
     def may_make_more(self) -> bool:
-        """True if a run is held whose timer or thread may make more endpoints once it is released."""
+        """True if the run is held back, and the node's timer or thread may make more endpoints once it is released."""
 
     def processes(self) -> frozenset[int]:
         """Return the ids of the running processes that the subject has started; none if they are not known."""
@@ -78,11 +80,11 @@ class Subject(Protocol):
         """
 
     def stop(self) -> None:
-        """End the run by any means. Afterwards none of its processes, threads and nodes is left."""
+        """End the run by any means. Afterwards no process, thread or node of the run is left."""
 
 
 class InOwnProcesses:
-    """The common part of subjects whose runs are separate processes, each with its own ROS participant."""
+    """Base class of subjects whose runs are separate processes, each with its own DDS participant."""
 
     shares_participant = False
     in_a_notebook = False
@@ -92,14 +94,14 @@ class InOwnProcesses:
     may_make_more = False
 
     def processes(self) -> frozenset[int]:
-        """Return an empty set: the subject's processes are not children of this process."""
+        """Return an empty set: the subject's processes are not children of the judge, so their ids are unknown."""
         return frozenset()
 
     def tell_so_far(self, words: str) -> None:
-        """Do nothing: a command has no card."""
+        """Do nothing, because a command shows no card while it is checked."""
 
     def renew(self) -> None:
-        """Do nothing: each run is a new process, which has a new participant anyway."""
+        """Do nothing, because each run is a new process, which has a new participant anyway."""
 
     def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
         """Return True: a new participant has discovered nothing yet, so it cannot see removed endpoints."""
