@@ -118,7 +118,7 @@ def _packed(checked: Checked | None) -> bytes:
 def checked_here(
     exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None, box: Box | None = None
 ) -> tuple[Verdict, Checked | None]:
-    """Judge a command in this process, a child forked for that. Instead of evidence, return None if the judge failed."""
+    """Judge a command in this process, a child forked for that. The evidence is None if the judge failed."""
     settings.prepare_judge(boxed=box is not None)
     if box is not None:
         box.enter()

@@ -1,1 +1,1 @@
-"""Turn the evidence of a check into a verdict, and record the reference output to compare with."""
+"""Turn the evidence of a check into a verdict, and record the reference output with which evidence is compared."""

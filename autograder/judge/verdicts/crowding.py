@@ -1,7 +1,7 @@
-"""Measures how overloaded the machine was during a look in real time, so that the load fails no right answer.
+"""Measures how overloaded the machine was during a look in real time, so that no right answer fails because of it.
 
-The load average (getloadavg(3)) would be the wrong measure: it still counts programs that ended before the look, and
-hardly counts those that started with it.
+The load average (getloadavg(3)) would be the wrong measure. It is a mean over at least a minute, so it still counts
+programs that ended before the look, and hardly counts those that started with the look.
 """
 
 from __future__ import annotations
@@ -23,28 +23,31 @@ TOO_BUSY = (
     "or wrong. Close some, or wait a little, and check again."
 )
 SEEN_SO_FAR = "So far the judge saw this, and it may be due to the busy machine: “{}”"
-"""A sentence that quotes the diagnosis of a look that may be wrong."""
+"""A sentence for the student, which quotes the diagnosis of a look that may be wrong because of the load."""
 ANSWER_WITHIN = 30.0
-"""Time limit in seconds of wall time for a check in a notebook on a crowded machine. The check then ends without a
-verdict.
+"""Time limit in seconds of wall time for a check in a notebook on a crowded machine. At the limit, the check ends
+without a verdict.
 """
 _EVERY = 0.1
 """Seconds between two counts of the threads."""
 
 
 class TooBusy(JudgeFailed):
-    """The subject did not pass, perhaps because the machine was crowded."""
+    """The subject did not pass, perhaps because the machine was overloaded. So there is no verdict."""
 
 
 class OutOfTime(BaseException):
-    """A check on an overloaded machine has used up its time. Must not be caught by ``except Exception``."""
+    """A check on an overloaded machine took too long.
+
+    This is a BaseException, so that ``except Exception`` does not catch it.
+    """
 
 
 class Crowding:
-    """Counts the threads that run or wait for a processor, from ``__enter__`` to ``__exit__``.
+    """A context that counts, again and again, how many threads run or wait for a processor.
 
     Args:
-        runnable: Returns the current number of such threads.
+        runnable: Returns the number of threads that run or wait for a processor now.
         processors: The number of processors that they share.
     """
 
@@ -78,9 +81,9 @@ class Crowding:
 
 
 class Hurry:
-    """Ends a check after :data:`ANSWER_WITHIN` seconds if the machine is so busy that the judge's limits get longer.
+    """Ends a check after :data:`ANSWER_WITHIN` seconds if the machine is so busy that time limits get longer.
 
-    On any other machine a check takes as long as its exercise needs.
+    If the machine is not busy, a check takes as long as its exercise needs.
 
     Args:
         runnable: Returns the number of threads that run or wait for a processor now.
@@ -103,10 +106,10 @@ class Hurry:
         self._sum = self._counts = 0
 
     def __call__(self) -> None:
-        """Count threads, and end the check if its time is over. Call this repeatedly while the judge waits.
+        """Count the threads, and end the check if its time is over. The judge calls this repeatedly while it waits.
 
         Raises:
-            OutOfTime: The time is over. Raised at most once, because cleaning up afterwards waits, too.
+            OutOfTime: The time is over. This is raised at most once, because the judge also waits while it cleans up.
         """
         now = self._now()
         if self._is_building():

@@ -1,7 +1,7 @@
-"""Limits the time that the judge takes to decide about a subject's output and messages.
+"""Limits the time in which the judge computes a verdict from a subject's output and messages.
 
-A student's program wrote that output, so it may keep a criterion busy forever. Deciding needs only a processor, so a
-limit on processor time has the same effect on a busy machine as on an idle one.
+A student's program wrote the output, and a criterion may need almost forever to read it. The limit is in processor
+time, so it has the same effect on a busy machine as on an idle one.
 """
 
 from __future__ import annotations
@@ -22,22 +22,24 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 LIMIT = 10.0
-"""The limit in seconds of processor time for one decision; it usually takes a hundredth of a second."""
+"""The limit in seconds of processor time for one verdict, which usually takes a hundredth of a second."""
 AGAIN = 0.05
-"""Seconds of processor time after which the signal is sent again if the decision has not ended.
+"""The seconds of processor time after which the signal is sent again if the verdict is still not ready.
 
-This is needed because Python prints and drops an exception that is raised in a destructor or in a callback of the
-garbage collector.
+The signal's exception may be lost, because Python prints and drops an exception that is raised in a destructor or in a
+callback of the garbage collector.
 """
 SURE = 1.0
-"""Seconds of processor time. A decision that has taken longer is delayed by the subject's output, not by the machine.
-"""
+"""Seconds of processor time. If a verdict has taken longer, the cause is the subject's output, not a busy machine."""
 SIGNAL = signal.SIGVTALRM
-"""The signal that ends a decision. A judge that is not deciding ignores it."""
+"""The signal that stops the computation of a verdict. At other times the judge ignores this signal."""
 
 
 class Undecided(BaseException):
-    """The judge did not reach a decision. Must not be caught by ``except Exception``."""
+    """The judge did not reach a verdict in time.
+
+    This is a BaseException, so that ``except Exception`` does not catch it.
+    """
 
 
 @contextlib.contextmanager
@@ -48,12 +50,12 @@ def limited(seconds: float = LIMIT) -> Iterator[None]:
         seconds: Limit in seconds of processor time.
 
     Raises:
-        Undecided: The time is over, or the parent process has sent ``SIGNAL``. A decision that has only just begun
-            ignores the signal, because then the check is late for another reason, and no verdict is better than a
+        Undecided: The time is over, or the parent process has sent ``SIGNAL``. In its first second of processor time
+            the block ignores the signal: then the check is late for another reason, and no verdict is better than a
             wrong one.
     """
     if threading.current_thread() is not threading.main_thread():
-        yield  # only the main thread receives signals, so judges decide in it
+        yield  # only the main thread can handle signals, so elsewhere there is no limit
         return
 
     began = time.process_time()
@@ -71,7 +73,7 @@ def limited(seconds: float = LIMIT) -> Iterator[None]:
 
 
 def _no_longer(before: signal.Handlers | Callable[..., object] | int | None) -> None:
-    """Switch the limit off, even if the signal arrives again meanwhile."""
+    """Switch the limit off, also if the signal arrives again meanwhile."""
     while True:
         try:
             signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
@@ -82,7 +84,7 @@ def _no_longer(before: signal.Handlers | Callable[..., object] | int | None) -> 
 
 
 def undecidable(exercise: Exercise, seed: str) -> Verdict:
-    """Return a verdict of zero points: the subject's output is too long to decide about, now and in any later check."""
+    """Return a verdict of zero points, which says that the subject's output is too long to judge."""
     diagnosis = Diagnosis(
         "undecidable",
         "Your program said and sent far too much: the judge could not finish reading it.",

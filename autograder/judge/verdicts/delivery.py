@@ -1,4 +1,4 @@
-"""Tests whether this machine still delivers messages, so that a machine that loses messages fails no right answer.
+"""Tests whether this machine still delivers messages, so that no right answer fails because its messages are lost.
 
 The kernel limits the memory of all sockets of a machine, and the number of epoll watches of each user, sandboxes
 included. If either is used up, a node starts without an error and receives little or nothing (udp(7), epoll(7)).
@@ -16,15 +16,16 @@ NOT_DELIVERED = (
     "judge cannot tell whether your node sent any. Close some, or wait a little, and check again."
 )
 _DATAGRAMS, _BYTES = 16, 4096
-"""The number of datagrams to send, and the bytes in each. Their sum is less than half of what a socket normally holds,
-but more than it holds if other programs have used up the system's memory for sockets.
+"""The number of datagrams to send, and the bytes in each. Together they are less than half of what a socket normally
+holds, but more than a socket holds if other programs have used up the system's memory for sockets.
 """
 _ARRIVES_WITHIN = 10.0
-"""Time limit in seconds of wall time. Inside one machine, a datagram waits only for a processor."""
+"""Time limit in seconds of wall time for a datagram to arrive. It is generous: nothing but a busy processor delays it.
+"""
 
 
 class NotDelivered(JudgeFailed):
-    """The subject did not pass, perhaps because this machine lost its messages."""
+    """The subject did not pass, perhaps because this machine lost messages. So there is no verdict."""
 
 
 def delivers() -> bool:

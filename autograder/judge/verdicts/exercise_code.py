@@ -1,4 +1,4 @@
-"""Exceptions in an exercise's own code: its author has to correct them, and repeating the check does not help."""
+"""Reports exceptions in an exercise's own code, which the author of the exercise has to correct."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class ExerciseFailed(JudgeFailed):
 
 @contextlib.contextmanager
 def of_exercise(exercise: Exercise) -> Iterator[None]:
-    """Turn an exception in an exercise's scenario, criteria or mistakes into one that says what to do about it.
+    """Replace an exception from an exercise's scenario, criteria or mistakes by one that says what to do about it.
 
     Raises:
         ExerciseFailed: The code in the block raised an exception, and code of the exercise or of the kit called it.
@@ -45,7 +45,7 @@ def of_exercise(exercise: Exercise) -> Iterator[None]:
 
 
 def _where(error: Exception, exercise: Exercise) -> str:
-    """Return the file and line of the exercise (else of the kit) through which the exception came; empty if none."""
+    """Return the file and line in the exercise (else in the kit) at which the exception was raised; empty if none."""
     frames = traceback.extract_tb(error.__traceback__)
     for folder in (exercises.path(exercise.id).parent, KIT):
         for frame in reversed(frames):

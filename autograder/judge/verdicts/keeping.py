@@ -1,7 +1,7 @@
 """Pack the evidence of a check into bytes of limited size, and unpack it unchanged.
 
-The format is JSON under gzip, with one line for each event. Evidence that is too long is cut, and marked as cut,
-because no verdict may be drawn from part of the evidence.
+The format is JSON, compressed with gzip, with one line for each event. Evidence that is too long is cut and marked as
+cut, so that nobody derives a verdict from a part of it.
 """
 
 from __future__ import annotations
@@ -30,33 +30,36 @@ if TYPE_CHECKING:
 MAX_BYTES = 400_000
 """The maximum size of the evidence of one check, in compressed bytes."""
 MAX_RAW_BYTES = 8_000_000
-"""The maximum size in bytes before compression. It also cuts endless repetition, which compresses well."""
+"""The maximum size in bytes before compression. Without it, endless repetition would pass, because it compresses well.
+"""
 _GZIP = 31
 """The value of zlib's ``wbits`` for a gzip header with the largest window."""
 _FLOAT = "$float"
-"""The key that marks a number that JSON cannot express, such as infinity. No message field can have this name."""
+"""The key of a dictionary that stands for a number that JSON cannot express, such as infinity. No field of a ROS
+message can have this name.
+"""
 
 
 class NoEvidence(ValueError):
-    """The bytes are not evidence; the message says why."""
+    """The bytes are not evidence. The exception's text says why."""
 
 
 class KeptLook(msgspec.Struct, frozen=True):
-    """One run of the scenario."""
+    """The evidence of one look, that is, of one run of the scenario."""
 
     real_time: bool
     parts: list[Part]
 
 
 class Kept(msgspec.Struct, frozen=True):
-    """A verdict with everything that it is derived from.
+    """A verdict with the evidence from which it is derived.
 
     Attributes:
         at: Unix time of the verdict, in seconds.
         reference: The SHA-256 of the reference output's file.
         verdict: The verdict without its timeline, which is derived from the events.
         looks: The fast look, and the look in real time if there was one.
-        cut: What is missing, and why; empty if the evidence is whole.
+        cut: A text that says which lines are missing, and why; empty if the evidence is complete.
     """
 
     at: float
@@ -67,7 +70,7 @@ class Kept(msgspec.Struct, frozen=True):
 
 
 def packed(checked: Checked) -> bytes:
-    """Pack the evidence of a check. Return no bytes if that fails, because no student must lose a verdict by it."""
+    """Pack the evidence of a check. If packing fails, return no bytes, so that the student still gets the verdict."""
     try:
         digest = reference.digest(checked.verdict.exercise)
         return pack(checked.verdict, checked.evidence, digest, at=time.time())
@@ -77,7 +80,7 @@ def packed(checked: Checked) -> bytes:
 
 
 def pack(verdict: Verdict, evidence: Evidence, digest: str, *, at: float) -> bytes:
-    """Pack a check into bytes that :func:`unpack` can read.
+    """Pack a verdict and its evidence into bytes that :func:`unpack` can read.
 
     Args:
         verdict: The verdict.
@@ -120,11 +123,11 @@ class _Sheet:
             self.left_out += 1
 
     def end(self, row: Any) -> bytes:
-        """Add a last line, whatever the limits, and return all bytes."""
+        """Add a last line, even beyond the limits, and return all compressed bytes."""
         return bytes(self._written) + self._zip.compress(_line(row)) + self._zip.flush()
 
     def _add(self, line: bytes) -> bool:
-        # Lines that the compressor still holds count uncompressed until a flush shows their compressed size.
+        # Lines inside the compressor count with their uncompressed size until a flush shows the compressed size.
         if len(self._written) + self._pending + len(line) > MAX_BYTES:
             self._written += self._zip.flush(zlib.Z_SYNC_FLUSH)
             self._pending = 0
@@ -137,7 +140,7 @@ class _Sheet:
 
 
 def unpack(data: bytes) -> Kept:
-    """Read evidence back.
+    """Unpack what :func:`pack` has packed.
 
     Raises:
         NoEvidence: The bytes are not evidence, or are damaged.
@@ -146,7 +149,7 @@ def unpack(data: bytes) -> Kept:
         unzip = zlib.decompressobj(_GZIP)
         text = unzip.decompress(data, 2 * MAX_RAW_BYTES)
         if not unzip.eof:
-            raise NoEvidence("it is cut off, or longer than any evidence")
+            raise NoEvidence("the evidence is cut off, or longer than it may be")
         first, *rows, last = [restored(json.loads(line)) for line in text.splitlines()]
         return msgspec.convert({**first, **last, "looks": _looks(rows)}, type=Kept)
     except (zlib.error, ValueError, TypeError, LookupError, RecursionError) as error:
@@ -168,14 +171,14 @@ def _looks(rows: Sequence[Any]) -> list[dict[str, Any]]:
 
 
 def evidence_of(kept: Kept, expected: Reference) -> Evidence:
-    """Return the evidence in the form from which a judge decides.
+    """Return unpacked evidence in the form from which the judge derives verdicts.
 
     Args:
-        kept: The unpacked evidence.
+        kept: The unpacked verdict and evidence.
         expected: The reference output.
 
     Raises:
-        NoEvidence: The kept evidence contains no look.
+        NoEvidence: The evidence contains no look.
     """
     evidence: Evidence | None = None
     for look in kept.looks:
@@ -194,7 +197,7 @@ def _line(row: Any) -> bytes:
 
 
 def plain(value: Any) -> Any:
-    """Return a value as JSON can express it: infinity and the like become a dictionary with a word."""
+    """Return a value that JSON can express: infinity becomes ``{"$float": "inf"}``, and other objects become text."""
     if isinstance(value, float) and not math.isfinite(value):
         return {_FLOAT: str(value)}
     if isinstance(value, Mapping):
@@ -205,7 +208,7 @@ def plain(value: Any) -> Any:
 
 
 def restored(value: Any) -> Any:
-    """Return the original of a value that :func:`plain` has changed."""
+    """Undo :func:`plain` for numbers such as infinity."""
     if isinstance(value, dict):
         if value.keys() == {_FLOAT}:
             return float(value[_FLOAT])

@@ -1,4 +1,4 @@
-"""Finds the endpoints to which a subject gave a wrong name, so that a wrong name costs one criterion and no other."""
+"""Finds endpoints to which a subject gave a wrong name, so that the wrong name fails one criterion and not all."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ if TYPE_CHECKING:
 
 
 def misnamed(evidence: Evidence, verdict: Verdict) -> dict[str, dict[str, str]]:
-    """Return the endpoints to which the subject gives a wrong name, by their right names in the task.
+    """Return the endpoints to which the subject gives a wrong name; the keys are the right names, as in the task.
 
     A name counts as wrong if the subject has, in all runs, no endpoint of this name, role and type, but exactly one
-    other endpoint of this role and type. If there are two, neither is chosen, because it is unclear which one was
-    meant.
+    other endpoint of this role and type. If there are two other endpoints, neither is chosen, because it is unclear
+    which one was meant.
 
     Args:
-        evidence: What the judge recorded when it used the names in the task.
-        verdict: The verdict on that evidence, which is not a pass.
+        evidence: The evidence of a look in which the judge used the names in the task.
+        verdict: The verdict on this evidence, which is not a pass.
 
     Returns:
         For each name: ``real``, the name that the subject uses, and ``costs``, the name of the first criterion that

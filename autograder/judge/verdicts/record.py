@@ -1,4 +1,4 @@
-"""Records a reference output: runs the reference solution through the same look as a student's answer."""
+"""Records a reference output: runs the reference solution through the same scenario as a student's answer."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ if TYPE_CHECKING:
     from autograder.judge.subjects.subject import Subject
 
 SEED = "reference"
-"""The fixed seed of a recording, so that its inputs are the same each time."""
+"""The fixed seed of a recording, so that each recording has the same random inputs."""
 LOOKS = 10
-"""The maximum number of looks for recording a subject whose evidence is doubtful on a busy machine. With three looks, 1
-of 36 recordings failed when eighteen ran at once on two processors.
+"""The maximum number of looks for a recording. On a busy machine the evidence of a look may be doubtful, so another
+look is needed. With at most three looks, 1 of 36 recordings failed when eighteen ran at once on two processors.
 """
 
 
 class NotRecordable(RuntimeError):
-    """The reference solution did not show what the exercise is about."""
+    """The reference solution did not show the behavior that the exercise is about."""
 
 
 def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference:
     """Record the reference solution's endpoints, then run the scenario on it.
 
-    As with any subject, a fast look that fails proves nothing unless the mistake is certain: on a busy machine, a
-    goal may end before it is canceled, or the first message may be lost. So recording looks again, until the looks
-    together have taken as long as a check may take.
+    If the solution fails in a look, the machine may be the cause: on a busy machine, a goal may end before it is
+    canceled, or the first message may be lost. So the scenario is run again, unless the mistake is certain or the time
+    limit of a check is over.
 
     Returns:
         The recording of the first look in which the solution was right; if there is none, of the last look.
@@ -71,7 +71,7 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
 
 
 def as_evidence(recorded: Reference) -> Evidence:
-    """Return the recording as evidence: the subject and the reference are the same."""
+    """Return a recording as evidence, in which the solution is both the subject and the reference."""
     return Evidence(recorded.parts, recorded)
 
 
@@ -83,23 +83,23 @@ def _interface(exercise: Exercise, subject: Subject, domain_id: int) -> dict[str
             bench.part("interface")
             bench.start(*program, *exercise.sample_arguments)
             if exercise.runner:
-                # A workspace is built first, and its endpoints appear only after that.
+                # The endpoints of a workspace appear only after its build, so wait until the build has ended.
                 bench.wait_until(_is_at_work, exercise.limit)
             shown = bench.await_any_endpoint(exercise.roles)
             found |= {role: shown[role] for role in shown if shown[role] or role not in found}
             if not exercise.runner and bench.seen().ending is None:
-                # The solution may make more endpoints than the first one seen, so wait until it has made all.
+                # The solution may make more endpoints after the first one, so wait until it has made all.
                 shown = bench.await_any_endpoint(())
                 found |= {role: found.get(role, {}) | shown[role] for role in shown}
-        # If several programs run one after the other, only the endpoints of the exercise's roles are the same in each
-        # recording.
+        # The programs of a workspace or launch file may run one after the other. Then only the endpoints of the
+        # exercise's roles are the same in each recording.
         return {role: found[role] for role in exercise.roles} if exercise.runner else found
     finally:
         bench.close()
 
 
 def _programs(exercise: Exercise) -> list[tuple[str, ...]]:
-    """Return the arguments that choose each program of the exercise; one empty tuple if it has only one subject."""
+    """Return the arguments that select each of the exercise's programs; one empty tuple if it has only one subject."""
     runner = exercise.runner
     return [(name,) for name in runner.programs] if isinstance(runner, RunsPrograms) else [()]
 

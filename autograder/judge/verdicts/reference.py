@@ -1,7 +1,7 @@
 """Reads and writes reference outputs: what the reference solutions do on the wire, as JSON that people can review.
 
-A recording keeps what the task decides (messages, requests, answers) and drops what the machine decides (wall times,
-random node names, the order of log lines between two channels).
+The file contains only what the task determines, such as messages, requests and answers. It does not contain what
+differs from run to run, such as wall times, random node names and the order of log lines from two channels.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _KEPT = (
 
 _ON_THE_WAY = ("feedback_heard", "result_heard")
 _MACHINE = ("number", "sent", "arrived")
-"""Fields of an event that differ from run to run."""
+"""The fields of an event that differ from run to run, and so are not recorded."""
 
 
 class NoReference(LookupError):
@@ -37,7 +37,7 @@ def load(exercise_id: str) -> Reference:
     """Read a reference output.
 
     Raises:
-        NoReference: It does not exist or is not what :func:`dump` writes.
+        NoReference: The file does not exist, or is not a reference output.
     """
     file = reference_path(exercise_id)
     try:
@@ -51,10 +51,10 @@ def load(exercise_id: str) -> Reference:
 
 
 def digest(exercise_id: str) -> str:
-    """Return the SHA-256 of a reference output's file.
+    """Return the SHA-256 of a reference output's file, in hexadecimal.
 
     Raises:
-        NoReference: The file does not exist.
+        NoReference: The file cannot be read.
     """
     file = reference_path(exercise_id)
     try:
@@ -80,11 +80,11 @@ def parse(data: Mapping[str, Any]) -> Reference:
 
 
 def dump(reference: Reference, kinds: Sequence[str] | None = None) -> str:
-    """Return the JSON form with one line for each event. Recordings of the same behavior have the same form.
+    """Return a recording as JSON, with one line for each event. Recordings of the same behavior give the same text.
 
     Args:
         reference: The recording.
-        kinds: The kinds of events to keep; None for the usual ones.
+        kinds: The kinds of events to write; None for the usual kinds.
     """
     if kinds is not None:
         parts = [replace(p, events=[e for e in p.events if e.kind in kinds]) for p in reference.parts]
@@ -111,11 +111,11 @@ def _sorted(interface: Mapping[str, Mapping[str, str]]) -> dict[str, dict[str, s
 
 def _events(part: Part) -> list[dict[str, Any]]:
     kept = [event for event in part.events if event.kind in _KEPT]
-    # How far a goal gets before it is canceled depends on the machine, so that feedback is left out.
+    # Leave out the feedback and the result of a canceled goal: how far the goal gets depends on the machine.
     canceled = {event.data["goal"] for event in kept if event.kind == "cancel_sent"}
     kept = [e for e in kept if not (e.kind in _ON_THE_WAY and e.data["goal"] in canceled)]
-    # Goals that run at the same time share one part. Sort them, because it depends on the machine which goal is ahead
-    # and whether the first feedback arrives before the answer to its goal.
+    # Goals that run at the same time share one part. Sort the events by goal, with the answer before the feedback,
+    # because their order depends on the machine.
     kept.sort(key=lambda event: (event.data.get("goal", 0), event.kind not in ("goal_sent", "goal_answer")))
     start = next((event.sim for event in kept if event.sim is not None), None)
     return [_event(event, start) for event in kept]

@@ -21,9 +21,10 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part, Reference
 
 MAX_MOMENTS = 80
-"""The maximum number of moments in a verdict: all important ones, and the first of the others."""
+"""The maximum number of moments in a verdict: all important moments, and the first of the others."""
 MOST_MOMENTS = 120
-"""The maximum number of moments if more than that are important, as for a program that sends goals forever."""
+"""The maximum number of moments if more than :data:`MAX_MOMENTS` are important, as when a program sends goals forever.
+"""
 
 MAX_LABEL = 200
 """The maximum length of a moment's label, in characters."""
@@ -42,17 +43,18 @@ _ENDS = {
 
 
 _Said = tuple[float, str]
-"""Seconds, and the label of a message."""
+"""The time of a message in seconds, and the label of the message."""
 _QUOTED = re2.compile(r"“([^”…]*\w[^”…]*)")
 
 
 def moments(evidence: Evidence, words: str = "", *, missed: bool = False) -> tuple[Moment, ...]:
-    """Return the traffic on the wire, in order. If there are too many events, keep the first and all important ones.
+    """Return the moments of the timeline, in order. If there are too many, keep the important and the first ones.
 
     Args:
         evidence: The evidence of the check.
         words: The text of the card. The timeline contains each logged or printed line that this text quotes.
-        missed: True to add the reference solution's messages that the subject did not send, each at its time.
+        missed: True to add the reference solution's messages that the subject did not send, each at the time when it
+            was due.
     """
     several = len(evidence.parts) > 1
     quoted = tuple(dict.fromkeys(_QUOTED.findall(words)))
@@ -71,7 +73,7 @@ def moments(evidence: Evidence, words: str = "", *, missed: bool = False) -> tup
 
 
 def _since_the_build(part: Part) -> Part:
-    """Return the part with times counted from the end of its build, because the program started only then."""
+    """Return the part with times counted from the end of the build, because the program starts only after the build."""
     built = build_ended(part)
     if not built:
         return part
@@ -79,7 +81,7 @@ def _since_the_build(part: Part) -> Part:
 
 
 def _first_said(part: Part, quoted: Sequence[str]) -> dict[int, Event]:
-    """Return, for each quoted text, the first event that contains it: a log line if possible, else printed output."""
+    """Return, for each quoted text, the first event that begins with it: a log line if possible, else output."""
     found: dict[str, Event] = {}
     for event in sorted(part.events if quoted else (), key=lambda event: event.kind == "output"):
         said = spoken_by(event) if event.kind in ("log", "output") else None
@@ -122,7 +124,7 @@ def _of_part(
         for event, lane in zip(shown, lanes, strict=True)
     ]
     found += [((moment.t, moment.t), moment) for moment in _astray(part, reference, title, start)]
-    if missed:  # after the events that did happen at that time
+    if missed:  # sort each missing message after the events that happened at the same time
         found += [((moment.t, math.inf), moment) for moment in _missed(part, reference, title, start)]
     return [moment for _, moment in sorted(found, key=lambda pair: pair[0])]
 
@@ -136,19 +138,19 @@ def _said_at(event: Event) -> float:
 
 
 def _time(event: Event, start: float | None) -> float:
-    """Return the event's position on the time axis in seconds: simulated time since ``start`` if it was stepped."""
+    """Return the event's position on the time axis in seconds: simulated time since ``start``, or wall time if None."""
     if start is None:
         return round(_said_at(event), 3)
     return 0.0 if event.sim is None else round(event.sim - start, 3)
 
 
 def _began(event: Event) -> bool:
-    """Return True if the event shows only that the subject has started, which later events show anyway."""
+    """Return True if the event only says that the subject has started or was constructed. Such events are not shown."""
     return event.kind == "subject" and event.name in ("started", "constructed")
 
 
 def _without_echoes(events: Iterable[Event]) -> Iterator[Event]:
-    """Yield all events except messages of the judge's own that it received because it also subscribes to the topic."""
+    """Yield all events except echoes: the judge's own messages on topics to which the judge also subscribes."""
     on_their_way: Counter[str] = Counter()
     for event in events:
         if event.kind in ("sent", "message"):
@@ -162,14 +164,14 @@ def _without_echoes(events: Iterable[Event]) -> Iterator[Event]:
 
 
 def _under_real_names(part: Part) -> Iterator[Event]:
-    """Yield the events, without such echoes, under the names that the subject gave to topics, services and actions."""
+    """Yield the events, without echoes, with the names that the subject gave to topics, services and actions."""
     real = {event.name: event.data["real"] for event in part.of("misnamed")}
     for event in _without_echoes(part.events):
         yield replace(event, name=real[event.name]) if event.name in real else event
 
 
 def _lanes(events: Sequence[Event]) -> list[str]:
-    """Return each event's lane: a name on the graph or, if an action has several goals, one lane for each goal."""
+    """Return the lane of each event: the topic, service or action, with the number of the goal if there are several."""
     number: dict[str, int] = {}
     numbers = []
     for event in events:
@@ -193,7 +195,7 @@ def _lanes(events: Sequence[Event]) -> list[str]:
 
 
 def _first_unlike(events: Sequence[Event], part: Part, reference: Reference) -> Event | None:
-    """Return the first message that the reference solution did not send, if it sent any on that topic."""
+    """Return the first message that is unlike all of the reference solution's on its topic; None if there is none."""
     known = next((other for other in reference.parts if other.name == part.name), None)
     for event in events:
         if event.kind == "message" and known is not None:
@@ -204,7 +206,7 @@ def _first_unlike(events: Sequence[Event], part: Part, reference: Reference) -> 
 
 
 def _astray(part: Part, reference: Reference, title: str, start: float | None) -> Iterator[Moment]:
-    """Yield the subject's unexpected endpoints, for each role in which an expected endpoint is missing."""
+    """Yield a moment for each missing endpoint, and for each unexpected endpoint of the same role."""
     for role, words in _ENDS.items():
         expected = set(reference.interface.get(role, {}))
         missing = expected - set(part.endpoints(role))
@@ -224,7 +226,7 @@ def _astray(part: Part, reference: Reference, title: str, start: float | None) -
 
 
 def _missed(part: Part, reference: Reference, title: str, start: float | None) -> Iterator[Moment]:
-    """Yield the reference solution's messages that are due next and did not come, if the part has the same inputs.
+    """Yield the reference solution's first messages that the subject did not send, if the part has the same inputs.
 
     Times are counted from the subject's first message, or else from its first log line, because the task asks only
     for intervals.
@@ -239,8 +241,8 @@ def _missed(part: Part, reference: Reference, title: str, start: float | None) -
         if len(due) < 2:
             continue  # no interval
         near = (due[1][0] - due[0][0]) / 2
-        # The first message that was heard need not be the first one sent: DDS numbers each publisher's messages from
-        # 1.
+        # The judge may have missed the subject's first messages. DDS numbers each publisher's messages from 1, so the
+        # number of the first message that arrived shows how many are missing.
         number = int(part.of("message", topic)[0].data.get("number", 1)) if came else 1
         due = due[min(number, len(due)) - 1 :]
         first = came or [(_time(event, start), "") for event in part.of("log")]
@@ -250,16 +252,16 @@ def _missed(part: Part, reference: Reference, title: str, start: float | None) -
 
 
 def _not_come(due: Sequence[_Said], came: Sequence[_Said], shift: float, near: float) -> list[_Said]:
-    """Return the due messages that did not come, each at its time, counted from the last one that came.
+    """Return the expected messages that did not come, each with the time at which it was due.
 
-    A message has come if it is at its time, or if it follows the one before it as it should: after one that is
-    missing, late or too much, the next ones are not missing, too.
+    A message has come if its time is right, or if the interval from the message before it is right. So if one message
+    is missing, late or superfluous, the next ones do not count as missing, too.
 
     Args:
         due: Time and label of each message of the reference solution.
         came: Time and label of each message of the subject.
         shift: Seconds from the reference's first message to the subject's.
-        near: Seconds by which a message at its time may be off.
+        near: Seconds by which a message may be early or late.
     """
     missed = []
     last = -1
@@ -282,13 +284,13 @@ def _fields(data: Mapping[str, Any]) -> str:
     if len(fields) == 1 and not inner:
         return str(next(iter(fields.values())))
     leaves = dict(_leaves(fields))
-    # Nested messages are mostly zeros, so only the other fields are shown.
+    # Most fields of nested messages are zero, so only the other fields are shown.
     told = {name: value for name, value in leaves.items() if value or not inner} or leaves
     return ", ".join(f"{name}={value}" for name, value in told.items())
 
 
 def _goal(data: Mapping[str, Any]) -> str:
-    """Return a goal's fields in words; a number without a name would look like the number of the goal."""
+    """Return the label of a goal. It names a single field, because ``goal 5`` would look like the fifth goal."""
     fields = data.get("fields", {})
     name = next(iter(fields), "") if len(fields) == 1 else ""
     return f"goal, {name} {_fields(data)}" if name else f"goal {_fields(data)}"
@@ -306,10 +308,10 @@ class _Kind(NamedTuple):
     """A kind of event that the timeline shows.
 
     Attributes:
-        direction: The direction of the dot.
-        label: Returns the label of the dot.
-        key: True if the moment is important and therefore always kept.
-        numbered: True if the event belongs to a goal of the judge and carries the goal's number.
+        direction: The direction of the message: from the subject, to the subject, or neither.
+        label: Returns the label of an event's dot.
+        key: True if such events are important and therefore always shown.
+        numbered: True if such events contain the number of a goal that the judge has sent.
     """
 
     direction: str

@@ -1,4 +1,4 @@
-"""Runs one check: looks, judges, looks again if that is fair, and names the mistake."""
+"""Runs one check: one or two looks, the verdict on their evidence, and the diagnosis of a known mistake."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event
 
 UNKNOWN = "unknown"
-"""The key of the diagnosis if the mistake is not a known one."""
+"""The key of the diagnosis if the mistake is unknown."""
 MAX_DETAIL = 6_000
 """The maximum length of a traceback on a card, in characters."""
 MAX_WORDS = 500
@@ -55,11 +55,10 @@ class Checked:
     """The result of a check.
 
     Attributes:
-        verdict: The decision, with the findings.
+        verdict: The verdict.
         evidence: The evidence from which the verdict was derived.
-        crowded: True if the verdict is not a pass and may be unfair: nothing proves a mistake, and in the look in
-            real time the machine was busier than the judge allows for, or the subject had not discovered the judge's
-            endpoints.
+        crowded: True if the verdict is not a pass and may be unfair. Then nothing proves a mistake, and either the
+            machine was too busy in the look in real time, or the subject had not discovered the judge's endpoints.
     """
 
     verdict: Verdict
@@ -76,10 +75,10 @@ def check(
     domain_id: int,
     marks_crowded: bool = False,
 ) -> Checked:
-    """Judge a subject.
+    """Judge a subject in one look or, if the first look does not decide, in two.
 
-    A pass in the fast look counts. After a failure the judge looks again in real time, unless the evidence proves the
-    mistake whatever the load is. A check that cannot be decided within :data:`.deciding.LIMIT` has failed.
+    If the subject passes the fast look, it has passed. If it fails, a look in real time decides, unless the evidence
+    proves the mistake whatever the load is. A check whose verdict takes longer than :data:`.deciding.LIMIT` has failed.
 
     Args:
         exercise: The exercise that the subject has to fulfill.
@@ -87,7 +86,7 @@ def check(
         reference: The recorded behavior of the reference solution.
         seed: The seed of all random inputs.
         domain_id: The ROS domain.
-        marks_crowded: True to return a verdict that is marked as crowded instead of raising TooBusy.
+        marks_crowded: True to return a verdict with ``crowded`` set instead of raising TooBusy. A grader does this.
 
     Raises:
         ExerciseFailed: The exercise's own code raised an exception.
@@ -103,7 +102,7 @@ def _check(
 ) -> Checked:
     began = time.monotonic()
     crowded, delivered = False, delivers()
-    # A student may be waiting for a check cell; a grader's check makes no student wait.
+    # A student may be waiting for a check cell, but not for a grader's check.
     waited_for = subject.in_a_notebook and not marks_crowded
     hurry = Hurry(is_building=lambda: subject.is_building) if waited_for else _no_hurry
     subject.begin(domain_id)
@@ -117,7 +116,7 @@ def _check(
         with limited():
             verdict = judge(exercise, evidence, seed)
         names = {} if verdict.passed or exercise.runner else misnamed(evidence, verdict)
-        # A wrong name costs one criterion. The other criteria are judged under the name that the subject uses.
+        # A wrong name fails one criterion. For the other criteria, a new look uses the names that the subject uses.
         if names:
             look_at = partial(look_at, names=names)
             try:
@@ -131,7 +130,7 @@ def _check(
             again = exercise.second_look and (seen.doubtful or not verdict.passed)
             again = again and not _is_explained(exercise, evidence, verdict, names)
         if again:
-            if not marks_crowded:  # a submission must not learn how its check goes
+            if not marks_crowded:  # a submission must not learn its verdict
                 subject.tell_so_far(_so_far(verdict))
             try:
                 with Crowding() as crowding:
@@ -159,23 +158,23 @@ def _check(
 def _is_explained(
     exercise: Exercise, evidence: Evidence, verdict: Verdict, names: Mapping[str, object]
 ) -> bool:
-    """Return True if mistakes that are certain explain every failed criterion; a wrong name explains only its own."""
+    """Return True if a certain mistake explains the failure. Wrong names explain only one failed criterion each."""
     failed = sum(not criterion.passed for criterion in verdict.criteria)
     return is_certain(exercise, evidence) and not (names and failed > len(names))
 
 
 def _no_hurry() -> None:
-    """Do nothing: without a waiting student, a check may take as long as it needs."""
+    """Do nothing, because no student waits for this check."""
 
 
 def _so_far(verdict: Verdict) -> str:
-    """Return the diagnosis of a failed look as a cautious sentence; empty if the mistake is unknown."""
+    """Return a sentence that quotes the diagnosis and says that it may be wrong; empty if the mistake is unknown."""
     known = verdict.diagnosis
     return SEEN_SO_FAR.format(known.text) if known and known.key != UNKNOWN else ""
 
 
 def decide(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
-    """Return the verdict that follows from kept evidence, within the judge's limit of processor time."""
+    """Return the verdict that follows from evidence. If that takes too long, the verdict is a fail."""
     try:
         with limited():
             return judge(exercise, evidence, seed)
@@ -204,8 +203,8 @@ def look(
         pace: The pace of this look.
         seed: The seed of all random inputs.
         domain_id: The ROS domain.
-        before: The evidence of the first look, if this is the second one.
-        hurry: Called repeatedly while the judge waits; it may end the look by raising an exception.
+        before: The evidence of the first look; None if this is the first look.
+        hurry: Called repeatedly while the judge waits. It may raise an exception to end the look.
         names: The wrong names that :func:`autograder.judge.verdicts.misnamed.misnamed` found in an earlier look.
     """
     bench = TestBench(subject, domain_id, reference, pace, Random(seed), before, hurry, names)
@@ -213,14 +212,14 @@ def look(
         exercise.scenario(bench)
     finally:
         bench.close()
-    # A scenario may shuffle its parts, but the verdict's text must not depend on their order.
+    # Sort the parts: a scenario may shuffle them, but the verdict's text must not depend on the order.
     places = {part.name: place for place, part in enumerate(reference.parts)}
     parts = sorted(bench.parts, key=lambda part: places.get(part.name, len(places)))
     return Seen(Evidence(parts, reference, pace is Pace.REAL_TIME), bench.doubtful, bench.unmet)
 
 
 def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
-    """Return the verdict that follows from the evidence alone."""
+    """Return the verdict that follows from the evidence, with no limit on the time that this takes."""
     lost = {event.data["costs"]: event for part in evidence for event in part.of("misnamed")}
     criteria = tuple(
         CriterionResult(c.name, c.title, c.points, finding.passed, _cut(finding.expected), _cut(finding.seen))
@@ -247,17 +246,17 @@ def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
 
 
 def _with_name(finding: Finding, wrong: Event | None) -> Finding:
-    """Return a criterion's finding; failed, if this is the criterion that a wrong name costs."""
+    """Return a criterion's finding, changed to failed if a wrong name costs this criterion."""
     if wrong is None or not finding.passed:
         return finding
     return Finding(False, f"the name {wrong.name}", f"the name {wrong.data['real']}")
 
 
 def diagnose(exercise: Exercise, evidence: Evidence) -> tuple[Diagnosis, str]:
-    """Return the first known mistake that the evidence shows, and the traceback that shows it, if any.
+    """Return the diagnosis of the first known mistake in the evidence, and the traceback that shows it, if any.
 
-    No other traceback is returned, because a student would take it for the mistake, although it may come from another
-    run and from a correct line.
+    Other tracebacks are not returned. A student would take them for the mistake, although they may come from another
+    run and a correct line.
     """
     found = _recognised(exercise, evidence)
     if found is not None:
@@ -270,7 +269,7 @@ def diagnose(exercise: Exercise, evidence: Evidence) -> tuple[Diagnosis, str]:
         return Diagnosis(mistake.key, text, next_step), advice.traceback
     unknown = Diagnosis(
         UNKNOWN,
-        "This is none of the mistakes that the judge knows by name.",
+        "The judge does not recognize this mistake.",
         "Compare what was expected with what was seen, criterion by criterion.",
     )
     return unknown, ""
@@ -285,7 +284,7 @@ def _recognised(exercise: Exercise, evidence: Evidence) -> tuple[Mistake, Advice
 
 
 def is_certain(exercise: Exercise, evidence: Evidence) -> bool:
-    """Return True if the evidence proves a mistake however busy the machine was."""
+    """Return True if the evidence proves a mistake, no matter how busy the machine was."""
     found = _recognised(exercise, evidence)
     return found is not None and found[0].certain
 
