@@ -1,6 +1,6 @@
-"""The names that a notebook of the course imports: background executors and the check.
+"""The functions that a notebook of the course imports, such as ``start_ros``, ``spinning`` and ``check``.
 
-Nothing here is secret or decides a grade, because the judge runs in a process of its own.
+Nothing in this package is secret or decides a grade, because the judge is a separate process.
 """
 
 from __future__ import annotations
@@ -35,6 +35,6 @@ __all__ = [
 
 
 def start_ros() -> RosSession:
-    """Start ROS in this kernel, once; running the cell again is harmless. The kernel's judge starts meanwhile."""
+    """Start ROS in this kernel, and the judge in the background. If ROS already runs, nothing changes."""
     judge_link.warm_up()
     return ros_session.start_ros()

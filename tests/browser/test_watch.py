@@ -85,6 +85,6 @@ def test_a_task_is_done_with_the_buttons_alone(page: Page, lab: str) -> None:
     expect(checked.locator(".agc-passed")).to_contain_text("10 of 10")
     look(page, "buttons-passed")
     checked.locator(".agc-acts").get_by_role("button", name="Watch").click()
-    expect(page.locator(".Toastify")).to_contain_text("TalkerNode is no longer checked by itself.")
+    expect(page.locator(".Toastify")).to_contain_text("TalkerNode is no longer checked automatically.")
     checked.locator(".agc-acts").get_by_role("button", name="Next task").click()
     expect(page.locator(".jp-Cell.jp-mod-active")).to_contain_text("class ListenerNode")

@@ -1,1 +1,1 @@
-"""The notebook's cells: which one runs, what it prints, and tracebacks with only the student's own lines."""
+"""The notebook's cells: which cell runs, what it prints, and tracebacks with only the student's own lines."""

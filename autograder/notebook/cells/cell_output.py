@@ -23,18 +23,18 @@ if TYPE_CHECKING:
     from types import FrameType
 
 _SYNCHRONOUS_IDLE = "\x16"
-"""A character that has no meaning for terminals. It is a single byte, so it is never split between two reads."""
+"""The control character SYN, which terminals ignore. It is a single byte, so it is never split between two reads."""
 _LIMIT = 1.0
 _one_at_a_time = threading.Lock()
 
 
 def say(text: str) -> None:
-    """Print below the cell that runs now, or else the one that ran last.
+    """Print a text below the cell that runs now; if no cell runs, below the one that ran last.
 
-    It prints to standard output, because stock nbgrader gives no points to a graded cell that wrote to standard
-    error.
+    The text goes to standard output, because nbgrader without this package gives no points to a graded cell that wrote
+    to standard error.
     """
-    # A kernel that is shutting down has closed its streams.
+    # While a kernel shuts down, its streams are closed, and the text is dropped.
     with suppress(OSError, ValueError):
         print(text, flush=True)
 
@@ -42,10 +42,10 @@ def say(text: str) -> None:
 def let_log_lines_arrive() -> None:
     """Wait until the log lines written so far are in the output of the running cell.
 
-    rclpy logs through compiled code, which writes to the file descriptor. In a kernel that is a pipe, which a thread
-    of ipykernel copies to ``sys.stdout``. On a busy machine the last lines would arrive after the end of the cell,
-    and nbclient would drop them. So this writes one more character to the pipe, waits until it arrives at the other
-    end, and removes it there.
+    rclpy's compiled code writes log lines to file descriptor 1. In a kernel, this descriptor is a pipe, and a thread of
+    ipykernel copies its data to ``sys.stdout``. On a busy machine the last lines would arrive after the end of the
+    cell, and nbclient would drop them. So this function writes one more character to the pipe, waits until the
+    character arrives at ``sys.stdout``, and removes it there.
     """
     stream: Any = sys.stdout
     descriptor = getattr(stream, "_original_stdstream_fd", None)
@@ -74,12 +74,12 @@ def let_log_lines_arrive() -> None:
 
 
 def _library_folders() -> tuple[str, ...]:
-    """Return the folders of code that students did not write: those of Python, ROS and this package."""
+    """Return the folders of code that no student wrote: Python's, those of ROS, and this package's."""
     schemes = sysconfig.get_paths()
     folders = {schemes[name] for name in ("stdlib", "platstdlib", "purelib", "platlib")}
     folders.add(str(Path(rclpy.__file__).parent.parent))
     folders.add(str(Path(__file__).parents[1]))
-    # With a system-wide ROS, message packages may be in other prefixes than rclpy.
+    # If ROS is installed system-wide, message packages may be in other folders than rclpy.
     folders.update(
         prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(":") if "/opt/ros" in prefix
     )
@@ -90,7 +90,7 @@ _LIBRARIES = _library_folders()
 
 
 def is_students(filename: str) -> bool:
-    """Return True if a file, or a notebook's cell, is the student's own code."""
+    """Return True if the code in a file was written by the student. A notebook's cell counts as a file, too."""
     return not filename.startswith("<frozen") and not filename.startswith(_LIBRARIES)
 
 
@@ -118,7 +118,7 @@ def last_student_line(error: BaseException) -> tuple[str, int] | None:
 
 
 def render(error: BaseException) -> list[str]:
-    """Return the error's traceback in the notebook's format, with only the student's lines."""
+    """Return the lines of an error's traceback in the notebook's format, with only the student's code."""
     trace = student_frames(error.__traceback__)
     shell = notebook_shell()
     if shell is not None:
@@ -128,13 +128,13 @@ def render(error: BaseException) -> list[str]:
 
 
 def notebook_shell() -> Any:
-    """Return IPython's shell in a kernel or in IPython, else None."""
+    """Return IPython's shell; None if this process is neither a kernel nor IPython."""
     ipython = sys.modules.get("IPython")
     return ipython.get_ipython() if ipython is not None else None
 
 
 class PlainlyShownError(Exception):
-    """An error whose traceback in a notebook has only the student's lines."""
+    """An error whose traceback in a notebook shows only the student's code."""
 
     def _render_traceback_(self) -> list[str]:
         """Return the traceback's lines; IPython calls this instead of its own formatting."""
@@ -142,16 +142,16 @@ class PlainlyShownError(Exception):
 
 
 _COUNTS = "get_line_number_of_frame"
-"""Name of the function in ``IPython.core.ultratb`` that counts lines."""
+"""The name of a function in ``IPython.core.ultratb``, which counts the lines of a frame's file."""
 
 
 def point_at_raising_lines() -> None:
-    """Make a traceback's arrow point at the line that raised, even if a ``finally`` follows.
+    """Make the arrow in IPython's tracebacks point at the line that raised the error, even if a ``finally`` follows.
 
-    IPython treats the frames of a long file in a faster way than those of a short file. A cell has no file, so IPython
-    9 takes each cell for a long file. The faster way puts the arrow at the frame's last line, which is the clean-up if
-    there is a ``finally``, and not the line that raised (Python's data model, "Traceback objects"). This function lets
-    IPython count a cell's lines as if they were a file. Outside IPython it does nothing.
+    IPython finds the line of a frame in two ways: a precise one for short files, and a faster one for long files. The
+    faster way shows the line that the frame ran last, which is in the ``finally`` block if there is one (Python's data
+    model, "Traceback objects"). IPython 9 takes each cell for a long file, because a cell has no file. This function
+    makes IPython count the cell's lines. Outside IPython it does nothing.
     """
     if notebook_shell() is None:
         return

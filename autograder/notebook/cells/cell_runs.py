@@ -1,7 +1,8 @@
-"""Which cell of the notebook is running, and whether it has run before.
+"""Tells which cell of the notebook is running, and whether this cell has run before.
 
-JupyterLab names the cell in each request to run it (``cellId`` in the request's metadata, which IPython passes to
-``pre_run_cell``). Other front ends, such as nbclient and the console, do not, so there the text identifies the cell.
+JupyterLab sends the id of the cell with each request to run it (``cellId`` in the request's metadata, which IPython
+passes to ``pre_run_cell``). Other front ends, such as nbclient and the console, send no id. There the text of the cell
+identifies it.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ class WatchedRun:
     """One run of one cell.
 
     Attributes:
-        cell: Identifies the cell; equal in all runs of the same cell.
+        cell: The identifier of the cell, which is the same in all its runs.
         number: A counter that grows with each run of any cell.
     """
 
@@ -29,12 +30,12 @@ class WatchedRun:
     number: int
 
     def is_later_run_of(self, other: WatchedRun | None) -> bool:
-        """Return True if this is a later run of the same cell."""
+        """Return True if this is a later run of the same cell as ``other``."""
         return other is not None and self.cell == other.cell and self.number > other.number
 
 
 class CellWatch:
-    """Watches which cell is running. Outside a notebook no cell ever runs."""
+    """Knows which cell is running (``current``). Outside a notebook, ``current`` is always None."""
 
     def __init__(self) -> None:
         self.current: WatchedRun | None = None
@@ -43,13 +44,13 @@ class CellWatch:
         if self._shell is None:
             return
         self._shell.events.register("pre_run_cell", self._cell_begins)
-        # The cell that imports this module is already running.
+        # The cell that imports this module is already running, so there is no event for it.
         parent = self._parent_request()
         cell_id = parent.get("metadata", {}).get("cellId")
         self._set_current(cell_id, parent.get("content", {}).get("code", ""))
 
     def before_each_run(self, action: Callable[[WatchedRun], None]) -> None:
-        """Call a function before each run of a cell."""
+        """Register a function that is called before each run of a cell."""
         self._before_run.append(action)
 
     def _cell_begins(self, info: Any) -> None:

@@ -1,8 +1,9 @@
-"""Detects classes and functions that are out of date: their cell has failed, or now defines a different name.
+"""Detects classes and functions that are out of date, because their cell has failed or now defines other names.
 
-After a ``SyntaxError``, the class from the run before still exists under its name, or no class does. A check would
-repeat the advice about old code, and a ``NameError`` would blame the check's cell. A class that was renamed exists
-under both names, and a check of the old name would pass although no cell contains this code any more.
+If a cell fails, for example with a ``SyntaxError``, the class from the previous run of the cell still exists, and a
+check would judge this old code. If the cell never succeeded, there is no class, and the check cell fails with a
+misleading ``NameError``. If a class was renamed, it also exists under the old name, and a check of the old name would
+pass although no cell contains this code any more.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from autograder.notebook.cells.cell_output import last_student_line, notebook_sh
 _ENTRY_POINTS = "entry_points"
 """The list that a cell passes to ``package_files.add_entry_points``."""
 _DEFINED = re.compile(rf"^(?:(?:class|(?:async\s+)?def)\s+(\w+)|({_ENTRY_POINTS})\s*=)", re.MULTILINE)
-"""Matches definitions even in a cell that Python cannot parse."""
+"""Matches definitions, also in a cell that Python cannot parse."""
 _CHECKED = r"^[^#\n]*\b(?:check|watch)\(.*\b{}\b"
 
 
@@ -32,7 +33,7 @@ class _Failure:
 
 
 class FailedCells:
-    """Records which names the cells of a notebook failed to define.
+    """Records which names the cells of a notebook failed to define, or do not define any more.
 
     Args:
         shell: IPython's shell.
@@ -53,7 +54,7 @@ class FailedCells:
         )
 
     def why_missing(self, name: str) -> str:
-        """Return why a class or function is not what the cells say now; empty if it is up to date."""
+        """Return why a class or function is out of date, in a sentence for the student; empty if it is up to date."""
         if failure := self._failures.get(name):
             return f"Your cell that defines {name} stopped before {name} was defined: {failure.error}"
         left, now = self._dropped.get(name, (None, []))
@@ -84,8 +85,8 @@ class FailedCells:
             else:
                 self._failures[name] = _Failure(cell, " ".join(filter(None, (_named(error), _here(error)))))
         for name in known - names:
-            # If another cell, an import or an assignment has redefined the name since then, the definition is up to
-            # date.
+            # If another cell, an import or an assignment has defined the name since then, this newer definition is up
+            # to date.
             maker, made = self._made.get(name, ("", None))
             if maker == cell and made is there.get(name):
                 self._dropped[name] = (made, sorted(names))
@@ -95,7 +96,7 @@ class FailedCells:
         words = self._what_to_run(str(error.name)) if isinstance(error, NameError) else ""
         if (
             words and trace.tb_next is not None and trace.tb_next.tb_next is None
-        ):  # the cell itself raised the error
+        ):  # the error was raised by the cell itself, not by a function that it calls
             error._render_traceback_ = lambda: [words]  # type: ignore[attr-defined]
         elif here := _here(error):
             error.add_note(here)
@@ -122,7 +123,7 @@ def _defined(source: str) -> set[str]:
 
 
 def _named(error: BaseException) -> str:
-    """Return an error's name, line and message as a sentence."""
+    """Return an error's type, line and message as a sentence."""
     message = error.msg if isinstance(error, SyntaxError) else str(error)
     place = last_student_line(error)
     line = error.lineno if isinstance(error, SyntaxError) else place and place[1]
@@ -131,7 +132,7 @@ def _named(error: BaseException) -> str:
 
 
 def _here(error: BaseException) -> str:
-    """Return what to write in this course if the error shows that code was copied from elsewhere; otherwise empty."""
+    """Return advice if the error shows that code was copied from outside the course; otherwise an empty text."""
     shown = traceback.format_exception(type(error), error, student_frames(error.__traceback__))
     found = code_of_elsewhere.recognised("".join(shown), code_of_elsewhere.packages(_packages_of_types()))
     return f"{found.text} {found.next_step}" if found else ""
@@ -151,18 +152,18 @@ class StaleCodeError(Exception):
     """A class or function is older than the code in its cell."""
 
     def _render_traceback_(self) -> list[str]:
-        """Return the message only; a traceback would point to the wrong cell. IPython calls this."""
+        """Return only the message, because a traceback would point to the wrong cell. IPython calls this."""
         return [f"Not checked. {self}"]
 
 
 def raise_if_stale(subject: Any) -> None:
     """Refuse to check a class or function that is older than its cell. Outside a notebook, do nothing.
 
-    A check of files is never refused, because a student may have written them in an editor.
+    A check of files is never refused, because the student may have corrected them in an editor. It only prints a
+    warning.
 
     Raises:
-        StaleCodeError: The last run of the cell that defines the subject, or that defines a name used by the subject,
-            ended with an error.
+        StaleCodeError: The subject, or a class or function that it uses, is older than its cell.
     """
     if _cells is None:
         return
@@ -178,7 +179,7 @@ def raise_if_stale(subject: Any) -> None:
 
 
 def _names_read(subject: Any) -> set[str]:
-    """Return the notebook's names that a function, or the methods of a class, use."""
+    """Return the global names that a function, or the methods of a class, use."""
     own = vars(subject).values() if isinstance(subject, type) else (subject,)
     codes = [one.__code__ for one in own if isinstance(one, FunctionType)]
     found = set()

@@ -1,4 +1,4 @@
-"""Suggest the name that a student may have meant, as Python does when it prints an error itself."""
+"""Suggest the name that a student may have meant, as Python does when an error ends a program."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ if TYPE_CHECKING:
     from types import TracebackType
 
 _NEAR = 0.75
-"""The minimum similarity, from 0 to 1, for a suggestion; that of ``sefl`` and ``self`` is 0.75."""
+"""The minimum similarity of two names, from 0 to 1, for a suggestion. For ``sefl`` and ``self`` it is 0.75."""
 
 
 def meant_name(error: BaseException, trace: TracebackType | None) -> str:
-    """Return ``. Did you mean: 'command'?``; empty if no name is similar, or the error already suggests one.
+    """Return a text such as ``. Did you mean: 'command'?``; empty if no name is similar or Python itself suggests one.
 
-    From Python 3.12 on, ``traceback`` adds the suggestion. In 3.11 it appears only when the error ends a program.
+    From Python 3.12 on, ``traceback`` adds the suggestion. In Python 3.11 the interpreter adds it, but only if the
+    error ends a program.
 
     Args:
         error: A NameError or an AttributeError; there is no suggestion for other errors.

@@ -1,8 +1,8 @@
 """The cell magic ``%%program``, which works like ``%%writefile`` and also copies definitions from the notebook.
 
-A line such as ``# copied from this notebook: TalkerNode`` is replaced by the newest definition of each name in a cell
-that has run, together with the imports and helpers that the definition uses. A student who changes the class only
-runs both cells again.
+A line such as ``# copied from this notebook: TalkerNode`` is replaced by the newest definition of ``TalkerNode`` in the
+cells that have run, together with the imports and helpers that it uses. After changing the class, a student just runs
+its cell and the ``%%program`` cell again.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ class NotRunError(Exception):
 
 
 def program(line: str, cell: str) -> None:
-    """Write the cell to a file, with definitions from the notebook; IPython calls this for ``%%program PATH``.
+    """Write a cell to a file, with definitions from the notebook. IPython calls this for ``%%program PATH``.
 
     Raises:
-        NotRunError: A cell with a needed definition has not run in this kernel.
+        NotRunError: No cell that has run in this kernel defines one of the names.
         OSError: The file cannot be written.
     """
     (name,) = shlex.split(line)
@@ -43,14 +43,14 @@ def program(line: str, cell: str) -> None:
 
 
 def with_definitions(text: str, cells: list[str]) -> str:
-    """Return the text of a program with the definitions that its comments name.
+    """Return the text of a program in which each comment ``# copied from …`` is replaced by the definitions it names.
 
     Args:
         text: The text of the cell, without the line of the magic.
         cells: The cells that have run, the oldest first.
 
     Raises:
-        NotRunError: None of the cells defines one of the names.
+        NotRunError: One of the names is not defined in any of the cells.
     """
     there = _bound(_statements(_COPIED.sub("", text)))
     imports: list[str] = []
@@ -71,11 +71,11 @@ def with_definitions(text: str, cells: list[str]) -> str:
 
 
 Statement = tuple[ast.stmt, str]
-"""A statement at the top level of a cell, as syntax tree and as text."""
+"""A statement at the top level of a cell: its syntax tree and its text."""
 
 
 def _definition(name: str, cells: list[str], there: set[str]) -> list[Statement]:
-    """Return the newest definition of a name, after the statements that it needs. Add their names to ``there``."""
+    """Return the newest definition of a name, after the statements it needs, and add their names to ``there``."""
     for source in reversed(cells):
         statements = _statements(source)
         found = next(
@@ -100,7 +100,7 @@ def _definition(name: str, cells: list[str], there: set[str]) -> list[Statement]
 
 
 def _statements(source: str) -> list[Statement]:
-    """Return the statements at the top level of a cell; none if it is not pure Python, but has a magic, for example."""
+    """Return the statements at the top level of a cell; none if Python cannot parse it, as with a magic."""
     try:
         body = ast.parse(source).body
     except (SyntaxError, ValueError):
@@ -125,7 +125,7 @@ def _imported(node: ast.stmt) -> set[str]:
 
 
 def _names(node: ast.stmt) -> set[str]:
-    """Return the names that a statement defines: a class, a function, imports, or constants."""
+    """Return the names that a statement defines, by a class, a function, an import or an assignment."""
     if isinstance(node, (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
         return {node.name}
     if isinstance(node, ast.Assign):
@@ -140,7 +140,10 @@ def _used(node: ast.stmt) -> set[str]:
 
 
 def load_ipython_extension(shell: Any) -> None:
-    """Define the magic. A kernel that runs a submission calls this, too: its shell is made after the import."""
+    """Define the magic ``%%program``.
+
+    A grader's kernel calls this, because it imports this module before its shell exists.
+    """
     shell.register_magic_function(program, "cell", "program")
 
 

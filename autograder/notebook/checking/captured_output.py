@@ -1,11 +1,12 @@
 """Sends a subject's log lines and output to the judge during a check, instead of printing them below the cell.
 
-Only threads that started during the check are captured, so a demonstration node that still runs in the background is
-not taken for the subject. Text that such a thread writes to the kernel's original streams is captured, too: a handler
-of Python's ``logging`` keeps the stream that existed when its cell was run, and so does ``from sys import stdout``.
+Only the output of threads that started during the check is captured, so a demonstration node that still runs in the
+background is not taken for the subject. Text that the subject writes to the kernel's original streams is captured, too:
+a handler of Python's ``logging`` keeps the stream that existed when its cell was run, and so does ``from sys import
+stdout``.
 
-A subject that calls ``input()`` gets an EOFError, as a program without a terminal does. Otherwise JupyterLab would
-show an input box below the cell, and no other cell could run until the student had answered.
+If the subject calls ``input()``, it gets an EOFError, like a program without a terminal. Otherwise JupyterLab would
+show an input box, and no other cell could run until the student had answered.
 """
 
 from __future__ import annotations
@@ -28,10 +29,10 @@ if TYPE_CHECKING:
 
 
 class CapturedOutput:
-    """Forwards output inside a ``with`` block, and restores the streams at its end."""
+    """Forwards the subject's output to the judge inside a ``with`` block, and restores the streams at the end."""
 
     def __init__(self, tell: Callable[[str, bool], None]) -> None:
-        """Set up capturing; it begins with the ``with`` block.
+        """Set up capturing. Entering the ``with`` block starts it.
 
         Args:
             tell: Called with each line, and with True if the line was logged, False if it was printed.
@@ -74,7 +75,7 @@ class CapturedOutput:
             os.close(saved)
 
     def stacks(self) -> str:
-        """Return the stack of each captured thread, innermost call first, in the form of Python's faulthandler."""
+        """Return the stacks of the subject's threads, innermost call first, in the form of Python's faulthandler."""
         frames = sys._current_frames()
         lines = []
         for thread in threading.enumerate():
@@ -88,11 +89,12 @@ class CapturedOutput:
         return "\n".join(lines)
 
     def is_captured(self) -> bool:
-        """Return True if the calling thread belongs to the subject: it started during the check."""
+        """Return True if the calling thread belongs to the subject, that is, if it started during the check."""
         return threading.get_ident() not in self._others
 
     def _silence_compiled_code(self) -> None:
-        # Discard what rcutils writes to the file descriptors; the card shows the important log lines.
+        # Discard the log lines that rcutils writes directly to file descriptors 1 and 2. The card shows the important
+        # lines.
         nowhere = os.open(os.devnull, os.O_WRONLY)
         for descriptor in (1, 2):
             self._descriptors.append((descriptor, os.dup(descriptor)))
@@ -101,7 +103,7 @@ class CapturedOutput:
 
 
 def _no_input_for(captured: Callable[[], bool], usual: Callable[..., str]) -> Callable[..., str]:
-    """Return ipykernel's function behind ``input()`` or ``getpass()``, made to raise EOFError in captured threads."""
+    """Return the function behind ``input()`` and ``getpass()``, changed to raise EOFError in the subject's threads."""
 
     def ask(*arguments: Any, **options: Any) -> str:
         if captured():
@@ -112,9 +114,9 @@ def _no_input_for(captured: Callable[[], bool], usual: Callable[..., str]) -> Ca
 
 
 class _CapturedStream:
-    """Replaces sys.stdout or sys.stderr, and also receives what is written to the original stream object.
+    """Replaces sys.stdout or sys.stderr, and also receives text that is written to the original stream object.
 
-    Lines of captured threads go to the judge; lines of all other threads are written as usual.
+    Lines of the subject's threads go to the judge. Lines of all other threads are written as usual.
     """
 
     def __init__(self, stream: Any, tell: Callable[[str, bool], None], captured: Callable[[], bool]) -> None:
@@ -125,11 +127,11 @@ class _CapturedStream:
         self._captured = captured
         self._rest = ""
         self._lock = threading.Lock()
-        with suppress(AttributeError):  # a stream of the student's own class may not be changeable
+        with suppress(AttributeError):  # a student's own stream class may forbid this assignment
             stream.write = self.write
 
     def write(self, text: str) -> int:
-        """Accept some text, and forward each line once it is complete."""
+        """Forward each line to the judge once it is complete."""
         if not self._captured():
             written: int = self._usual_write(text)
             return written
@@ -141,7 +143,7 @@ class _CapturedStream:
         return len(text)
 
     def finish(self) -> None:
-        """Restore the stream, and forward the last line even without a line end."""
+        """Restore the original stream. Forward the last line, even if its line end is missing."""
         with suppress(AttributeError):
             if self._own_write is None:
                 del self._stream.write

@@ -1,8 +1,8 @@
-"""Displays a check's card, always at the same place below the cell.
+"""Displays a check's card. Repeated checks of a cell use the same place below the cell.
 
-A quick check replaces the card of the previous check, so that the page does not jump. A longer check shows a line
-about its progress instead, so that the student does not mistake an earlier diagnosis for one of the new code. If the
-checked class or function is redefined, the card is dimmed and says so.
+At first, the card of the previous check stays, so that the page does not jump. If the new check takes long, the card
+shows its progress instead, so that the student does not take the old diagnosis for the new one. If the checked class or
+function is redefined, the card is dimmed and says so.
 """
 
 from __future__ import annotations
@@ -35,9 +35,10 @@ if TYPE_CHECKING:
 VALIDATING = "NBGRADER_VALIDATING"
 """The environment variable that nbgrader sets while its Validate button runs the notebook."""
 SOON = 0.7
-"""Seconds of wall time until a running check shows its progress, and between two updates."""
+"""Seconds of wall time after which a running check shows its progress; also the time between two updates."""
 LONG = 30.0
-"""Seconds of wall time after which a running check shows what is known so far, or that the machine is busy."""
+"""Seconds of wall time after which a running check also shows what the judge knows so far, and if the machine is busy.
+"""
 CROWDED = 4.0
 """The number of runnable processes per processor, over the last minute, above which a machine counts as busy."""
 
@@ -70,20 +71,20 @@ class Progress:
 
 
 class Telling:
-    """Reports the progress of a check repeatedly, in a thread of its own, until it is stopped.
+    """Updates the progress of a check repeatedly, in its own thread, until :meth:`stop`.
 
     Args:
-        tell: Shows the progress on the card of the check.
+        tell: A function that shows the progress on the card.
     """
 
     def __init__(self, tell: Callable[[], None]) -> None:
         self._tell, self._over = tell, threading.Event()
-        here = contextvars.copy_context()  # This context contains the cell to which output belongs.
+        here = contextvars.copy_context()  # tells ipykernel to which cell the output belongs
         self._thread = threading.Thread(target=here.run, args=(self._repeat,), name="check", daemon=True)
         self._thread.start()
 
     def stop(self) -> None:
-        """Stop. After this returns, nothing more is reported."""
+        """Stop updating. After this call the card is not changed any more."""
         self._over.set()
         self._thread.join()
 
@@ -94,14 +95,14 @@ class Telling:
 
 @dataclass
 class _Shown:
-    """A card that is on the page, with the exercise and the subject that it is about."""
+    """A card that is on the page, with its verdict and its subject."""
 
     verdict: Verdict
     before: float | None
     handle: Any
     name: str
     subject: Any
-    """A weak reference: returns the checked class or function while it exists; for a path, it always returns None."""
+    """A weak reference to the checked class or function; None for a path."""
     dated: bool = False
 
 
@@ -111,7 +112,7 @@ _watching: list[Any] = []
 
 @dataclass
 class CardDisplay:
-    """Displays the card of one check. Enter it before the check begins, in the same thread.
+    """Displays the card of one check. Enter this context before the check begins, in the same thread.
 
     Attributes:
         exercise: The exercise's id.
@@ -129,7 +130,7 @@ class CardDisplay:
             earlier = _shown.get(self.exercise)
             if earlier is not None:
                 self._handle = display_card(
-                    _dated(earlier, "Checking again: this is the result of the check before.")
+                    _dated(earlier, "Checking again: this is the result of the previous check.")
                 )
             self._telling = Telling(self._tell)
         return self
@@ -153,7 +154,7 @@ class CardDisplay:
         self._progress.doing = what
 
     def know(self, so_far: str) -> None:
-        """Show what the judge knows so far, once the check has taken long."""
+        """Set the sentence that says what the judge knows so far. It is shown once the check has taken long."""
         self._progress.known = so_far
 
     def show(self, verdict: Verdict) -> None:
@@ -187,12 +188,12 @@ class CardDisplay:
 
 
 def _dated(shown: _Shown, notice: str) -> dict[str, str]:
-    """Return a card that is on the page, marked as out of date."""
+    """Return the content of a card that is on the page, with a notice that the card is out of date."""
     return bundle.mimebundle(shown.verdict, before=shown.before, notice=notice)
 
 
 def renew_card(verdict: Verdict, subject: Any) -> None:
-    """Show a later result on the exercise's card, if the page has one."""
+    """Show a newer verdict on the exercise's card, if the page has such a card."""
     shell, earlier = notebook_shell(), _shown.get(verdict.exercise)
     if shell is not None and earlier is not None:
         before = earlier.verdict.score
@@ -201,13 +202,13 @@ def renew_card(verdict: Verdict, subject: Any) -> None:
 
 
 def _full_card(verdict: Verdict, before: float | None) -> dict[str, str]:
-    # In a grader's kernel no solution is shown, because the executed submission would contain it.
+    # Show no solution in a grader's kernel, because the solution would then be in the graded notebook.
     solution = solution_of(verdict.exercise) if verdict.passed and is_live() else None
     return bundle.mimebundle(verdict, before=before, solution=solution)
 
 
 def is_live() -> bool:
-    """Return True if a student may be looking: the kernel is a notebook's own, not a grader's or Validate's."""
+    """Return True if a student may see the output: the kernel is neither a grader's nor that of nbgrader's Validate."""
     return notebook_shell() is not None and not os.environ.get(SOCKET_VARIABLE) and not is_validating()
 
 
@@ -226,7 +227,7 @@ def _remember(shell: Any, exercise: str, subject: Any, shown: _Shown) -> None:
 
 
 def _dim_what_is_out_of_date(_: Any = None) -> None:
-    """After each cell, dim the cards whose class or function is no longer the one that was checked."""
+    """Dim the cards whose class or function has been redefined since the check. IPython calls this after each cell."""
     names = getattr(_watching[0], "user_ns", {})
     for shown in _shown.values():
         if shown.dated or not shown.name or shown.name not in names:
@@ -245,7 +246,7 @@ def display_card(card: dict[str, str]) -> Any:
 
 
 def update_card(handle: Any, card: dict[str, str]) -> None:
-    """Replace a card that is already on the page."""
+    """Replace the content of a card that is already on the page."""
     # A kernel that is shutting down has closed its streams.
     if not sys.is_finalizing():
         handle.update(card, raw=True)

@@ -1,4 +1,4 @@
-"""The check cell: runs the subject when the judge asks, shows the card, records the result, returns the score."""
+"""The function ``check``: runs the subject when the judge requests it, shows the card, and returns the points."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 class Score(float):
     """The points of a check, as the value of the check cell.
 
-    As plain text the value is the number, because nbgrader itself reads the points from there. As HTML it is empty, so
-    that a notebook does not show the number below the card, which already contains it.
+    The value's plain text is the number of points, because nbgrader reads the points from there. The value's HTML is
+    empty, so that a notebook does not show the number again below the card.
     """
 
     def _repr_html_(self) -> str:
@@ -52,7 +52,7 @@ class CardPlace(Protocol):
 
 
 LINE = 70
-"""The maximum number of characters shown of a line of output while a check goes on."""
+"""The maximum number of characters of a line of output that the card shows while a check goes on."""
 
 
 _after_a_check: list[Callable[[Verdict, Any], None]] = []
@@ -72,11 +72,11 @@ def check(exercise: str, subject: Any) -> float:
             an exercise about files, the path of the workspace or of the launch file.
 
     Returns:
-        The points earned. In a submission's box it returns 0 and shows no card, because the judge reports only to its
-        grader.
+        The points earned. In the sandbox of a submission always 0, because there the judge reports the verdict only to
+        the grader.
 
     Raises:
-        TypeError: The subject is neither a class nor a function nor a path; the message says what to write instead.
+        TypeError: The subject is neither a class nor a function nor a path. The message says what to write instead.
         StaleCodeError: The cell that redefines the subject ended with an error, so the check would judge the old
             code.
     """
@@ -122,7 +122,7 @@ def _ask(exercise: str, subject: Any, place: CardDisplay) -> Verdict | None:
 
 
 def converse(link: JudgeLink, exercise: str, subject: Any, card: CardPlace) -> Verdict | None:
-    """Carry out the judge's requests until it has a verdict; None if it reports only to its grader.
+    """Carry out the judge's requests, then return the verdict; None if the judge reports only to the grader.
 
     Args:
         link: The connection to the judge.
@@ -135,7 +135,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: CardPlace) -> V
     """
     link.say(messages.Check(exercise, kind=_kind(subject)))
     if is_live():
-        bundle.prepare()  # meanwhile the judge makes its node
+        bundle.prepare()  # done here because the judge needs this time to make its node
     first = link.hear()
     if isinstance(first, messages.Collect):
         # A grader builds and runs workspaces and launch files itself, so only their sources are sent.
@@ -162,7 +162,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: CardPlace) -> V
                         place.ensure(fresh=order.fresh)
                         link.say(messages.Met(place.sees(order.there, order.gone, order.within)))
                     case messages.Start():
-                        # The program at a path runs in a process of its own, with its own DDS participant.
+                        # A workspace or launch file runs in a new process, with its own DDS participant.
                         if not is_path(subject):
                             place.ensure(fresh=order.fresh)
                         number = order.run
@@ -182,9 +182,9 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: CardPlace) -> V
                         link.say(messages.Stacks(number, captured.stacks()))
                     case messages.Stop() if run is not None:
                         if not run.stop():
-                            place.renew()  # a run that did not end keeps the old context, which the judge ignores
+                            place.renew()  # the run has not ended, and keeps the old context, which the judge ignores
                         link.say(messages.Stopped(number))
-                        card.doing(f"the judge looks at run {number}")
+                        card.doing(f"the judge examines run {number}")
                         run = None
                     case messages.SoFar():
                         card.know(order.words)
@@ -198,8 +198,8 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: CardPlace) -> V
 def keep(verdict: Verdict) -> None:
     """Record a check in the journal. If it completes a chapter, show the certificate.
 
-    A grader's kernel has no journal. Nothing here can break a check: files that cannot be read or written are
-    skipped.
+    A grader's kernel has no journal. Files that cannot be read or written are skipped, so that they do not break a
+    check.
     """
     if notebook_shell() is None or os.environ.get(messages.SOCKET_VARIABLE):
         return
@@ -212,7 +212,7 @@ def keep(verdict: Verdict) -> None:
 
 
 def _chapter_ended_by(verdict: Verdict) -> tuple[str, float, float] | None:
-    """Return title, points and completion time of the chapter that this check completed; None if it completed none."""
+    """Return the title, points and completion time of the chapter that this check completed; None if there is none."""
     place = journal.own_place()
     before = journal.best(journal.entries(place))
     journal.note_check(verdict, place)
@@ -249,7 +249,7 @@ def _last_words(exercise: str, words: messages.FromJudge) -> Verdict | None:
 
 
 def _retold(tell: Tell, card: CardPlace) -> Tell:
-    """Return ``tell``, extended to show the last line that a program printed on the card."""
+    """Return a function that calls ``tell`` and also shows the last printed line of a program on the card."""
 
     def told(message: Message) -> None:
         if isinstance(message, messages.Output) and message.text.strip() and not message.text.startswith("@"):
@@ -260,7 +260,7 @@ def _retold(tell: Tell, card: CardPlace) -> Tell:
 
 
 def what_to_pass(exercise: str, subject: Any, call: str = "check") -> str:
-    """Return the message for an object that cannot be checked."""
+    """Return a sentence that says what to pass instead of an object that cannot be checked."""
     kind = type(subject).__name__
     names = getattr(notebook_shell(), "user_ns", {})
     if names.get(kind) is subject:

@@ -1,8 +1,7 @@
-"""A new ROS context for each check: on the judge's domain, and rclpy's default context while the check runs.
+"""A new ROS context for each check, on the judge's domain. While the check runs, it is rclpy's default context.
 
-A student's class calls ``super().__init__("talker_node")``, which uses the default context. While a check runs, the
-default is the check's own context. So nodes of the notebook's demonstrations do not disturb the check, and are not
-disturbed by it.
+A student's class calls ``super().__init__("talker_node")``, which uses rclpy's default context. So its node is made on
+the judge's domain, apart from the nodes of the notebook's demonstrations.
 """
 
 from __future__ import annotations
@@ -28,9 +27,9 @@ if TYPE_CHECKING:
     """An endpoint as the judge names it: its topic in the middleware, and the identifier of its reader or writer."""
 
 _GLOBAL_EXECUTOR = "__executor"
-"""The name of the global executor in ``rclpy/__init__.py``."""
+"""The name of the variable in ``rclpy/__init__.py`` that contains rclpy's global executor."""
 MEETING = 0.5
-"""Seconds of wall time for which a run waits for its participant to discover the judge. After that it begins anyway."""
+"""Time limit in seconds of wall time for discovering the judge. If it is over, the run begins nevertheless."""
 MEETING_POLL = 0.002
 """Seconds between two tests whether the judge has been discovered."""
 
@@ -40,8 +39,8 @@ class CheckContext:
 
     Args:
         domain_id: The judge's domain.
-        keeper: The name of the node that keeps the check's participant alive; the judge knows it. It begins with an
-            underscore, so that ``ros2 node list`` hides it.
+        keeper: The name of the node that keeps the check's participant alive. The judge ignores this node. The name
+            begins with an underscore, so that ``ros2 node list`` hides the node.
     """
 
     def __init__(self, domain_id: int, keeper: str) -> None:
@@ -54,10 +53,11 @@ class CheckContext:
     def __enter__(self) -> Self:
         with rclpy.utilities.g_context_lock:
             self._usual = rclpy.utilities.g_default_context
-        # rclpy.spin and similar functions share one executor, which belongs to the context that was first used.
+        # rclpy.spin and similar functions use one global executor, which belongs to the first context that was spun.
+        # Remove it, so that rclpy makes a new one for this context.
         self._usual_executor = getattr(rclpy, _GLOBAL_EXECUTOR, None)
         setattr(rclpy, _GLOBAL_EXECUTOR, None)
-        # Processes that the subject starts, such as the ros2 command, must be on the judge's domain, too.
+        # Processes that the subject starts, such as the ros2 command, inherit the judge's domain from this variable.
         self._usual_domain = os.environ.get(DOMAIN_VARIABLE)
         os.environ[DOMAIN_VARIABLE] = str(self._domain_id)
         return self
@@ -79,11 +79,11 @@ class CheckContext:
             self._put(self.context)
 
     def renew(self) -> None:
-        """Start a new participant, and let it discover the judge.
+        """Create a new context with a new DDS participant, and wait until it has discovered the judge.
 
-        A participant exists as long as it has a node (rmw_fastrtps). Two participants need a fifth of a second to
-        discover each other's existing endpoints, but hardly a millisecond for later ones. So a node that does nothing
-        is made before the subject, and kept during all runs.
+        A participant exists only as long as it has a node (rmw_fastrtps). Two new participants need a fifth of a second
+        to discover each other's endpoints; later endpoints are discovered within a millisecond. So a node that does
+        nothing, the keeper, is made before the subject and stays for all runs.
         """
         self._end()
         self.context = Context()
@@ -107,13 +107,13 @@ class CheckContext:
             time.sleep(MEETING_POLL)
 
     def sees(self, there: Sequence[Endpoint], gone: Sequence[Endpoint], within: float) -> bool:
-        """Wait until this participant sees all endpoints of ``there`` and none of ``gone``. Return True if it does.
+        """Wait until this participant sees all endpoints in ``there`` and none in ``gone``. Return False if time is up.
 
-        An endpoint and its node are announced separately. For endpoints of ``there``, both must be known.
+        An endpoint and its node are announced separately. For an endpoint in ``there``, both must be known.
 
         Args:
-            there: Endpoints that are on the graph.
-            gone: Endpoints that have been removed.
+            there: Endpoints that the judge has created.
+            gone: Endpoints that the judge has removed.
             within: The limit in seconds of wall time.
         """
         deadline = time.monotonic() + within
@@ -140,8 +140,8 @@ class CheckContext:
     def _end(self) -> None:
         """Destroy the nodes of the context, then the context.
 
-        A node that outlives its context would keep the logger of its name. A later node with that name would then log
-        to a destroyed publisher ("Failed to publish log message to rosout").
+        A node that outlives its context would keep its logger. A later node with the same name would use this logger,
+        and log to a destroyed publisher ("Failed to publish log message to rosout").
         """
         keeper, self._keeper = self._keeper, None
         if keeper is not None:

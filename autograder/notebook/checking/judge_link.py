@@ -1,7 +1,7 @@
 """Connects a notebook to the judge, and starts a judge process if no grader has started one.
 
-The messages are defined in :mod:`autograder.messages.checks`. Apart from them, the notebook deliberately shares no
-code with the judge, because a student can change what runs in the notebook.
+The messages are defined in :mod:`autograder.messages.checks`. Apart from them, the judge uses no code of this package,
+because a student can change everything that runs in the notebook.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from autograder.messages.lines import Message
 
 MAX_TEXT = 4_000
-"""The maximum length of a text from the subject, in characters. A longer message would end the connection."""
+"""The maximum length in characters of a text that is sent to the judge. A longer message would end the connection."""
 START_LIMIT = 60.0
 """Time limit in seconds of wall time for the kernel's own judge to start."""
 
@@ -33,7 +33,7 @@ class JudgeUnreachable(ConnectionError):
 
 
 class JudgeLink:
-    """The connection of one check. Any thread may send; only one may receive."""
+    """The connection to the judge for one check. Any thread may send, but only one thread may receive."""
 
     def __init__(self) -> None:
         """Connect to the judge; start one if there is none.
@@ -48,7 +48,7 @@ class JudgeLink:
             raise JudgeUnreachable(f"the judge cannot be reached ({error})") from error
 
     def say(self, message: Message) -> None:
-        """Send a message. If the judge has ended, do nothing; :meth:`hear` raises an error then."""
+        """Send a message. If the judge has ended, do nothing; the next :meth:`hear` raises the error."""
         with contextlib.suppress(Hangup):
             self._lines.say(message)
 
@@ -61,7 +61,7 @@ class JudgeLink:
         try:
             message: FromJudge = self._lines.hear(FromJudge)
         except (Hangup, NotUnderstood) as error:
-            raise JudgeUnreachable("the judge ended before it had a verdict") from error
+            raise JudgeUnreachable("the judge ended before it reached a verdict") from error
         return message
 
     def close(self) -> None:
@@ -70,7 +70,7 @@ class JudgeLink:
 
 
 class OwnJudge:
-    """The judge process of this kernel. It ends with the kernel, because the kernel holds its standard input open."""
+    """The judge process of this kernel. It ends together with the kernel, because then its standard input is closed."""
 
     def __init__(self) -> None:
         self._folder = HeldFolder("autograder-judge-")
@@ -81,7 +81,7 @@ class OwnJudge:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            # Interrupting the kernel must not interrupt the judge.
+            # in a new session, because interrupting the kernel must not interrupt the judge
             start_new_session=True,
         )
         self._pid = os.getpid()
@@ -91,7 +91,7 @@ class OwnJudge:
         """Return the path of the judge's socket once it listens.
 
         Raises:
-            JudgeUnreachable: The process did not start.
+            JudgeUnreachable: The judge did not start.
         """
         if not self._ready:
             assert self._process.stdout is not None
@@ -104,7 +104,7 @@ class OwnJudge:
 
     @property
     def alive(self) -> bool:
-        """Return True if the process runs and was started by this process, not by the parent of a fork."""
+        """True if the judge runs and was started by this process, not by a process from which this one was forked."""
         return self._pid == os.getpid() and self._process.poll() is None
 
     def stop(self) -> None:
@@ -131,6 +131,6 @@ def own_judge() -> OwnJudge:
 
 
 def warm_up() -> None:
-    """Start the judge before the first check needs it, unless the grader has started one."""
+    """Start this kernel's judge before the first check needs it. If a grader has started a judge, do nothing."""
     if not os.environ.get(SOCKET_VARIABLE):
         own_judge()

@@ -1,4 +1,4 @@
-"""One run of a path as a subject: a separate process builds the workspace, or launches the launch file."""
+"""One run of a workspace or launch file as a subject, in a separate process that builds or launches it."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from autograder.notebook.checking.subject_run import Tell
 
 POLITE = 1.5
-"""Seconds of wall time for programs to end after an interrupt, before they are killed."""
+"""Time limit in seconds of wall time for programs to end after an interrupt. Then they are killed."""
 
 
 class PathRun:
-    """Runs ``python -m autograder.workspaces`` on a path once, on the domain of the check."""
+    """Runs ``python -m autograder.workspaces PATH`` once, on the ROS domain of the check."""
 
     def __init__(
         self, number: int, exercise: str, path: str | os.PathLike[str], domain: int, tell: Tell
@@ -41,17 +41,18 @@ class PathRun:
         """Start the process for one run.
 
         Args:
-            arguments: The name of a program and its arguments, if the exercise has several programs; else nothing.
+            arguments: If the exercise has several programs, the name of one and its arguments; otherwise nothing.
             options: Empty for a path.
         """
         del options
-        # Interrupting the kernel must not end the process: the judge decides when it ends.
+        # The process gets its own session, so that interrupting the kernel does not end it. The judge decides when it
+        # ends.
         self._program = OwnSession([*self._command, *map(str, arguments)], _environment(self._domain))
         self._reader = threading.Thread(target=self._follow, args=(self._program,), daemon=True)
         self._reader.start()
 
     def release(self) -> None:
-        """Do nothing: a process runs from its start."""
+        """Do nothing, because a process is never held back."""
 
     def interrupt(self) -> None:
         """Send Ctrl-C to the process, as in a terminal."""
@@ -59,7 +60,7 @@ class PathRun:
             self._program.interrupt()
 
     def stop(self) -> bool:
-        """End the process with everything that it started."""
+        """End the process and everything that it has started. Return True."""
         if self._program is not None:
             self._program.end(POLITE)
         if self._reader is not None:
@@ -79,7 +80,7 @@ def is_path(subject: object) -> bool:
 
 
 def send_sources(tell: Tell, subject: object) -> None:
-    """Send a grader's judge the sources that it asks for: everything that a check of this path may need.
+    """Send the grader's judge all source files that a check of this workspace or launch file may need.
 
     Args:
         tell: Sends a message to the judge.
@@ -102,7 +103,7 @@ def send_sources(tell: Tell, subject: object) -> None:
 
 
 def _environment(domain: int) -> dict[str, str]:
-    """Return the kernel's own environment, with the domain and the transport of the check."""
+    """Return the kernel's environment variables, with the ROS domain and the DDS transport of the check."""
     return {
         **os.environ,
         "ROS_DOMAIN_ID": str(domain),

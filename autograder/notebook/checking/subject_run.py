@@ -1,4 +1,4 @@
-"""One run of a subject in the kernel, in a thread of its own: a node class is made and spun, a function is called."""
+"""One run of a subject in a thread of the kernel: a node class is instantiated and spun, a function is called."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Tell = Callable[["Message"], None]
 """A function that sends a message to the judge."""
 
 END_LIMIT = 1.5
-"""Time limit in seconds of wall time for a stopped subject to leave its thread."""
+"""Time limit in seconds of wall time for the thread of a stopped subject to end."""
 
 
 class SubjectRun:
@@ -51,18 +51,18 @@ class SubjectRun:
 
         Args:
             arguments: The arguments of the class or function.
-            options: Passed to a function, as far as it has parameters with these names. For a class, ``threads`` is
-                the number of threads that spin it.
+            options: Keyword arguments for a function; those that it has no parameter for are left out. For a class,
+                only ``threads`` is used, the number of threads that spin the node.
         """
         self._arguments, self._options = arguments, options
         self._thread.start()
 
     def release(self) -> None:
-        """Let the node spin, once it is made."""
+        """Spin the node, as soon as its constructor has returned."""
         self._released.set()
 
     def stop(self) -> bool:
-        """End the run. Return True if its thread has ended."""
+        """End the run. Return True if the run's thread has ended."""
         self._stopping.set()
         self._released.set()
         self._thread.join(timeout=END_LIMIT if self._spinning else END_LIMIT / 5)
@@ -81,7 +81,7 @@ class SubjectRun:
             self._tell(Started(self._number, sorted(accepted)))
             value = self._subject(*self._arguments, **accepted)
             if isinstance(value, Node) and not self._arguments and _is_alive(value):
-                self._spin(value, others)  # the subject is a function that was given instead of a class
+                self._spin(value, others)  # the student passed a function that makes the node
             else:
                 self._tell(Returned(self._number, None if value is None else repr(value)[:MAX_TEXT]))
         except ExternalShutdownException:
@@ -116,7 +116,8 @@ class SubjectRun:
         threads.stop(grace=END_LIMIT / 3)
 
     def _callback_raised(self, failure: Failure) -> None:
-        # In a program, rclpy.spin ends at the first exception in a callback, so the subject ends here, too.
+        # Report an exception in a callback as the end of the subject, because it would also end rclpy.spin in a
+        # program.
         if not self._stopping.is_set():
             self._tell(Raised(self._number, formatted(failure.error)))
 
@@ -130,9 +131,9 @@ def _is_alive(node: Node) -> bool:
 
 
 def formatted(error: BaseException) -> str:
-    """Return the traceback with only the student's own lines, as a terminal shows it.
+    """Return an error's traceback with only the student's code, in the format of a terminal.
 
-    An error that collects the errors of several callbacks is replaced by the first of these.
+    If the error contains the errors of several callbacks, only the first of them is formatted.
     """
     collected = getattr(error, "errors", ())
     if collected and isinstance(getattr(collected[0], "error", None), BaseException):
@@ -140,12 +141,12 @@ def formatted(error: BaseException) -> str:
     trace = student_frames(error.__traceback__)
     shown = traceback.format_exception(type(error), error, trace)
     text = "".join(shown).strip() + meant_name(error, trace)
-    # Keep both ends: the beginning shows where the error began, the end shows which error it was.
+    # Cut out the middle: the beginning shows where the error began, the end shows which error it was.
     return text if len(text) <= MAX_TEXT else f"{text[: MAX_TEXT // 2]}\n{text[-MAX_TEXT // 2 + 1 :]}"
 
 
 def _mark(node: Node, number: int) -> str:
-    """Make one last endpoint of each kind, a marker: a process that sees it has seen all earlier endpoints."""
+    """Create the marker, a publisher and a subscription after all others: who sees them has seen all endpoints."""
     name = f"/_ready_{number}"
     try:
         Node.create_publisher(node, Empty, name, 1)
@@ -156,7 +157,7 @@ def _mark(node: Node, number: int) -> str:
 
 
 def _accepted(function: Any, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the options for which the function has a parameter."""
+    """Return those options for which the function has a parameter."""
     try:
         parameters = inspect.signature(function).parameters
     except (TypeError, ValueError):

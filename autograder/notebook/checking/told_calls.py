@@ -1,7 +1,7 @@
 """Tells the judge when a subject looks for a server, calls a service or sends a goal.
 
-From outside, the judge cannot see that a subject looks at the graph. Nor can it see a request that was sent before
-its server existed, because such a request is lost.
+The judge cannot see from outside the kernel that a subject queries the graph. Nor can it see a request that was sent
+before the judge's server existed, because such a request is lost.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ TOLD: tuple[tuple[Any, str, type[Looked | Called]], ...] = (
     (Client, "call_async", Called),
     (ActionClient, "send_goal_async", Called),
 )
-"""The methods whose calls are reported, each with the message that reports it. rclpy's own waits for servers and its
-blocking calls use these methods, too.
+"""The methods whose calls are reported, each with the message that reports a call. rclpy's blocking methods, such as
+``wait_for_service`` and ``call``, use these methods, too.
 """
 LOOKS_TOLD = 10
-"""The maximum number of times that a look for a server is reported in one run. A loop without a pause looks thousands
-of times a second.
+"""The maximum number of reports per run that the subject has looked for a server. A loop without a pause looks
+thousands of times a second.
 """
 
 
@@ -39,18 +39,18 @@ class ToldCalls:
     """Reports the subject's calls of the methods in :data:`TOLD` to the judge, within a ``with`` block."""
 
     def __init__(self, is_subject: Callable[[], bool], tell: Callable[..., None]) -> None:
-        """Set up reporting; it begins with the ``with`` block.
+        """Set up reporting. Entering the ``with`` block starts it.
 
         Args:
-            is_subject: Returns True if the calling thread is one of the subject's.
-            tell: Sends the judge a message about this run, given its class and fields.
+            is_subject: Returns True if the calling thread belongs to the subject.
+            tell: Sends the judge a message about this run, given the message's class and fields.
         """
         self._is_subject = is_subject
         self._tell = tell
         self._looks = 0
 
     def begin_run(self) -> None:
-        """Count from zero again, for the next run, how often the subject looks for a service."""
+        """Begin to count the subject's looks for a server from zero again, for the next run."""
         self._looks = 0
 
     def __enter__(self) -> Self:

@@ -1,8 +1,8 @@
-"""How a check shows its result when nbgrader's Validate runs the notebook.
+"""Shows a check's result when nbgrader's Validate runs the notebook.
 
-For each check without full marks, Validate shows the error of the cell. For a cell without an error it says "Partial
-credit; passed some but not all", even if the cell has no points at all. So during Validate, such a check ends with an
-error that contains the text of the card.
+If a cell has not earned full marks, Validate shows the error with which the cell ended. Without an error, it shows
+"Partial credit; passed some but not all", even if the cell has earned no points at all. So during Validate, a check
+without full marks ends with an error that contains the text of the card.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ WIDTH = 76
 
 
 class NotFullMarksError(Exception):
-    """A check did not earn full marks. Contains the message for Validate."""
+    """A check did not earn full marks. The exception's text is the message that Validate shows."""
 
     def __init__(self, verdicts: list[Verdict]) -> None:
         super().__init__("\n".join(_lines(verdicts)))
@@ -34,7 +34,7 @@ _checked: dict[str, Verdict] = {}
 
 
 def raise_unless_full(verdict: Verdict) -> None:
-    """End a check cell with a message that Validate shows; do nothing if the check has full marks.
+    """End the check cell with an error whose message Validate shows. If the check has full marks, do nothing.
 
     Raises:
         NotFullMarksError: The check does not have full marks.
@@ -46,7 +46,7 @@ def raise_unless_full(verdict: Verdict) -> None:
 
 
 def _lines(verdicts: list[Verdict]) -> list[str]:
-    """Return the last check in detail, and the total of all checks so far if there are several."""
+    """Return the lines of the message: the last check in detail, then the total if there are several checks."""
     last = verdicts[-1]
     state = wording.STATE_WORDS[last.state]
     lines = wrap(f"{one_line(last.title or last.exercise, 120)}: {state}, {wording.score_line(last)}", WIDTH)

@@ -1,11 +1,10 @@
 """Watch mode: checks a Python class or function again each time a cell redefines it.
 
-Watching begins automatically after a check that did not earn all points, or on the student's request.
+Watching begins after a check that did not earn all points, or when a student calls ``watch``.
 
-The cell ends as fast as before, because the check runs while the kernel is idle. A check replaces rclpy's default
-context and captures all output, so it cannot run at the same time as a cell: it stops for the next cell and starts
-again afterwards. What is watched is kept only in the kernel's memory, so a restart ends it. While the grader executes a
-notebook, nothing is watched.
+The check runs while the kernel is idle, so no cell takes longer. A check replaces rclpy's default context and captures
+all output, so it cannot run at the same time as a cell: when a cell is run, the check stops, and starts again after the
+cell. A restart of the kernel ends watching. While a grader executes a notebook, nothing is watched.
 """
 
 from __future__ import annotations
@@ -39,11 +38,11 @@ if TYPE_CHECKING:
 
 @dataclass
 class Watch:
-    """An exercise that is watched. ``watch`` makes it.
+    """An exercise that is watched. ``watch`` returns this object.
 
     Attributes:
         exercise: The exercise's id.
-        name: The name of the class or function in the notebook.
+        name: The name of the watched class or function.
         subject: The newest class or function with that name.
         due: True if this subject still has to be checked.
     """
@@ -58,18 +57,18 @@ class Watch:
     _here: contextvars.Context = field(default_factory=contextvars.copy_context)
 
     def is_defined_anew(self, subject: Any) -> bool:
-        """Return True if this class or function is not the newest one so far."""
+        """Return True if the argument is a class or function other than the newest one so far."""
         return subject is not self.subject and (inspect.isclass(subject) or inspect.isfunction(subject))
 
     def begin(self, subject: Any) -> None:
-        """Show a card below the running cell, which has just defined this subject, and plan the check."""
+        """Show a card below the cell that has just defined this subject, and plan the check."""
         if self._handle is not None:
-            # If the same cell was run again, its earlier card has already disappeared.
-            self._say(f"Another cell has defined {self.name} since.", over=True)
+            # Mark the earlier card as out of date. If the same cell was run again, this card has already disappeared.
+            self._say(f"Another cell has defined {self.name} since then.", over=True)
         self.subject, self.due = subject, True
         # The context variables tell which cell is running, so that output can be assigned to that cell.
         self._here = contextvars.copy_context()
-        self._handle = display_card(self._card("Is checked as soon as this cell has ended."))
+        self._handle = display_card(self._card("The check begins as soon as this cell has ended."))
 
     def get_ready(self) -> None:
         """Show on the card that the check begins."""
@@ -81,7 +80,7 @@ class Watch:
         self._say(self._progress.words())
 
     def doing(self, what: str) -> None:
-        """Show the current step, in a few words."""
+        """Show the current step on the card, in a few words."""
         self._progress.doing = what
         self.tell()
 
@@ -90,23 +89,23 @@ class Watch:
         self._progress.known = so_far
 
     def give_way(self) -> None:
-        """Show on the card that another cell runs first."""
-        self._say("Is checked as soon as the cell that runs now has ended.")
+        """Show on the card that the check waits for another cell."""
+        self._say("The check begins again as soon as the running cell has ended.")
 
     def show(self, verdict: Verdict) -> None:
-        """Show the result of this check on this card and on the card of the check cell."""
+        """Show the verdict on this card and on the card of the check cell."""
         self.settle(verdict)
         self._here.run(renew_card, verdict, self.subject)
         self._here.run(keep, verdict)
 
     def settle(self, verdict: Verdict) -> None:
-        """Show a result on the card. The subject needs no further check."""
+        """Show the verdict on this card. The subject needs no further check."""
         before = self._verdict.score if self._verdict else None
         self._verdict, self.due = verdict, False
         self._here.run(update_card, self._handle, bundle.mimebundle(verdict, before=before, short=True))
 
     def _say(self, words: str, *, over: bool = False) -> None:
-        # Run in a copy of the context, because the thread that shows the progress may be inside the context itself.
+        # Run in a copy of the context, because the thread that shows the progress may be using the context itself.
         self._here.copy().run(update_card, self._handle, self._card(words, over=over))
 
     def _card(self, words: str, *, over: bool = False) -> dict[str, str]:
@@ -120,7 +119,7 @@ class Watch:
 
 
 class Watches:
-    """Everything that is watched in this kernel.
+    """All exercises that are watched in this kernel.
 
     Args:
         shell: IPython's shell.
@@ -133,13 +132,14 @@ class Watches:
         self._link: JudgeLink | None = None
         self._giving_way = False
         self._lock = threading.Lock()
-        # Run before everything else that follows a cell, and around each execution, even silent ones of front ends.
+        # These events occur around every execution, also silent ones of front ends, and before IPython's other events
+        # after a cell.
         shell.events.register("pre_execute", self._give_way)
         shell.events.register("post_execute", self._go_on)
-        atexit.register(self._give_way)  # before ROS is shut down
+        atexit.register(self._give_way)  # stop the check before ROS is shut down
 
     def _go_on(self) -> None:
-        """After a cell, check what it has redefined, and restart the checks that it stopped."""
+        """Check what a cell has redefined, and restart the check it stopped. IPython calls this after each cell."""
         for watch in self.all.values():
             subject = self._names.get(watch.name)
             if watch.is_defined_anew(subject):
@@ -150,7 +150,7 @@ class Watches:
             self._thread.start()
 
     def _give_way(self) -> None:
-        """Before a cell runs, stop the running check. It starts again afterwards."""
+        """Stop the running check. It starts again after the cell. IPython calls this before each cell."""
         if self._thread is None:
             return
         with self._lock:
@@ -193,17 +193,17 @@ _ended_by_the_student = False
 
 
 def watch(exercise: str, subject: Callable[..., Any]) -> Watch:
-    """Check a class again whenever its cell is run, until ``unwatch()`` or the kernel's restart.
+    """Check a class again whenever its cell is run, until ``unwatch()`` or a restart of the kernel.
 
-    A short card below that cell shows the points, what happened and what to do next. It changes no grade. While a
-    class is graded, and while Validate runs the notebook, nothing is watched.
+    A short card below the cell shows the points, what happened and what to do next. These checks change no grade. While
+    a grader or nbgrader's Validate runs the notebook, nothing is watched.
 
     Args:
         exercise: The exercise's id, such as ``"lab_1_2.talker"``.
         subject: The class or function, as in the check cell.
 
     Raises:
-        TypeError: The subject is neither a class nor a function; the message says what to write instead.
+        TypeError: The subject is neither a class nor a function. The message says what to write instead.
     """
     global _watches, _ended_by_the_student
     if not (inspect.isclass(subject) or inspect.isfunction(subject)):
@@ -212,8 +212,8 @@ def watch(exercise: str, subject: Callable[..., Any]) -> Watch:
     begun = Watch(exercise, subject.__name__, subject)
     if is_live():
         _watches = _watches or Watches(notebook_shell())
-        # If the call is in the class's own cell, it runs each time, and must not take the new class for one already
-        # checked.
+        # If the student calls watch(...) in the cell of the class, the call is repeated with each run of the cell.
+        # Return the earlier Watch then, so that the new class counts as not checked yet.
         earlier = _watches.all.get(exercise)
         if earlier is not None and earlier.name == begun.name:
             return earlier
@@ -222,7 +222,7 @@ def watch(exercise: str, subject: Callable[..., Any]) -> Watch:
 
 
 def unwatch() -> None:
-    """Stop watching everything, and do not watch after a failed check either. The cards stay."""
+    """Stop watching everything, also after failed checks, until ``watch`` is called. The cards stay."""
     global _ended_by_the_student
     _ended_by_the_student = True
     if _watches is not None:
@@ -230,7 +230,7 @@ def unwatch() -> None:
 
 
 def switch(exercise: str, subject: Callable[..., Any]) -> str:
-    """Begin or stop watching a class or function. The button *Watch* calls this.
+    """Watch a class or function or, if it is watched, stop watching. The button *Watch* calls this.
 
     Args:
         exercise: The exercise's id.
@@ -241,14 +241,14 @@ def switch(exercise: str, subject: Callable[..., Any]) -> str:
     """
     if _watches is not None and exercise in _watches.all:
         unwatch()
-        return f"{subject.__name__} is no longer checked by itself."
+        return f"{subject.__name__} is no longer checked automatically."
     return repr(watch(exercise, subject))
 
 
 def watch_after(verdict: Verdict, subject: Any) -> None:
-    """After a check that a student ran, watch the subject if it did not pass. It is checked again once it changes.
+    """Watch a subject that a student has checked, if it did not pass. It is checked again when it is redefined.
 
-    After ``unwatch()``, nothing is watched until the student asks for it.
+    After ``unwatch()`` this does nothing, until the student calls ``watch``.
     """
     watched = _watches.all.get(verdict.exercise) if _watches is not None else None
     if watched is not None and watched.due and watched.subject is subject:

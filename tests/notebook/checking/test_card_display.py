@@ -132,7 +132,7 @@ scores[:] = [5.0, 8.0]
 check("lab", Talker)
 """
     *_, said = run(watched, "check('lab', Talker)", "print(displayed[-1])")
-    assert "this is the result of the check before" in " ".join(said[0].text.split())
+    assert "this is the result of the previous check" in " ".join(said[0].text.split())
 
 
 def test_an_interrupted_check_ends_on_its_card(run: Callable[..., list[Any]]) -> None:

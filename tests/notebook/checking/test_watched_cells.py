@@ -187,7 +187,7 @@ def test_watching_begins_by_itself_after_a_check_that_showed_something_to_mend_u
     found.run(TALKER.format("two"), "talker")
     assert "10 of 10 points" in found.wait_for("10 of 10 points")
     found.run(
-        "assert watched_cells.switch('lab', Talker) == 'Talker is no longer checked by itself.'", "button"
+        "assert watched_cells.switch('lab', Talker) == 'Talker is no longer checked automatically.'", "button"
     )
     found.run(CHECKED, "check")
     found.run(TALKER.format("three"), "talker")
