@@ -1,7 +1,8 @@
-"""Adds lines to the files of a package, with functions that a cell may call any number of times in any order.
+"""Adds lines to the files of a package. A cell may call these functions any number of times, in any order.
 
-A cell that writes the whole ``setup.py`` would remove what a later lab has added. These functions change one part of
-a file only: an entry point replaces the earlier one with the same name, and a line is never added twice.
+If a cell wrote the whole ``setup.py``, running it again would remove the lines that later labs have added. So these
+functions change only a part of a file: an entry point replaces the earlier one with the same name, and no line is added
+twice.
 """
 
 from __future__ import annotations
@@ -22,17 +23,17 @@ if TYPE_CHECKING:
 
 PACKAGE = "my_robot_pkg"
 _ADDED = "# by add_data_files"
-"""The comment that marks a line of data_files as added here, and not part of the original package."""
+"""The comment after each entry of data_files that this module has added."""
 _DEFINITIONS = re.compile(r"rosidl_generate_interfaces\s*\(\s*\$\{PROJECT_NAME\}[^)]*")
 
 
 @dataclass(frozen=True)
 class _Element:
-    """An element of a list in setup.py: an entry point, or an entry of data_files.
+    """An element of a list in setup.py: an entry point, or a pair in data_files.
 
     Attributes:
         source: The text of the element in setup.py, which is written back unchanged.
-        text: The value of the element; the same as ``source`` if the value is known only by running setup.py.
+        text: The value of the element; the same as ``source`` if the value cannot be found without running setup.py.
         above: The comments on the lines above the element.
         behind: The comment at the end of the element's line.
     """
@@ -44,7 +45,7 @@ class _Element:
 
 
 def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str = PACKAGE) -> str:
-    """Add entry points to a package's ``setup.py``. They replace those with the same executable or function.
+    """Add entry points to a package's ``setup.py``. They replace entry points with the same executable or function.
 
     Args:
         workspace: The workspace folder, which contains ``src``.
@@ -52,8 +53,8 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
         package: The name of the package.
 
     Returns:
-        A text for the student: the executables that the package has now, one per line, with a warning for each
-        invalid entry; or what the student has to do.
+        A text for the student: the executables that the package has now, with a warning for each module without a
+            package; or, if nothing was changed, what the student has to do.
     """
     setup = Path(workspace) / "src" / package / "setup.py"
     wanted = list(entries)
@@ -93,7 +94,7 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
 def add_data_files(
     workspace: str | Path, pairs: Iterable[tuple[str, Sequence[str]]], package: str = PACKAGE
 ) -> str:
-    """Make a package's ``setup.py`` install files, instead of those that an earlier call has added.
+    """Make a package's ``setup.py`` install files. They replace the files that an earlier call has added.
 
     Args:
         workspace: The workspace folder, which contains ``src``.
@@ -101,15 +102,15 @@ def add_data_files(
         package: The name of the package.
 
     Returns:
-        The pairs that ``setup.py`` installs now, one per line, or what the student has to do.
+        A text for the student: the pairs that ``setup.py`` installs now, or what the student has to do.
     """
     setup = Path(workspace) / "src" / package / "setup.py"
     wanted = list(pairs)
     for pair in wanted:
         if not _is_data_files(pair):
             return (
-                f"{pair!r} is not a pair of a folder and a list of files. Write it in parentheses, the folder first, "
-                "and square brackets around the files, even if there is only one."
+                f"{pair!r} is not a pair of a folder and a list of files. Write a pair in parentheses, "
+                "the folder first, and square brackets around the files, even for a single file."
             )
     try:
         text, tree = _read(setup)
@@ -166,11 +167,11 @@ def add_dependencies(workspace: str | Path, names: Iterable[str], package: str =
 
     Args:
         workspace: The workspace folder, which contains ``src``.
-        names: The names of the packages on which it depends.
+        names: The names of the packages on which the package depends.
         package: The name of the package.
 
     Returns:
-        The dependencies that the package has now, or what the student has to do.
+        A text for the student: the dependencies that the package has now, or what the student has to do.
     """
     manifest = Path(workspace) / "src" / package / "package.xml"
     if not manifest.is_file():
@@ -187,7 +188,7 @@ def add_dependencies(workspace: str | Path, names: Iterable[str], package: str =
 
 
 def add_definition(workspace: str | Path, package: str, definition: str, needs: Iterable[str] = ()) -> str:
-    """Make an interface package generate code from one more definition file. The file must exist.
+    """Add a definition file to the interfaces that a package's ``CMakeLists.txt`` generates code from.
 
     Args:
         workspace: The workspace folder, which contains ``src``.
@@ -196,7 +197,8 @@ def add_definition(workspace: str | Path, package: str, definition: str, needs: 
         needs: The packages on which the generated code depends.
 
     Returns:
-        The definitions from which the package now generates code, or what the student has to do.
+        A text for the student: the definitions from which the package now generates code, or what the student has to
+        do.
     """
     folder = Path(workspace) / "src" / package
     file, lists = folder / definition, folder / "CMakeLists.txt"
@@ -225,7 +227,7 @@ def _without_package(entries: list[str], package: str) -> list[str]:
 
 
 def _parts(entry: str) -> tuple[str, str]:
-    """Return the executable, and the function that it starts."""
+    """Return the executable of an entry point, and the function that it starts."""
     name, _, target = "".join(entry.split()).partition("=")
     return name, target
 
@@ -236,7 +238,7 @@ def _written(entry: str) -> _Element:
 
 
 def _elements(text: str, tree: ast.Module, programs: ast.List) -> tuple[list[_Element], list[str]]:
-    """Return the elements of a list in setup.py, and the comments below its last element."""
+    """Return the elements of a list in setup.py, and the comments after the list's last element."""
     names = {
         target.id: node.value.value
         for node in tree.body
@@ -258,7 +260,7 @@ def _elements(text: str, tree: ast.Module, programs: ast.List) -> tuple[list[_El
 
 
 def _comments(text: str, programs: ast.List) -> dict[int, str]:
-    """Return the comments inside a list of setup.py, by line number (from 1), in order."""
+    """Return the comments inside a list in setup.py, in order; the keys are line numbers, counted from 1."""
     first, last = programs.lineno, programs.end_lineno or programs.lineno
     return {
         token.start[0]: token.string
@@ -268,7 +270,7 @@ def _comments(text: str, programs: ast.List) -> dict[int, str]:
 
 
 def _value(node: ast.expr, names: Mapping[str, object]) -> str | None:
-    """Return the value of an expression made only of constants and of variables that hold strings; else None."""
+    """Return the value of an expression of constants and known variables as text; None for any other expression."""
     match node:
         case ast.Constant(value=value):
             return str(value)
@@ -286,7 +288,7 @@ def _value(node: ast.expr, names: Mapping[str, object]) -> str | None:
 
 
 def _with_list(text: str, programs: ast.List, elements: list[_Element], last_comments: list[str]) -> str:
-    """Return the text of the file with these elements in its list, and the comments below them."""
+    """Return the text of setup.py with these elements in the list, followed by the comments."""
     lines = text.encode().split(b"\n")
     first, last = programs.lineno - 1, (programs.end_lineno or programs.lineno) - 1
     before = b"\n".join([*lines[:first], lines[first][: programs.col_offset]]).decode()
@@ -298,5 +300,5 @@ def _with_list(text: str, programs: ast.List, elements: list[_Element], last_com
 
 
 def _lines(element: _Element) -> list[str]:
-    """Return the lines for an element of the list: its comments, then the element."""
+    """Return the lines that an element takes in setup.py: its comments, then the element."""
     return [*element.above, f"{element.source},{'  ' * bool(element.behind)}{element.behind}"]

@@ -1,7 +1,7 @@
-"""Adds the programs of Lab 1.2 to a student's package, for the notebooks that start them.
+"""Adds the programs of Lab 1.2 to a student's package, for later labs whose launch files start them.
 
-A launch file starts programs of packages. A student who wrote the nodes only in the notebook would otherwise see
-"executable not found" in an exercise about something else.
+A launch file starts the programs of packages. If a student wrote the nodes of Lab 1.2 only in the notebook, a later
+exercise about launch files would fail with "executable not found".
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ _CLASS = re.compile(r"^class ", re.MULTILINE)
 def complete_package(workspace: str | Path = "ros2_ws", source: Path | None = None) -> str:
     """Put the course's talker and listener into the student's package if they are missing.
 
-    It changes nothing that a student has written, except that it adds entry points to ``setup.py``. Running it again
-    changes nothing.
+    Code that a student has written stays as it is; only entry points are added to ``setup.py``. A second call changes
+    nothing.
 
     Args:
         workspace: The workspace folder, which contains ``src``; it is created if it does not exist.
@@ -35,8 +35,8 @@ def complete_package(workspace: str | Path = "ros2_ws", source: Path | None = No
     try:
         source = source or course.root() / course.SOLUTIONS / "ros2_ws" / "src" / PACKAGE
     except course.NoCourse:  # in a sandbox there is no course folder
-        return "This notebook is graded by itself: the check takes whatever your package lacks from the course's own."
-    if not source.is_dir():  # a hand-out for students contains no solutions
+        return "This notebook is graded alone: if your package lacks a program, the check takes the course's own."
+    if not source.is_dir():  # the files that students get contain no solutions
         return _what_is_missing(package)
     if not (package / "package.xml").is_file():
         shutil.copytree(source, package, dirs_exist_ok=True)
@@ -53,7 +53,7 @@ def _what_is_missing(package: Path) -> str:
         return f"Your {PACKAGE} has the programs {' and '.join(PROGRAMS)}."
     return (
         f"{package} has no program {' and no program '.join(missing)} yet. "
-        "Do Lab 1.2 first: its nodes become programs of that package, and they are what is launched here."
+        "Do Lab 1.2 first: its nodes become the programs of this package that are launched here."
     )
 
 
@@ -65,7 +65,7 @@ def _has_program(package: Path, name: str) -> bool:
 
 
 def _is_empty(module: Path) -> bool:
-    """Return True if a module is still as Lab 1.2's cell writes it, with no class copied into it yet."""
+    """Return True if a module contains no class, because Lab 1.2's cell has written it but copied no class into it."""
     return module.is_file() and not _CLASS.search(module.read_text(encoding="utf-8", errors="replace"))
 
 

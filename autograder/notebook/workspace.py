@@ -1,9 +1,8 @@
 """Builds a workspace from a notebook, and makes its packages usable in the running kernel.
 
-A running kernel cannot source a workspace, because the loader reads ``LD_LIBRARY_PATH`` only when a process starts.
-But a kernel can load the package's libraries once with global symbols (``RTLD_GLOBAL``, 5 ms; tried with a service
-type on Jazzy). After that, the loader finds each library by its name, and so does rosidl's type support, which also
-opens its libraries by name.
+A running kernel cannot source a workspace, because Linux's loader reads ``LD_LIBRARY_PATH`` only when a process starts.
+Instead, the kernel loads the package's libraries once with global symbols (``RTLD_GLOBAL``; 5 ms for a service type on
+Jazzy). After that, code that opens these libraries by name finds them, such as rosidl's type support.
 """
 
 from __future__ import annotations
@@ -31,12 +30,12 @@ if TYPE_CHECKING:
     from autograder.workspaces.builds.colcon import Build
 
 MAX_LOG = 4_000
-"""The maximum length of the log of a failed build, in characters."""
+"""The maximum number of characters that are shown of the log of a failed build."""
 
 
 @dataclass(frozen=True, repr=False)
 class WorkspaceBuild:
-    """The result of `build_workspace`, in the form that a cell shows.
+    """The result of `build_workspace`, which a notebook shows below the cell.
 
     Attributes:
         build: The result of the build.
@@ -77,10 +76,10 @@ class WorkspaceBuild:
 def build_workspace(folder: str | os.PathLike[str] = "ros2_ws") -> WorkspaceBuild:
     """Build a workspace as ``colcon build`` does, and make its packages available in this kernel.
 
-    Sources that did not change are not built again. The result is in the workspace's ``install`` folder, for
-    terminals to source. Programs that this kernel starts from now on (``!ros2 run``, a launch) find the packages
-    without sourcing, and so does ``import``. If the kernel has already imported a package, it keeps the old one, and
-    a note says so.
+    Sources that did not change are not built again. The packages are in the workspace's ``install`` folder, which a
+    terminal can source. ``import``, and programs that this kernel starts from now on (such as ``!ros2 run``), find the
+    packages without sourcing. If the kernel has already imported a package, it keeps the old version, and a note says
+    so.
 
     Args:
         folder: The workspace folder, which contains ``src``.
@@ -111,18 +110,19 @@ def _use(prefixes: list[Path], made: Build) -> str:
     old = sorted({*stale, *elsewhere})
     if not old:
         return ""
-    return f"This kernel has imported {', '.join(old)} before and goes on with that one; restart it to use the new one."
+    return f"This kernel uses another version of {', '.join(old)}: restart the kernel to use the new one."
 
 
 def load_libraries(prefix: Path) -> None:
-    """Load the libraries of a package, so that code that opens them by name gets these.
+    """Load the libraries of a package into this process, so that code that opens them by name finds them.
 
     Raises:
-        OSError: A library needs another one that does not exist.
+        OSError: A library needs another library that does not exist.
     """
     waiting = sorted((prefix / "lib").glob("lib*.so"))
     while waiting:
-        # A library may need another one, and no file lists the right order. So try repeatedly until all are loaded.
+        # A library may need another one of the package, and no file lists the right order. So try repeatedly until all
+        # are loaded.
         failed: list[tuple[Path, OSError]] = []
         for library in waiting:
             try:

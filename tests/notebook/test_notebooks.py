@@ -144,7 +144,7 @@ def test_a_background_without_nodes_left_ends(notebook: Notebook) -> None:
 def test_a_node_of_the_same_name_from_another_cell_takes_its_place(notebook: Notebook) -> None:
     notebook.run('first = spin_in_background(TalkerNode(text="first"))', "one")
     output = notebook.run('spin_in_background(TalkerNode(text="second"))', "two")
-    assert "A talker_node of an earlier cell was spinning still. It was stopped" in output.stdout
+    assert "A talker_node of an earlier cell was still spinning. It was stopped" in output.stdout
     assert "already registered" not in output.stdout, "stopped before, or rcl ends the logs of both"
     assert notebook.run(HEAR_ONE_OF_EACH).value == "{'second'}"
 

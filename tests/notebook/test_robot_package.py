@@ -123,5 +123,5 @@ def test_where_there_is_no_course_nothing_of_it_is_taken(
 ) -> None:
     """As in the box of a graded notebook: the check brings the course's own programs by itself."""
     monkeypatch.setenv(course.VARIABLE, str(tmp_path))
-    assert "graded by itself" in complete_package(tmp_path / "ros2_ws")
+    assert "graded alone" in complete_package(tmp_path / "ros2_ws")
     assert not (package / "my_robot_pkg/talker.py").exists()

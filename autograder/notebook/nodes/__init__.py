@@ -1,1 +1,1 @@
-"""How students' nodes run: ROS is started in the kernel, nodes spin in the background, and are ended."""
+"""Runs students' nodes: starts ROS in the kernel, spins nodes in the background, and destroys them at the end."""

@@ -1,7 +1,7 @@
 """Spins nodes in the background of a notebook, and ends them when their cell is run again.
 
-``with spinning(TalkerNode(), ListenerNode()): …`` spins nodes while the cell's body runs;
-``spin_in_background(TalkerNode())`` spins them until they are stopped or the cell is run again.
+``with spinning(TalkerNode(), ListenerNode()): …`` spins nodes while the ``with`` block runs.
+``spin_in_background(TalkerNode())`` spins a node until it is stopped or the cell is run again.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from autograder.notebook.nodes.lending_executors import Taken
 
 _GRACE_AT_EXIT = 0.5
-"""Seconds to wait for callbacks when the kernel ends. A kernel that takes more than five seconds to end is killed
-(``KernelManager.shutdown_wait_time``).
+"""Seconds to wait for running callbacks when the kernel ends. It is short, because Jupyter kills a kernel that takes
+more than five seconds to end (``KernelManager.shutdown_wait_time``).
 """
 
 
@@ -41,8 +41,8 @@ def spinning(*nodes: Node, threads: int = 1) -> Spinning:
         with spinning(TalkerNode(), ListenerNode()) as (talker, listener):
             time.sleep(3)
 
-    At the end of the block, however it ends, the executor is shut down, its threads are joined and the nodes
-    are destroyed. The executor belongs to the nodes' own context.
+    At the end of the block, even after an error, the executor is shut down, its threads are joined and the nodes are
+    destroyed. The executor has the same ROS context as the nodes.
 
     Args:
         nodes: At least one node.
@@ -54,8 +54,8 @@ def spinning(*nodes: Node, threads: int = 1) -> Spinning:
         UnusableNodeError: A node has ended.
         NodeBusyError: A node spins already.
         SettingError: ``threads`` is not a valid number of threads.
-        CallbackFailedError: A callback raised an exception and the block itself did not. Raised at the end of the
-            block.
+        CallbackFailedError: A callback raised an exception, and the block did not. This error is raised at the end of
+            the block.
     """
     check_nodes("spinning", nodes)
     check_threads(threads)
@@ -65,13 +65,13 @@ def spinning(*nodes: Node, threads: int = 1) -> Spinning:
 def spin_in_background(node: Node, *more: Node, name: str | None = None, threads: int = 1) -> Background:
     """Spin nodes in the background until ``.stop()``, or until this cell is run again.
 
-    When the cell is run again, the nodes of its earlier run are first stopped and destroyed. A background with a
-    ``name`` keeps running; only another background with this name replaces it.
+    When the cell is run again, the nodes of its previous run are stopped and destroyed first. If ``name`` is given, the
+    nodes keep spinning then, until ``spin_in_background`` is called with the same name again.
 
     Args:
         node: A node.
         more: Further nodes for the same executor.
-        name: Distinguishes this background from others that the same cell starts.
+        name: A name for these nodes, so that a later call with the same name replaces them.
         threads: The number of callbacks that may run at the same time. With 2 or more, the executor is a
             MultiThreadedExecutor.
 
@@ -94,7 +94,7 @@ def spin_in_background(node: Node, *more: Node, name: str | None = None, threads
 
 
 def stop_all(grace: float = GRACE) -> None:
-    """Stop everything that spins in the background, and destroy every node that was made in this notebook.
+    """Stop all nodes that spin in the background, and destroy every node that was made in this notebook.
 
     Args:
         grace: Seconds for each running callback to return by itself.
@@ -106,7 +106,7 @@ def stop_all(grace: float = GRACE) -> None:
 
 
 class Background:
-    """Nodes that spin while the notebook goes on. ``spin_in_background`` makes this.
+    """Nodes that spin while other cells run. ``spin_in_background`` returns this object.
 
     Args:
         nodes: At least one node. They have already been checked.
@@ -137,7 +137,7 @@ class Background:
 
     @property
     def errors(self) -> tuple[CallbackError, ...]:
-        """The errors of callbacks so far. Each error is listed once, with a count."""
+        """The errors in callbacks so far. An error that has happened several times is listed once, with a count."""
         return self._errors.all
 
     def start(self) -> None:
@@ -154,10 +154,10 @@ class Background:
             self._errors.show_counts()
 
     def end(self, *, keep: Collection[Node] = (), grace: float = GRACE) -> None:
-        """Stop, but leave some nodes alive so that they can be spun again.
+        """Stop spinning, and destroy the nodes except some that are to be spun again.
 
         Args:
-            keep: The nodes to leave alive.
+            keep: The nodes that are not destroyed.
             grace: Seconds for a running callback to return by itself.
         """
         for node in self.nodes:
@@ -166,13 +166,13 @@ class Background:
         try:
             self._threads.stop(grace)
         except KeyboardInterrupt:
-            # A second, impatient interrupt must not leave threads behind.
+            # The student has interrupted the kernel again. End the threads at once, so that none is left.
             self._threads.stop(grace=0.0)
             raise
         let_log_lines_arrive()
 
     def drop(self, node: Node) -> None:
-        """Remove one node for good. If it is the last node, the background ends."""
+        """Stop spinning one node and destroy it. If no node is left, end the background."""
         self._threads.let_go(node)
         destroy_node(node)
         if not self.nodes:
@@ -200,7 +200,7 @@ class Background:
         if ending is Ending.ROS_SHUT_DOWN:
             say(
                 f"ROS was shut down, so {self._label} spins no longer. "
-                "To go on, call start_ros() and run the cell again that made it."
+                "To go on, call start_ros() and run the cell again that made the node."
             )
         elif ending is Ending.CALLBACK_ASKED:
             say(f"A callback raised SystemExit, so {self._label} spins no longer.")
@@ -212,7 +212,7 @@ class Background:
         if self._threads.is_own_thread() and taken.caller:
             say(
                 f"A callback of {name} calls rclpy.{taken.caller}(). A callback must not spin its own node: "
-                "what it waits for may never come. Use `await`, or add_done_callback()."
+                "the answer that it waits for may never come. Use `await`, or add_done_callback()."
             )
         elif not taken.comes_back:
             say(f"{name} was added to another executor, so it spins in the background no longer.")
@@ -224,7 +224,7 @@ class Background:
 
 
 class Interrupted(KeyboardInterrupt):
-    """The kernel was interrupted inside ``with spinning(...)``. It is shown as one line and not as a traceback."""
+    """The kernel was interrupted inside ``with spinning(...)``. A notebook shows one line instead of a traceback."""
 
     def _render_traceback_(self) -> list[str]:
         return [str(self)]
@@ -255,14 +255,12 @@ class Spinning:
             raise CallbackFailedError(self._background.errors) from self._background.errors[0].error
 
     def __repr__(self) -> str:
-        """Return one line, for a cell that ends with ``spinning(...)`` but has no ``with``."""
-        return (
-            f"{self._label} not spinning: write `with spinning(...):` and indent what is to happen meanwhile."
-        )
+        """Return the line that a notebook shows if a cell ends with ``spinning(...)`` without ``with``."""
+        return f"{self._label} not spinning: write `with spinning(...):` and indent the lines that run meanwhile."
 
 
 def replace_named(name: str, keep: Collection[Node]) -> None:
-    """Stop the background with this name, if there is one, but leave some nodes alive."""
+    """Stop the background with this name, if there is one, and destroy its nodes except those in ``keep``."""
     for background in running_backgrounds():
         if background.name == name:
             background.end(keep=keep)
@@ -279,9 +277,9 @@ def _background_of(node: Node) -> Background | None:
 
 
 def _undo_earlier_run(run: WatchedRun) -> None:
-    """Before a cell is run again, end the nodes of its earlier run, whose messages would mix with the new ones.
+    """End the nodes of a cell's previous run before the cell is run again. Their messages would mix with the new ones.
 
-    A node that another cell made is only stopped and not destroyed, because its variable may be used again. A
+    A node that was made in another cell is only stopped and not destroyed, because a later cell may use its variable. A
     background with a name keeps running.
     """
     left_behind = [
@@ -295,19 +293,18 @@ def _undo_earlier_run(run: WatchedRun) -> None:
 
 
 def _make_room(newcomer: NodeIdentity) -> None:
-    """Before a node is made, end a node with the same name from another cell, or every message would come twice.
+    """Before a node is made, destroy a node with the same name from another cell. Otherwise messages would come twice.
 
-    This must happen first: otherwise rcl warns, and when one of the two nodes is destroyed, the logs of both end. Two
-    nodes with the same name from the same run are intended, because the course shows what two servers with one name
-    do.
+    If both nodes existed, rcl would warn, and destroying one of them would end the log of both. Two nodes with the same
+    name that the same run of a cell makes stay, because a lab of the course shows what two servers with one name do.
     """
     for made in _made.alive():
         if made.identity == newcomer and made.run != _cells.current:
             background = _background_of(made.node)
             if background is not None and background.running:
                 say(
-                    f"A {node_label(made.node)} of an earlier cell was spinning still. "
-                    "It was stopped, so that nothing comes twice."
+                    f"A {node_label(made.node)} of an earlier cell was still spinning. "
+                    "It was stopped, so that no message comes twice."
                 )
             _end_node(made.node)
 
@@ -330,7 +327,7 @@ def _is_in(node: Node, nodes: Sequence[Any]) -> bool:
 
 
 def destroy_nodes_on(context: Context) -> None:
-    """Destroy every node of a context, before it is shut down."""
+    """Destroy every node of a ROS context. Call this before the context is shut down."""
     for node in _made.on(context):
         destroy_node(node)
 
@@ -343,5 +340,5 @@ _made.watch()
 _cells.before_each_run(_undo_earlier_run)
 prepare_environment()
 point_at_raising_lines()
-# The threads must end before the interpreter does; spin_threads.py says why.
+# The spinning threads must end before the interpreter ends; spin_threads.py says why.
 atexit.register(stop_all, grace=_GRACE_AT_EXIT)

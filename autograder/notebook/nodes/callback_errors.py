@@ -1,4 +1,4 @@
-"""Show exceptions of callbacks: the traceback once, then a count."""
+"""Shows exceptions in callbacks: the traceback at the first time, then only a count."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 _HUNG_CALL = (
     "While a callback waits in call(), only another thread can take the answer: "
-    "give the client a callback group of its own, and spin with threads=2."
+    "give the client its own callback group, and spin with threads=2."
 )
 
 
@@ -36,7 +36,7 @@ class CallbackError:
 
     Attributes:
         node: The node's name.
-        where: What owns the callback, such as ``"its timer (every 0.5 s)"``.
+        where: The owner of the callback in words, such as ``"its timer (every 0.5 s)"``.
         error: The first of the exceptions, with its traceback.
         count: The number of times that the error happened.
     """
@@ -47,13 +47,13 @@ class CallbackError:
     count: int = 1
 
     def __str__(self) -> str:
-        """Return one line that says where and how often the error happened, and what it was."""
+        """Return one line that names the node, the owner of the callback, the count and the error."""
         times = "" if self.count == 1 else f", {self.count} times"
         return f"{self.node}, in the callback of {self.where}{times}: {_last_line(self.error)}"
 
 
 class CallbackFailedError(PlainlyShownError, RuntimeError):
-    """A callback raised an exception. Raised at the end of ``with spinning(...)``; the traceback is already shown.
+    """A callback raised an exception during ``with spinning(...)``. Its traceback has been shown already.
 
     Attributes:
         errors: The errors of callbacks, sorted by when they first happened.
@@ -116,11 +116,11 @@ def _report(seen: CallbackError, failure: Failure) -> str:
 
 
 def _hints(failure: Failure) -> list[str]:
-    """Return advice if rclpy itself raised the error, after the student's callback or instead of it."""
+    """Return advice if rclpy itself raised the error because the callback, or its return value, is wrong."""
     if isinstance(failure.entity, Timer) and failure.entity.callback is None:
         return [
-            "The timer has None for a callback: the method was called when the timer was made, and what it "
-            "returned was given. Give the method itself, without parentheses: "
+            "The timer's callback is None, because the method was called when the timer was made. "
+            "Pass the method itself, without parentheses: "
             f"create_timer({failure.entity.timer_period_ns / 1e9:g}, self.{_likely_callback(failure.node)})."
         ]
     if isinstance(failure.entity, Service):
@@ -129,13 +129,13 @@ def _hints(failure: Failure) -> list[str]:
 
 
 def _likely_callback(node: Node | None) -> str:
-    """Return the name of the only method of the student's class, or a general word if it has several."""
+    """Return the name of the only method of the student's class; ``your_method`` if it has several."""
     own = [name for name, value in vars(type(node)).items() if callable(value) and not name.startswith("__")]
     return own[0] if len(own) == 1 else "your_method"
 
 
 def describe(entity: Any) -> str:
-    """Return in words what owns the callback."""
+    """Return the owner of a callback in words, such as ``its service /reset``."""
     if isinstance(entity, Timer):
         return f"its timer (every {entity.timer_period_ns / 1e9:g} s)"
     if isinstance(entity, Subscription):

@@ -1,4 +1,4 @@
-"""A list of the nodes in this kernel, kept so that they can be destroyed and leave nothing on the graph.
+"""Keeps a list of the nodes in this kernel, so that they can be destroyed and leave nothing on the graph.
 
 rclpy keeps no list of its nodes, and a forgotten node lives until Python collects it: a service from an earlier run
 of a cell would go on answering requests. So this module records each new node with the run of the cell that made it.
@@ -35,7 +35,7 @@ class NodeIdentity:
 
     Attributes:
         name: The node's name with its namespace, such as ``"/robot/talker_node"``.
-        context: The context to which it belongs.
+        context: The ROS context to which the node belongs.
     """
 
     name: str
@@ -48,7 +48,7 @@ class MadeNode:
 
     Attributes:
         node: The node.
-        identity: The full name of the node and its context.
+        identity: The full name of the node, and its ROS context.
         run: The run of the cell that made the node; None outside a notebook.
     """
 
@@ -109,14 +109,14 @@ class MadeNodes:
         ]
 
     def on(self, context: Context) -> list[Node]:
-        """Return the nodes of a context that are in memory, even destroyed ones and those whose ``__init__`` failed."""
+        """Return all nodes of a context that are in memory, also destroyed ones and those whose ``__init__`` failed."""
         with self._lock:
             entries = [(reference(), identity) for reference, identity, _ in self._made]
         return [node for node, identity in entries if node is not None and identity.context is context]
 
 
 def _identity_to_be(node_name: str, options: dict[str, Any]) -> NodeIdentity:
-    """Return the identity that a node with these options of ``Node.__init__`` will have."""
+    """Return the identity of the node that ``Node.__init__`` will make from these arguments."""
     namespace = str(options.get("namespace") or "").strip("/")
     return NodeIdentity(
         name="/".join(["", *filter(None, [namespace]), str(node_name)]),
@@ -125,7 +125,7 @@ def _identity_to_be(node_name: str, options: dict[str, Any]) -> NodeIdentity:
 
 
 def _has_begun(node: Node) -> bool:
-    """Return True if the node is not destroyed and its ``__init__`` did not fail."""
+    """Return True if the node is usable: not destroyed, and its ``__init__`` did not fail."""
     try:
         return not is_destroyed(node)
     except AttributeError:
@@ -139,8 +139,8 @@ class NodeEndedError(RuntimeError):
 def destroy_node(node: Node) -> None:
     """Destroy a node with its action servers and clients. If it is already destroyed, do nothing.
 
-    ``Node.destroy_node`` does not destroy action servers and clients. As long as one of these lives, the node stays
-    on the graph, and clients would still send it goals. Code that waits for an answer through this node gets a
+    ``Node.destroy_node`` does not destroy action servers and clients. As long as one of these lives, the node stays on
+    the graph, and clients would still send it goals. Code that waits for an answer to a request of this node gets a
     ``NodeEndedError``, because the answer can no longer come.
     """
     release_waiting_calls(node)
@@ -173,21 +173,21 @@ def is_destroyed(node: Node) -> bool:
 
 
 def release_waiting_calls(node: Node) -> None:
-    """End each wait for an answer to a service call or goal of this node."""
+    """Make each call of this node that waits for an answer raise a ``NodeEndedError``."""
     error = NodeEndedError(f"{node_label(node)} {_STOPPED}")
     for future in list(_pending_answers(node)):
         if not future.done():
             with warnings.catch_warnings():
-                # A callback that reads the answer gets this error, as intended. In that case rclpy would also print a
-                # warning about the error, which is therefore turned off.
+                # A callback that waits for the answer gets this error, as intended. Suppress rclpy's warning about this
+                # error.
                 warnings.filterwarnings("ignore", f".* {_STOPPED}", UserWarning)
                 future.set_exception(error)
-            # Mark the exception as read. Otherwise it is written to stderr when the future is collected.
+            # Read the exception. Otherwise rclpy writes it to stderr when the future is garbage-collected.
             future.exception()
 
 
 def _pending_answers(node: Node) -> Iterator[Future]:
-    # rclpy keeps pending futures in dicts by sequence number (rclpy/client.py, rclpy/action/client.py).
+    # Clients of rclpy keep their pending futures in dictionaries (rclpy/client.py, rclpy/action/client.py).
     for client in (*_parts(node, "clients"), *_parts(node, "waitables")):
         for name, requests in vars(client).items():
             if name.startswith("_pending_") and isinstance(requests, dict):
@@ -195,7 +195,7 @@ def _pending_answers(node: Node) -> Iterator[Future]:
 
 
 def _parts(node: Node, kind: str) -> list[Any]:
-    """Return the node's ``clients`` or ``waitables``; none if its ``__init__`` failed before making them."""
+    """Return the node's ``clients`` or ``waitables``; an empty list if ``__init__`` failed before it made them."""
     try:
         return list(getattr(node, kind))
     except AttributeError:

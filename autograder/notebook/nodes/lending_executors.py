@@ -1,9 +1,9 @@
-"""rclpy's two executors, extended: they take back nodes that rclpy moves away, and report goals that fail.
+"""rclpy's two executors, extended: they get back nodes that rclpy moves to another executor, and report failed goals.
 
 A node is in one executor at a time. ``rclpy.spin_once(node)`` and ``rclpy.spin_until_future_complete(node, …)`` move
-the node into rclpy's global executor, and afterwards leave it in none. A node that spun in the background would then
-no longer receive anything (``rclpy/__init__.py``, ``rclpy/node.py``). The executors of this module lend the node
-instead, and take it back.
+the node into rclpy's global executor, and afterwards leave the node without an executor (``rclpy/__init__.py``,
+``rclpy/node.py``). A node that spun in the background would then receive nothing any more. The executors of this module
+only lend the node, that is, they add it again afterwards.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 
 
 def report_goal_errors(task: Any, arguments: tuple[Any, ...], report: GoalErrorReport) -> tuple[Any, ...]:
-    """Return the arguments for a task of an executor. If the task executes a goal, errors in it will be reported.
+    """Return changed arguments for a task that executes a goal, so that errors are reported; else the same arguments.
 
-    rclpy itself catches an error in the execute callback and prints the traceback on standard error, among lines of
-    its own (``ActionServer._execute_goal`` in ``rclpy/action/server.py``). Here such an error is reported like that
-    of any other callback. The goal still ends as in rclpy: aborted, with an empty result.
+    rclpy itself catches an error in the execute callback and prints the traceback to standard error, among other lines
+    (``ActionServer._execute_goal`` in ``rclpy/action/server.py``). With the changed arguments, the error is reported
+    like an error in any other callback. The goal still ends as in rclpy: aborted, with an empty result.
 
     Args:
         task: The function that the executor is to run.
@@ -73,13 +73,13 @@ _LOANS = "_nodes_to_return"
 
 @dataclass(frozen=True)
 class Taken:
-    """A record that a node was moved out of its executor.
+    """The event that a node was moved out of its executor.
 
     Attributes:
         node: The node.
-        caller: The rclpy function that took the node, such as ``"spin_once"``; None if another executor's
-            ``add_node`` did.
-        comes_back: True if the node returns when that function ends.
+        caller: The rclpy function that moved the node, such as ``"spin_once"``; None if it was the ``add_node`` of
+            another executor.
+        comes_back: True if the node returns to its executor when this function ends.
     """
 
     node: Node
@@ -88,21 +88,21 @@ class Taken:
 
 
 class LendingExecutor(Executor):
-    """The code that this module's executors add to rclpy's."""
+    """The common part of this module's two executors, which extends rclpy's."""
 
     on_taken: Callable[[Taken], None] | None = None
-    """Called just before a node is taken, in the thread that takes it."""
+    """Called when another executor has taken a node, in the thread that has taken it."""
     on_goal_error: GoalErrorReport | None = None
     """Called with the error of an action server's execute callback."""
 
     def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task:
-        """Schedule a task; rclpy's action servers execute goals this way."""
+        """Schedule a task. rclpy's action servers use this to execute goals."""
         if self.on_goal_error is not None:
             args = report_goal_errors(callback, args, self.on_goal_error)
         return super().create_task(callback, *args, **kwargs)
 
     def release(self, node: Node) -> None:
-        """Remove a node for good. This is not reported as taken."""
+        """Remove a node for good, without calling ``on_taken``."""
         on_taken, self.on_taken = self.on_taken, None
         try:
             super().remove_node(node)
@@ -110,7 +110,7 @@ class LendingExecutor(Executor):
             self.on_taken = on_taken
 
     def remove_node(self, node: Node) -> None:
-        """Lend the node. rclpy calls this when another executor takes it."""
+        """Lend a node to another executor. rclpy calls this when that executor's ``add_node`` is called."""
         had_it = node in self.get_nodes()
         super().remove_node(node)
         if not had_it or self.on_taken is None:
@@ -135,33 +135,33 @@ class LendingMultiThreadedExecutor(LendingExecutor, MultiThreadedExecutor):
 
 
 def make_executor(threads: int, context: Context) -> LendingExecutor:
-    """Return an executor with this number of threads, on the nodes' own context."""
+    """Return a lending executor with this number of threads, for nodes of a ROS context."""
     if threads == 1:
         return LendingSingleThreadedExecutor(context=context)
     return LendingMultiThreadedExecutor(num_threads=threads, context=context)
 
 
 def wake_global_executor() -> None:
-    """Wake a callback that waits inside ``rclpy.spin_once()``, so that its thread executes Python code for a moment."""
+    """Wake a callback that waits inside ``rclpy.spin_once()``, so that an exception can be raised in its thread."""
     executor = _global_executor()
     if executor is not None:
         executor.wake()
 
 
 def _global_executor() -> Executor | None:
-    """Return the executor of ``rclpy.spin`` if it exists; rclpy's own function would create it."""
+    """Return rclpy's global executor; None if there is none. ``rclpy.get_global_executor`` would create one."""
     executor: Executor | None = getattr(rclpy, "__executor", None)
     return executor
 
 
 def _global_executor_holding(node: Node) -> Executor | None:
-    """Return the global executor if it has just added the node, else None."""
+    """Return rclpy's global executor if it contains the node; otherwise None."""
     executor = _global_executor()
     return executor if executor is not None and node in executor.get_nodes() else None
 
 
 def _return_afterwards(borrower: Executor, node: Node, owner: LendingExecutor) -> None:
-    """Make the borrower return the node when it removes the node."""
+    """Make the executor that borrows a node return it to the owner when it removes the node."""
     loans: dict[int, LendingExecutor] | None = borrower.__dict__.get(_LOANS)
     if loans is None:
         loans = {}
@@ -183,7 +183,7 @@ def _hook_remove_node(borrower: Any, loans: dict[int, LendingExecutor]) -> None:
 
 
 def _spinning_function(frame: FrameType | None) -> str | None:
-    """Return the name of the rclpy function with which the student's code takes the node; None if there is none."""
+    """Return the rclpy function on the call stack that spins a node, such as ``"spin_once"``; None if there is none."""
     while frame is not None:
         if frame.f_globals.get("__name__") == "rclpy" and frame.f_code.co_name in _RCLPY_SPINS:
             return frame.f_code.co_name

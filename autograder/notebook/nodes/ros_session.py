@@ -1,4 +1,4 @@
-"""Starts ROS in a notebook's kernel, once, on a domain of its own, and shuts it down when the kernel ends."""
+"""Starts ROS in a notebook's kernel, on a separate ROS domain, and shuts it down when the kernel ends."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from autograder.ros_domain import (
 _CHECK_FIELDS = "ROS_PYTHON_CHECK_FIELDS"
 
 _DEFAULTS = {
-    # Log lines must not go to stderr, because stock nbgrader would then give a right answer no points.
+    # Log to stdout, because nbgrader without this package gives no points to a graded cell that wrote to stderr.
     "RCUTILS_LOGGING_USE_STDOUT": "1",
     "RCUTILS_COLORIZED_OUTPUT": "0",
-    # Write each line at once. If a kernel's output does not go to a terminal (in a batch, or on a hub), the C library
-    # holds log lines back until there are 4 KB, and they would appear below another cell or never.
+    # Write each line at once. Otherwise, if the kernel's output does not go to a terminal (in a batch, or on a
+    # JupyterHub), the C library holds log lines back until there are 4 KB, and they appear below another cell or never.
     "RCUTILS_LOGGING_BUFFERED_STREAM": "1",
-    # Report a field of the wrong type at once, instead of sending garbage.
+    # Make messages raise an error if a field is set to a value of the wrong type.
     _CHECK_FIELDS: "1",
 }
 _DISCOVERY_VARIABLES = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
@@ -61,8 +61,8 @@ _claim: DomainClaim | None = None
 def prepare_environment() -> None:
     """Set the environment variables that ROS needs in a notebook, unless the user has set them.
 
-    With these settings logs go to standard output without color codes, message fields are type-checked, and discovery
-    stays on this computer. Processes that a cell starts inherit the settings.
+    With these variables, log lines go to standard output without color codes, the types of message fields are checked,
+    and discovery is limited to this computer. Processes that a cell starts inherit the variables.
     """
     for name, value in _DEFAULTS.items():
         os.environ.setdefault(name, value)
@@ -75,8 +75,8 @@ def prepare_environment() -> None:
 def _check_fields_of_imported_messages() -> None:
     """Switch on type checks in generated message modules that were imported before the variable was set.
 
-    Each module reads the variable once, at import, into a global that the constructors of its messages look up
-    (``rosidl_generator_py/resource/_msg.py.em``).
+    When such a module is imported, it copies the variable into a global, which the constructors of its messages read
+    (``rosidl_generator_py/resource/_msg.py.em``). This function changes the global.
     """
     for module in list(sys.modules.values()):
         names = getattr(module, "__dict__", {})
@@ -85,12 +85,12 @@ def _check_fields_of_imported_messages() -> None:
 
 
 def start_ros() -> RosSession:
-    """Start ROS in this kernel. If it already runs, only report that.
+    """Start ROS in this kernel. If ROS already runs, change nothing. Return the domain.
 
-    The domain is the one in ``ROS_DOMAIN_ID``. If that is not set, a free domain is chosen, reserved until the kernel
-    ends, and exported, so that processes started from the notebook use it. ROS installs no signal handlers here:
-    interrupting the kernel stops the cell and does not end the nodes. After ``rclpy.shutdown()``, this function
-    starts ROS again.
+    The ROS domain is taken from ``ROS_DOMAIN_ID``. If this variable is not set, a free domain is chosen, reserved until
+    the kernel ends, and written to the variable, so that processes started from the notebook use the same domain. ROS
+    gets no signal handlers: interrupting the kernel stops the cell and not the nodes. After ``rclpy.shutdown()``, this
+    function starts ROS again.
 
     Raises:
         ValueError: ``ROS_DOMAIN_ID`` is not a valid domain number.
@@ -101,7 +101,7 @@ def start_ros() -> RosSession:
         if ok():
             _drop_signal_handlers()
         else:
-            # Drop a default context that was shut down, so that rclpy makes a new one.
+            # If the default context was shut down, this makes rclpy create a new one.
             try_shutdown()
             rclpy.init(args=[], domain_id=_session_domain(), signal_handler_options=SignalHandlerOptions.NO)
         domain = get_default_context().get_domain_id()
@@ -110,7 +110,7 @@ def start_ros() -> RosSession:
 
 
 def _drop_signal_handlers() -> None:
-    """Remove the signal handlers of an earlier ``rclpy.init()``: they would end ROS when the kernel is interrupted."""
+    """Remove the signal handlers of an earlier ``rclpy.init()``, which would end ROS when the kernel is interrupted."""
     if get_current_signal_handlers_options() != SignalHandlerOptions.NO:
         uninstall_signal_handlers()
 
@@ -125,5 +125,5 @@ def _session_domain() -> int:
     return domain
 
 
-# Registered before the executors' exit handler, and therefore run after it: nodes end first, then ROS.
+# This exit handler is registered before that of background.py and therefore runs after it: nodes end first, then ROS.
 atexit.register(try_shutdown)

@@ -2,12 +2,11 @@
 
 Three properties of rclpy shape this file (``rclpy/executors.py`` of Jazzy):
 
-* an exception in a callback leaves ``spin``, so the thread would end and all its nodes would stop;
-* ``Executor.shutdown`` destroys the executor even if another thread still waits in it, so the thread must leave
-  first;
-* nodes reference their executor only weakly, so this module keeps a reference to it.
+* an exception in a callback ends ``spin``, so the thread would end, and with it the spinning of all nodes; *
+``Executor.shutdown`` destroys the executor even if another thread still waits in it, so this thread must end first; *
+nodes reference their executor only weakly, so this module keeps a reference to it.
 
-A property of Python matters as well: a thread that still runs rclpy code when the interpreter ends aborts the whole
+One property of Python matters as well: a thread that still runs rclpy code when the interpreter ends aborts the whole
 process. So every thread is joined, and a callback that does not return is interrupted by an exception.
 """
 
@@ -40,17 +39,17 @@ if TYPE_CHECKING:
 GRACE = 2.0
 """Seconds for a running callback to return by itself after a stop was requested."""
 _RELEASE_EVERY = 0.05
-"""Seconds between two searches for calls that wait for an answer."""
+"""Seconds between two searches for service calls and goals that wait for an answer."""
 _LAST_GRACE = 1.0
 """Seconds for a callback to end after it was interrupted."""
 _ATTEMPTS = 3
 _LONG_WAIT = 1.0
-"""Seconds. If a call has waited longer than this for its answer when its node is stopped, the call counts as hung."""
+"""If a service call has waited for its answer longer than these seconds when its node is stopped, it counts as hung."""
 _MAX_FAILED_WAITS = 10
 
 
 class CallbackBrokenOff(BaseException):
-    """Raised inside a callback that does not return although its node must stop."""
+    """Interrupts a callback that does not return although its node must stop."""
 
     def __str__(self) -> str:
         return "the callback did not return when its node was told to stop; it was broken off here"
@@ -71,9 +70,9 @@ class Failure:
 
     Attributes:
         error: The exception, with its traceback.
-        entity: What owns the callback, such as a timer, subscription or service; None for a task.
+        entity: The owner of the callback, such as a timer, subscription or service; None for a task.
         node: The node to which the entity belongs; None for a task.
-        goes_on: True if the nodes keep spinning.
+        goes_on: True if the nodes keep spinning after the exception.
     """
 
     error: BaseException
@@ -103,7 +102,7 @@ class SpinThreads:
         threads: The number of callbacks that may run at the same time. With 2 or more, the executor is
             multi-threaded.
         on_failure: Called for each callback that raised an exception, in the thread that ran the callback.
-        on_end: Called once, after the end, in the thread that cleaned up.
+        on_end: Called once with the reason, after the nodes are destroyed.
     """
 
     def __init__(
@@ -134,8 +133,8 @@ class SpinThreads:
         self._alive = len(self._threads)
 
     def _make_thread(self, job: Callable[[], None]) -> threading.Thread:
-        # This must be a daemon thread: Python joins all other threads before it runs exit handlers, so one stuck
-        # callback would keep the kernel from ever ending.
+        # This must be a daemon thread: Python joins all other threads before it runs exit handlers, so a callback that
+        # hangs would keep the kernel from ending.
         return threading.Thread(target=self._thread, args=(job,), name="ros-spin", daemon=True)
 
     @property
@@ -149,7 +148,7 @@ class SpinThreads:
         return self._threads[0].is_alive() and not self._stop.is_set()
 
     def is_own_thread(self) -> bool:
-        """Return True if the caller runs in one of these threads, that is, in a callback."""
+        """Return True if the caller runs in one of the spinning threads, that is, in a callback."""
         return threading.current_thread() in self._threads
 
     def start(self) -> None:
@@ -167,8 +166,8 @@ class SpinThreads:
     def stop(self, grace: float = GRACE) -> None:
         """Stop spinning, wait for the callbacks that are running, and destroy the nodes.
 
-        A callback that does not return is interrupted and reported as a failure. If a callback itself calls this, the
-        stop is only requested, and happens after the callback.
+        A callback that does not return in time is interrupted and reported as a failure. If a callback itself calls
+        this method, the nodes stop after that callback.
 
         Args:
             grace: Seconds for a running callback to return by itself.
@@ -181,11 +180,11 @@ class SpinThreads:
         self._finish()
 
     def _await_callbacks(self, grace: float) -> bool:
-        """Wait for the callbacks that are running. Return True if they have returned."""
+        """Wait for the running callbacks. Return False if one has not returned within ``grace`` seconds."""
         deadline = time.monotonic() + grace
         while True:
-            # Answers are no longer received, so a callback that waits for one would wait forever. It may have begun
-            # to wait only now.
+            # No answers are received any more, so a callback that waits for one would wait forever. Repeat this,
+            # because a callback may have begun to wait only now.
             for node in self._nodes:
                 release_waiting_calls(node)
             left = deadline - time.monotonic()
@@ -213,21 +212,21 @@ class SpinThreads:
     def _break_off(self) -> None:
         for _ in range(
             _ATTEMPTS
-        ):  # A bare `except:` in a loop survives the first interruption, so it is repeated.
+        ):  # interrupt again, because a loop with a bare `except:` survives the first interruption
             for ident in list(self._running):
                 raise_in_thread(ident, CallbackBrokenOff)
             wake_global_executor()
             if self._join(_LAST_GRACE / _ATTEMPTS):
                 return
-        # The callback is stuck outside Python, or catches everything. Leave its thread alone: it runs no rclpy code,
-        # so it does no harm when the interpreter ends.
+        # The callback hangs in compiled code, or catches every exception. Leave its thread alone: the thread runs no
+        # rclpy code, so it does no harm when the interpreter ends.
         frames = sys._current_frames()
         for ident, running in list(self._running.items()):
             error = CallbackBrokenOff().with_traceback(_traceback_of(frames.get(ident)))
             self._on_failure(Failure(error, running.work.entity, running.work.node, goes_on=False))
 
     def _finish(self) -> None:
-        """Destroy the nodes and the executor. The first thread that calls this does it."""
+        """Destroy the nodes and the executor. A second call does nothing."""
         with self._finish_lock:
             if self._finished:
                 return
@@ -241,19 +240,19 @@ class SpinThreads:
         self._on_end(self._ending)
 
     def _close_unfinished_tasks(self) -> None:
-        """Close coroutines that will not run any more, because Python would warn about them on stderr."""
+        """Cancel coroutines that will not run any more. Otherwise Python would warn about them on stderr."""
         for task, *_ in list(getattr(self.executor, "_tasks", ())):
             if not task.executing():
                 with suppress(Exception):
                     task.cancel()
 
-    # The methods below run in the threads.
+    # The methods below run in the spinning threads.
 
     def _thread(self, job: Callable[[], None]) -> None:
         try:
             job()
         except CallbackBrokenOff:
-            pass  # The interruption came after the callback had already returned.
+            pass  # the callback had already returned when it was interrupted
         finally:
             with self._lock:
                 self._alive -= 1
@@ -262,15 +261,13 @@ class SpinThreads:
                 self._finish()
 
     def _take_work(self) -> None:
-        """Wait for messages and run their callbacks until stopped."""
+        """Wait for messages and timers, and run their callbacks or hand them to the other threads, until stopped."""
         failed_waits = 0
         try:
             while not self._stop.is_set():
                 try:
                     work = self._next_work()
-                except (
-                    Exception
-                ) as error:  # for example InvalidHandle, if a node is being destroyed right now
+                except Exception as error:  # such as InvalidHandle, if a node is being destroyed
                     failed_waits += 1
                     if failed_waits == _MAX_FAILED_WAITS:
                         self._on_failure(Failure(error, goes_on=False))
@@ -304,7 +301,7 @@ class SpinThreads:
 
     def _run_queued_work(self) -> None:
         while (work := self._to_workers.get()) is not None:
-            # Before the task runs, because rclpy offers the task of a callback that awaits something again and again.
+            # Do this before the task runs: while a callback awaits something, rclpy offers its task again and again.
             self._queued.discard(work.task)
             if not self._stop.is_set():
                 self._run(work)
@@ -329,13 +326,13 @@ class SpinThreads:
         self._on_failure(Failure(error, entity, node, goes_on=not self._stop.is_set()))
 
     def _is_of_the_end(self, error: BaseException, running: _Running) -> bool:
-        """Return True if a callback failed only because its node was stopped while a call was waiting normally."""
+        """Return True if a callback failed only because its node was stopped while a call waited for an answer."""
         waited = time.monotonic() - running.since
         return self._stop.is_set() and isinstance(error, NodeEndedError) and waited < _LONG_WAIT
 
 
 def raise_in_thread(ident: int, error: type[BaseException]) -> None:
-    """Raise an exception in another thread, at the next line of Python that the thread runs.
+    """Raise an exception in another thread, when that thread next runs Python code.
 
     Args:
         ident: The id of the thread.

@@ -1,4 +1,4 @@
-"""Checks what a student wants to spin, and names the mistake if it cannot be spun."""
+"""Checks the nodes that a student wants to spin. If they cannot be spun, the error names the mistake."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class NotANodeError(PlainlyShownError, TypeError):
 
 
 class UnusableNodeError(PlainlyShownError, NodeEndedError):
-    """The node was destroyed or ROS was shut down, or the node's ``__init__`` did not finish."""
+    """The node was destroyed, ROS was shut down, or the node's ``__init__`` was not called."""
 
 
 class NodeBusyError(PlainlyShownError, RuntimeError):
@@ -25,7 +25,7 @@ class NodeBusyError(PlainlyShownError, RuntimeError):
 
 
 class SettingError(PlainlyShownError, ValueError):
-    """A setting, such as the number of threads, is not valid."""
+    """An option, such as the number of threads, is not valid."""
 
 
 def check_nodes(caller: str, nodes: tuple[Any, ...]) -> None:
@@ -33,12 +33,12 @@ def check_nodes(caller: str, nodes: tuple[Any, ...]) -> None:
 
     Args:
         caller: The name of the function that the student called, for the messages.
-        nodes: The arguments of that call.
+        nodes: The arguments of this call.
 
     Raises:
-        NotANodeError: An argument is not a node, or there is none.
+        NotANodeError: An argument is not a node, or there are no arguments.
         UnusableNodeError: A node was destroyed, ROS was shut down after it was made, or its ``__init__`` was skipped.
-        NodeBusyError: A node spins already, or is given twice.
+        NodeBusyError: A node already spins, or is given twice.
     """
     if not nodes:
         raise NotANodeError(f"{caller}() needs at least one node, such as {caller}(TalkerNode())")
@@ -69,7 +69,7 @@ def _check_is_node(caller: str, thing: Any) -> None:
     if isinstance(thing, Node):
         return
     if isinstance(thing, type):
-        kind = "a class" if issubclass(thing, Node) else "a class, and not one of nodes"
+        kind = "a class" if issubclass(thing, Node) else "a class that is not derived from Node"
         raise NotANodeError(
             f"{thing.__name__} is {kind}. Add parentheses to make a node of it: {caller}({thing.__name__}())"
         )
@@ -86,7 +86,9 @@ def _check_is_node(caller: str, thing: Any) -> None:
         raise NotANodeError(
             f"{caller}() was given None. A function that makes a node must end with `return node`"
         )
-    raise NotANodeError(f"{caller}() takes nodes, and this is of type {type(thing).__name__}: {thing!r}")
+    raise NotANodeError(
+        f"{caller}() takes nodes, but this argument is of type {type(thing).__name__}: {thing!r}"
+    )
 
 
 def _check_is_usable(node: Node) -> None:
@@ -115,8 +117,10 @@ def _check_is_idle(node: Node) -> None:
         return
     name = node_label(node)
     if isinstance(executor, LendingExecutor):
-        raise NodeBusyError(f"{name} spins in the background already: leave it, or call .stop() there first")
+        raise NodeBusyError(
+            f"{name} spins in the background already: let it spin, or call .stop() there first"
+        )
     raise NodeBusyError(
         f"{name} is in another executor already ({type(executor).__name__}): "
-        "end rclpy.spin() there, or call its remove_node() first"
+        "end rclpy.spin() there, or call that executor's remove_node() first"
     )

@@ -1,1 +1,1 @@
-"""How students see the running graph: live pictures, plots and recordings."""
+"""Shows students the running graph: live pictures, plots of messages, and recordings."""

@@ -1,8 +1,8 @@
 """Lays out a graph's boxes and arrows in columns, from publishers to subscribers.
 
 igraph decides which arrows close a cycle, in which column and order the boxes are, and how a long arrow passes the
-columns in between (Sugiyama's layered drawing). This module computes pixels. Each arrow has its own point on the edge
-of a box, so that an arrow that closes a cycle never begins where another one ends.
+columns in between (Sugiyama's layered drawing). This module computes pixels from that. Each arrow begins and ends at
+its own point on the edge of a box, so that two arrows in opposite directions can be told apart.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ Point = tuple[float, float]
 """A position or size in pixels: along the main direction of the arrows, and across it."""
 
 SWEEPS = 100
-"""The number of passes in which igraph reduces the crossings of arrows."""
+"""The maximum number of passes in which igraph reduces the crossings of arrows."""
 GAP_BESIDE = 24
 """Pixels between two boxes in the same column."""
 _PORTS = 0.72
-"""The fraction of a box's edge, from 0 to 1, on which arrows begin and end."""
+"""The fraction of a box's edge, from 0 to 1, that has room for the ends of arrows."""
 
 
 @dataclass(frozen=True)
 class Arrow:
-    """A line between two boxes, as corners in pixels: the first on the edge of ``start``, the last on ``end``'s."""
+    """A line between two boxes, given by points: the first on the edge of box ``start``, the last on ``end``'s."""
 
     start: str
     end: str
@@ -50,14 +50,14 @@ class GraphLayout:
 
 
 def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: float) -> GraphLayout:
-    """Place boxes and arrows, with coordinates from 0.
+    """Return the positions of boxes and arrows, with coordinates from 0.
 
     Args:
         sizes: The size of each box, along and across.
-        arrows: Pairs of boxes, from and to. Arrows from a box to itself are left out.
+        arrows: Pairs of two boxes: where the arrow begins, and where it ends. Arrows from a box to itself are left out.
         gap: Pixels between two columns.
     """
-    import igraph  # imported for the first picture, so that a notebook without a picture need not wait for it
+    import igraph  # imported here, so that only a notebook that draws a graph waits for the import
 
     boxes = list(sizes)
     drawn = [(a, b) for a, b in dict.fromkeys(arrows) if a != b]
@@ -65,7 +65,8 @@ def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: 
         return GraphLayout({}, (), (0.0, 0.0))
     number = {box: index for index, box in enumerate(boxes)}
     edges = [(number[a], number[b]) for a, b in drawn]
-    # Reverse these arrows first, because igraph 1.0 returns wrong routes for arrows that it reverses itself.
+    # Reverse the arrows that close a cycle before igraph does, because igraph 1.0 returns wrong routes for arrows that
+    # it reverses itself.
     back = set(igraph.Graph(n=len(boxes), edges=edges, directed=True).feedback_arc_set(method="eades"))
     onward = [(b, a) if index in back else (a, b) for index, (a, b) in enumerate(edges)]
     graph = igraph.Graph(n=len(boxes), edges=onward, directed=True)
@@ -95,7 +96,7 @@ def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: 
 
 
 def _push_apart(places: Sequence[list[float]]) -> None:
-    """Move boxes in a column at least one unit apart, because igraph does not always keep its gap."""
+    """Move the boxes of a column apart, by at least one unit, because igraph does not always do so."""
     last: dict[int, float] = {}
     for place in sorted(places):
         column = round(place[1])
@@ -104,7 +105,7 @@ def _push_apart(places: Sequence[list[float]]) -> None:
 
 
 def _columns(columns: Sequence[int], widths: Sequence[float], gap: float) -> list[float]:
-    """Return the center of each column, which is as wide as its widest box."""
+    """Return the center of each column. A column is as wide as its widest box."""
     middles = []
     edge = 0.0
     for column in range(max(columns) + 1):
@@ -117,7 +118,7 @@ def _columns(columns: Sequence[int], widths: Sequence[float], gap: float) -> lis
 def _with_ports(
     drawn: Sequence[tuple[str, str]], ways: Sequence[list[Point]], sizes: Mapping[str, Point]
 ) -> tuple[Arrow, ...]:
-    """Return the arrows with their ends spread along the edges of the boxes, sorted by direction."""
+    """Return the arrows, with their ends spread along the edges of the boxes so that arrows cross less."""
     ends: dict[tuple[str, bool], list[tuple[float, int, bool]]] = {}
     for index, ((a, b), way) in enumerate(zip(drawn, ways, strict=True)):
         onward = way[-1][0] > way[0][0]

@@ -1,7 +1,7 @@
 """Draws the running graph, once or live: nodes, and the topics, services and actions between them.
 
-The picture is SVG, with the same content in words for readers who cannot see it. JupyterLab's theme does not apply
-inside the picture, so the dark form is the light one with inverted brightness.
+The picture is SVG, with a description in words for readers who cannot see it. JupyterLab's theme does not apply inside
+the picture. So in a dark theme, the light picture is shown with inverted brightness.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 PERIOD = 1.0
 """Seconds between two queries of the graph."""
 AGAIN = 10.0
-"""Seconds after which a picture with traffic is shown again. The animation of its lines lasts only a little longer, so
-it stops soon after the kernel has ended.
+"""Seconds after which a picture with moving lines is shown again, even without a change. Its animation lasts only a
+little longer, so the lines stop soon after the kernel has ended.
 """
 _DARK = '<style>[data-jp-theme-light="false"] .ros-graph { filter: invert(0.93) hue-rotate(180deg); }</style>'
-"""A style that inverts the brightness and keeps the hues."""
+"""A style for JupyterLab's dark theme, which inverts the brightness and keeps the hues."""
 
 # Pixels.
 _LETTER = 7.3
@@ -39,7 +39,8 @@ _GAP_ALONG = 52
 _GAP_ALONG_DOWN = 34
 _MARGIN = 12
 _PAGE = 860
-"""The width of a notebook's column in pixels. A wider picture is drawn from top to bottom, if it then becomes narrower.
+"""The width of a notebook's column in pixels. A picture that would be wider from left to right is drawn from top to
+bottom, if this makes it narrower.
 """
 
 _STYLE = """
@@ -60,10 +61,10 @@ path.flows { stroke: #0b5cad; stroke-dasharray: 7 5; animation: flow 0.8s linear
 
 
 def draw_graph() -> GraphPicture:
-    """Return a picture of the current graph, to be shown at the end of a cell.
+    """Return a picture of the running graph. A notebook shows it if this is the last expression of a cell.
 
-    It shows every node of this kernel's ROS domain, including nodes of other programs. It leaves out the endpoints
-    that every node has (for its log and parameters).
+    The picture shows every node of this kernel's ROS domain, including nodes of other programs. It leaves out the
+    endpoints that every node has, such as those for its log and parameters.
     """
     return GraphPicture(read_graph())
 
@@ -71,13 +72,13 @@ def draw_graph() -> GraphPicture:
 def watch_graph(minutes: float = 10.0) -> LivePicture:
     """Show the running graph below this cell, and draw it again as nodes come and go.
 
-    Lines with traffic move, and each topic shows its rate. The watch ends by itself after a while, when the cell is
-    run again, when another watch begins, when everything is stopped, or when ROS is shut down. The last picture
-    stays. To count messages, a hidden node subscribes to the topics, so meanwhile ``ros2 topic info`` counts one more
-    subscription.
+    The lines of a topic with messages move, and each topic shows its rate. The picture is drawn again until the time is
+    over, the cell or another ``watch_graph`` is run, the kernel's nodes are stopped, or ROS is shut down. The last
+    picture stays. To count messages, a hidden node subscribes to each topic, so ``ros2 topic info`` shows one more
+    subscription meanwhile.
 
     Args:
-        minutes: The number of minutes after which the watch ends.
+        minutes: The number of minutes for which the picture is drawn again.
 
     Raises:
         ValueError: ``minutes`` is not a positive number.
@@ -89,11 +90,11 @@ def watch_graph(minutes: float = 10.0) -> LivePicture:
 
 @dataclass(frozen=True, repr=False)
 class GraphPicture:
-    """A picture of the graph. JupyterLab shows it as an image; elsewhere it reads as text.
+    """A picture of the graph. JupyterLab shows an image, and other front ends the same content as text.
 
     Attributes:
         graph: The nodes and their connections.
-        rates: The messages per second of each topic, as far as known.
+        rates: The number of messages per second on each topic, if it is known.
     """
 
     graph: RosGraph
@@ -111,7 +112,7 @@ class GraphPicture:
         return f"{_DARK}{image}<details><summary>The graph in words</summary><ul>{items}</ul></details>"
 
     def svg(self) -> str:
-        """Return the picture as SVG."""
+        """Return the picture as SVG, with the description in words."""
         labels = {_node_key(node): _Label("node", node) for node in self.graph.nodes}
         labels |= {_channel_key(c): _Label(c.kind, c.name, c.type) for c in self.graph.channels}
         rates = {_channel_key(channel): f"{rate:g}/s" for channel, rate in self.rates.items() if rate}
@@ -119,7 +120,7 @@ class GraphPicture:
 
     @property
     def is_moving(self) -> bool:
-        """True if a line of the picture moves."""
+        """True if a line of the picture moves, because messages arrive on a topic."""
         return any(self.rates.values())
 
     def sentences(self) -> list[str]:
@@ -184,7 +185,7 @@ def _channel_key(channel: GraphChannel) -> str:
 
 
 def _arrows(graph: RosGraph) -> list[tuple[str, str]]:
-    """Return the arrows, in the direction in which messages, requests and goals go.
+    """Return the arrows of the picture, which show the direction of messages, requests and goals.
 
     An arrow leads from a publisher or client to a topic, service or action, or from there to a subscriber or server.
     """
@@ -197,10 +198,10 @@ def _arrows(graph: RosGraph) -> list[tuple[str, str]]:
 
 
 class _Drawing:
-    """Turns a layout into SVG.
+    """Computes the layout of a graph and draws it as SVG.
 
-    *Along* means the direction of the arrows, *beside* the direction across it. Along is to the right, or downward if
-    the picture would be too wide.
+    Arrows go to the right, or downward if the picture would be too wide. In this class, ``along`` is the coordinate in
+    the direction of the arrows, and ``beside`` the other coordinate.
     """
 
     def __init__(
@@ -220,7 +221,7 @@ class _Drawing:
         if self._layout.extent[0] + 2 * _MARGIN > _PAGE:
             sizes = {key: (float(_HEIGHT), label.width) for key, label in labels.items()}
             down = lay_out(sizes, arrows, _GAP_ALONG_DOWN)
-            # A page shrinks a picture that is too wide, and the text in it as well.
+            # The page shrinks a picture that is too wide, and its text becomes too small. So choose the narrower one.
             if down.extent[1] < self._layout.extent[0]:
                 self._down, self._layout = True, down
 
@@ -257,7 +258,7 @@ class _Drawing:
         return f'<g class="box {label.shape}">{rect}{texts}</g>'
 
     def _line(self, arrow: Arrow) -> str:
-        """Return a curve from box to box along its route, with an arrowhead at the end."""
+        """Return the SVG of an arrow: a curve along its route, and an arrowhead."""
         path = "M{:.1f},{:.1f}".format(*self._xy(arrow.points[0]))
         for (a1, b1), (a2, b2) in itertools.pairwise(arrow.points):
             middle = (a1 + a2) / 2

@@ -1,4 +1,4 @@
-"""Keeps a picture below a cell up to date, with a thread and a hidden node of its own."""
+"""Keeps a picture below a cell up to date, in a background thread with a hidden node."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ GONE = (InvalidHandle, RCLError, NotInitializedException, ExternalShutdownExcept
 
 
 def svg_page(width: float, height: float, head: str, style: str, body: str) -> str:
-    """Return an SVG picture with its own background, so that it is readable even without its style.
+    """Return an SVG picture with a title, a style and a background.
 
     Args:
         width: The width in pixels.
@@ -43,12 +43,12 @@ def svg_page(width: float, height: float, head: str, style: str, body: str) -> s
 
 
 def as_image(svg: str, words: str, attributes: str = "") -> str:
-    """Return a picture as an ``img`` with a data URL, because JupyterLab removes SVG elements from untrusted output.
+    """Return a picture as an ``img`` element with a data URL. JupyterLab removes SVG elements from untrusted output.
 
     Args:
         svg: The picture as SVG.
         words: The picture in words, for readers who cannot see it.
-        attributes: More attributes for the element.
+        attributes: More HTML attributes for the ``img`` element.
     """
     data = base64.b64encode(svg.encode()).decode()
     more = f" {attributes}" if attributes else ""
@@ -56,10 +56,10 @@ def as_image(svg: str, words: str, attributes: str = "") -> str:
 
 
 class Pictures(Protocol):
-    """A source of pictures: a first one, later ones, and a last one."""
+    """The source of the pictures that a :class:`LivePicture` shows one after the other."""
 
     name: str
-    """The name of the observing node; ROS hides names that begin with an underscore."""
+    """The name of the hidden node. It begins with an underscore, so that ROS hides the node."""
     period: float
     """Seconds between two updates."""
 
@@ -70,14 +70,14 @@ class Pictures(Protocol):
         """Return the next picture; None if nothing has changed."""
 
     def last(self) -> Any:
-        """Return the picture that stays at the end; None to keep the one that is shown."""
+        """Return the picture to show at the end; None to keep the one that is shown."""
 
 
 class LivePicture:
     """A picture that is kept up to date in the background.
 
-    It ends by itself after a while, when its cell is run again, when another picture of its kind begins, when
-    everything is stopped, or when ROS is shut down. The last picture stays.
+    Updating ends when the time is over, when the cell is run again, when another picture with the same name begins,
+    when the kernel's nodes are stopped, or when ROS is shut down. The last picture stays.
 
     Args:
         pictures: The pictures to show.
@@ -89,9 +89,7 @@ class LivePicture:
 
     def __init__(self, pictures: Pictures, minutes: float) -> None:
         if not minutes > 0:
-            raise ValueError(
-                f"minutes is how long the picture is kept up to date, such as 10, not {minutes!r}"
-            )
+            raise ValueError(f"minutes must be a positive number, such as 10, not {minutes!r}")
         self._pictures = pictures
         self._minutes = minutes
         self._over = threading.Event()
@@ -100,11 +98,11 @@ class LivePicture:
 
     @property
     def running(self) -> bool:
-        """True if the picture is still kept up to date."""
+        """True while the picture is kept up to date."""
         return self._thread is not None and self._thread.is_alive()
 
     def start(self) -> None:
-        """Show the first picture and keep it up to date. While a class is graded, only show it."""
+        """Show the first picture and keep it up to date. In a grader's kernel, only show the first picture."""
         from IPython.display import display
 
         picture = self._pictures.first()
@@ -113,7 +111,8 @@ class LivePicture:
             return
         self._handle = display(picture, display_id=True)  # type: ignore[no-untyped-call]
         if is_live():
-            # Made in the cell's own thread, so that the node belongs to this run of the cell and ends with it.
+            # Make the node in the cell's thread, so that it belongs to this run of the cell and is destroyed before the
+            # next.
             node = hidden_node(self._pictures.name)
             here = contextvars.copy_context()
             self._thread = threading.Thread(

@@ -1,4 +1,4 @@
-"""Plots a field of a topic's messages over time."""
+"""Plots a number in the messages of a topic over time."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ PERIOD = 0.5
 WINDOW = 30.0
 """The length of the time axis, in seconds."""
 _LARGEST = 1e300
-"""The maximum value that is drawn. Infinity and NaN are not drawn. A laser scan, for example, has ``inf`` in directions
-without an obstacle.
+"""The maximum absolute value that is drawn. So infinity and NaN are not drawn: a laser scan, for example, has ``inf``
+in directions without an obstacle.
 """
 _MOST = 3_000
-"""The maximum number of points in a plot."""
+"""The maximum number of points in a plot; older points are dropped."""
 _WIDTH, _HEIGHT, _LEFT, _FOOT, _HEAD = 720, 220, 70, 24, 26
 
 _STYLE = """
@@ -45,14 +45,14 @@ circle { fill: #0b5cad; }
 
 
 def plot(topic: str, field: str, minutes: float = 10.0) -> LivePicture:
-    """Draw one number of each message on a topic over time, below this cell, while messages arrive.
+    """Plot one number of each message on a topic over time. The plot is shown below this cell and kept up to date.
 
-    Like ``watch_graph``, the plot ends by itself, and the last picture stays.
+    Updating ends as for ``watch_graph``, and the last picture stays.
 
     Args:
         topic: The name of the topic, such as ``"/odom"``.
         field: The path of the number in a message, such as ``"data"``, ``"pose.pose.position.x"`` or ``"ranges[0]"``.
-        minutes: The number of minutes after which the plot ends.
+        minutes: The number of minutes for which the plot is kept up to date.
 
     Raises:
         ValueError: ``minutes`` is not a positive number, or ``field`` is not a valid path.
@@ -115,8 +115,8 @@ class PlotPicture:
 
     Attributes:
         title: The name of the plotted field.
-        points: Pairs of time and value, sorted by time. Times are in seconds before now, as negative numbers.
-        note: The reason why nothing can be drawn; empty if a curve is drawn.
+        points: Pairs of time and value, sorted by time. The time is in seconds, 0 for now and negative for the past.
+        note: The reason why no curve can be drawn; empty if one is drawn.
     """
 
     title: str
@@ -191,7 +191,7 @@ class PlotPicture:
 
 class _Plots:
     def __init__(self, topic: str, field: str) -> None:
-        # Each curve has a name of its own, because a new background ends an earlier one with the same name.
+        # Each plot has a different name, so that it does not replace the plot of another field.
         self.name = f"_plot_{zlib.crc32(f'{topic} {field}'.encode()):x}"
         self.period = PERIOD
         self._topic = topic
@@ -221,7 +221,7 @@ class _Plots:
         return PlotPicture(f"{self._topic} {self._field}", points, note)
 
     def _take(self, node: Node) -> bool:
-        """Take the messages that have arrived. Return True if there were any."""
+        """Take the messages that have arrived. Return True if there was at least one."""
         if self._subscription is None:
             types = dict(node.get_topic_names_and_types()).get(self._topic)
             if not types:

@@ -1,6 +1,7 @@
 """Records messages as MCAP, the format that ``ros2 bag``, Foxglove and Python programs can open.
 
-Messages are written as received, in CDR, with the definition of their type. So any type can be recorded.
+Messages are written in the format in which they are received (CDR), with the definition of their type. So messages of
+any type can be recorded.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 LOOK_AGAIN = 0.05
 """Seconds between two checks for new messages and new topics."""
 DEPTH = 1000
-"""The maximum number of messages on a topic that may arrive between two checks without any being lost."""
+"""The maximum number of messages on a topic between two checks; further messages would be lost."""
 _EVERY_NODE = ("/rosout", "/parameter_events")
 
 
@@ -60,11 +61,11 @@ def recording(path: str | os.PathLike[str], topics: Collection[str] = ()) -> Rec
             time.sleep(3)
 
     A topic is recorded from the moment its publisher is discovered, a few hundredths of a second after the publisher
-    was made. When the block ends, for whatever reason, the file is complete.
+    was made. When the block ends, even by an error, the file is complete.
 
     Args:
         path: The file to write. An existing file is overwritten.
-        topics: The topics to record; by default all except those that every node has (for its log and parameters).
+        topics: The topics to record; by default all except ``/rosout``, ``/parameter_events`` and hidden topics.
 
     Raises:
         ValueError: ``path`` does not end in ``.mcap``.
@@ -77,7 +78,7 @@ def recording(path: str | os.PathLike[str], topics: Collection[str] = ()) -> Rec
 
 
 class Recording:
-    """A recording, for use in a ``with`` statement. ``recording`` makes it.
+    """A recording, for use in a ``with`` statement. ``recording`` returns this object.
 
     Attributes:
         counts: The number of recorded messages of each topic.
@@ -95,7 +96,7 @@ class Recording:
         """Start recording."""
         self._node = hidden_node(
             "_recorder"
-        )  # done first, so that without ROS no existing recording is overwritten
+        )  # first, because this fails if ROS is not started: then no file must be overwritten
         try:
             self._file: IO[bytes] = self._path.open("wb")
         except OSError:
@@ -108,7 +109,7 @@ class Recording:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """End the recording. The file is then complete."""
+        """End the recording and complete the file."""
         self._over.set()
         self._thread.join()
         self._messages.close()
@@ -122,7 +123,7 @@ class Recording:
     def _record(self) -> None:
         with contextlib.suppress(
             *GONE
-        ):  # ROS was shut down, or everything was stopped: the recording so far stays
+        ):  # if ROS was shut down or the node destroyed, keep the recording so far
             while not self._over.wait(LOOK_AGAIN):
                 self._take()
                 self._look_for_topics()
@@ -153,7 +154,7 @@ class Recording:
         try:
             kind, text = message_class(type_name), definition(type_name)
         except LookupError:
-            return  # the package that defines the type is not installed here
+            return  # the package that defines the type is not installed, so skip the topic
         channel = self._messages.channel(topic, type_name, text, about={"offered_qos_profiles": ""})
         self.counts[topic] = 0
         self._subscriptions[channel] = self._node.create_subscription(
@@ -162,7 +163,7 @@ class Recording:
 
 
 def _as_offered(node: Node, topic: str) -> QoSProfile:
-    """Return the strictest QoS that all publishers of a topic offer, so that no message is lost."""
+    """Return the strictest QoS that is compatible with all publishers of a topic, so that no message is lost."""
     offered = [info.qos_profile for info in node.get_publishers_info_by_topic(topic)]
     reliable = all(profile.reliability is ReliabilityPolicy.RELIABLE for profile in offered)
     kept = all(profile.durability is DurabilityPolicy.TRANSIENT_LOCAL for profile in offered)

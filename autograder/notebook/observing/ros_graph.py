@@ -1,4 +1,4 @@
-"""Reads the running graph as plain data: its nodes, and what connects them."""
+"""Reads the running graph as plain data: nodes, and the topics, services and actions that connect them."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 READER = "_graph_reader"
-"""The name of the observing node. ROS hides names that begin with an underscore."""
+"""The name of the node that reads the graph. It begins with an underscore, so that ROS hides the node."""
 
 PATIENCE = 2.0
-"""Seconds to wait for two successive readings that are equal; after that, the last reading is used."""
+"""Time limit in seconds for two successive readings that are equal. After that, the last reading is used."""
 SETTLING = 0.05
-"""Seconds between two readings that must be equal. Waiting is needed because a node's endpoints are announced one by
+"""Seconds between two readings that are compared. The wait is needed because a node's endpoints are announced one by
 one.
 """
 
-# Every node has these endpoints, whatever it does (rclpy/node.py, parameter_service.py).
+# Every node of rclpy has these topics and services (rclpy/node.py, parameter_service.py). They are not shown.
 _EVERY_TOPIC = {"/rosout", "/parameter_events"}
 _EVERY_SERVICE = {
     "describe_parameters",
@@ -62,7 +62,7 @@ class GraphChannel:
 
 @dataclass(frozen=True, order=True)
 class End:
-    """A node's end of a channel, such as a publisher.
+    """A node's connection to a topic, service or action, for example as a publisher.
 
     Attributes:
         node: The full name of the node, such as ``/talker``.
@@ -77,7 +77,7 @@ class End:
 
 @dataclass(frozen=True)
 class RosGraph:
-    """The graph at one moment. Each part is sorted by name."""
+    """The graph at one moment: nodes and connections, sorted by name."""
 
     nodes: tuple[str, ...]
     ends: tuple[End, ...]
@@ -111,7 +111,7 @@ _VERBS = {
 
 
 def read_graph() -> RosGraph:
-    """Read the graph of this kernel's ROS domain, until two readings are equal or :data:`PATIENCE` seconds are over."""
+    """Return the graph of this kernel's ROS domain, once two successive readings are equal."""
     deadline = time.monotonic() + PATIENCE
     with _reader() as node:
         seen = look(node)
@@ -132,12 +132,12 @@ def _reader() -> Iterator[Node]:
 
 
 def hidden_node(name: str) -> Node:
-    """Return an observing node that no list of nodes shows, because its name begins with an underscore."""
+    """Return a new node for observing. If its name begins with an underscore, ``ros2 node list`` hides it."""
     return rclpy.create_node(name, enable_rosout=False, start_parameter_services=False)
 
 
 def look(node: Node) -> RosGraph:
-    """Return the graph as this node knows it now, without hidden nodes."""
+    """Return the graph as the observing node knows it now, without hidden nodes."""
     pairs = [
         (name, space) for name, space in node.get_node_names_and_namespaces() if not name.startswith("_")
     ]
@@ -152,12 +152,12 @@ def _full(name: str, space: str) -> str:
 
 
 def _topic_ends(node: Node) -> Iterator[End]:
-    """Yield the ends of all topics, with the names of their nodes.
+    """Yield all publishers and subscriptions, with the names of their nodes.
 
     The query is by topic, because a query by node finds only one of two nodes that have the same name.
     """
     for topic, types in node.get_topic_names_and_types():
-        # Topics that every node has, and an action's own topics, are not shown.
+        # Skip topics that every node has, and hidden topics such as those of an action.
         if not list(_channels(ChannelKind.TOPIC, [(topic, types)])):
             continue
         for gives, infos in (
@@ -170,7 +170,7 @@ def _topic_ends(node: Node) -> Iterator[End]:
 
 
 def _service_and_action_ends(node: Node, name: str, space: str) -> Iterator[End]:
-    """Yield the services and actions of one node; none if the node has just ended."""
+    """Yield a node's connections to services and actions; none if the node has just ended."""
     services, actions = ChannelKind.SERVICE, ChannelKind.ACTION
     try:
         found = [
@@ -194,7 +194,7 @@ def _channels(kind: ChannelKind, names_and_types: Iterable[tuple[str, list[str]]
             if kind is ChannelKind.TOPIC
             else kind is ChannelKind.SERVICE and last in _EVERY_SERVICE
         )
-        # The names of an action's own topics and services begin with <action>/_action.
+        # Hidden names include the topics and services of an action: they begin with <action>/_action.
         hidden = any(part.startswith("_") for part in name.split("/"))
         if not common and not hidden:
             yield from (GraphChannel(kind, name, type_name) for type_name in types)

@@ -1,4 +1,4 @@
-"""The traffic on topics, counted without waking up for each message."""
+"""Counts the messages on topics, without waking up for each message."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from rclpy.subscription import Subscription
 
 MOST = 200
-"""The maximum number of messages on a topic that are kept until the next look. For a faster topic the rate is only a
-lower bound.
+"""The maximum number of messages on a topic that can be counted between two calls of :meth:`TopicTraffic.look`. If
+there are more, the rate is only a lower bound.
 """
 ANY = QoSProfile(
     depth=MOST,
@@ -37,14 +37,14 @@ class _Counted:
 
 
 class TopicTraffic:
-    """Counts messages with a node that is not spun: messages wait in the middleware until the next look."""
+    """Counts messages with a node that is not spun. Messages wait in the middleware until :meth:`look` takes them."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
         self._counted: dict[GraphChannel, _Counted | None] = {}
 
     def look(self, channels: Iterable[GraphChannel]) -> dict[GraphChannel, float]:
-        """Return the messages per second on each of these topics since the last look. New topics are left out."""
+        """Return the messages per second on each of these topics since the last call. New topics are left out."""
         wanted = {channel for channel in channels if channel.kind is ChannelKind.TOPIC}
         for channel in self._counted.keys() - wanted:
             self._forget(channel)
@@ -76,7 +76,7 @@ def message_class(type_name: str) -> Any:
     """Return the class of a message type such as ``"std_msgs/msg/String"``.
 
     Raises:
-        LookupError: This environment does not have the type.
+        LookupError: The type is not installed in this environment.
     """
     try:
         package, kind, name = type_name.split("/")
@@ -95,5 +95,5 @@ def _taken(subscription: Subscription) -> int:
 
 
 def _rounded(rate: float) -> float:
-    """Return the rate, rounded so much that a steady rate looks the same each time."""
+    """Return a rate, rounded to a whole number or a half, so that a steady rate does not change in the picture."""
     return round(rate) if rate >= 5 else round(rate * 2) / 2

@@ -13,10 +13,10 @@ def start_robot() -> LiveRobot:
 
     The robot is a node, ``/robot``, that subscribes to ``/cmd_vel``, publishes on ``/odom`` and ``/scan``, and offers
     the services ``/reset`` and ``/lamp`` and the action ``/walk_to``. It stops if no command arrives for a second.
-    Running the cell again restarts it; it ends with ``.stop()`` or with the kernel. Its picture is kept up to date
-    for half an hour; ``.show()`` shows it again.
+    Running the cell again restarts the robot. ``.stop()`` or the end of the kernel ends it. The picture is kept up to
+    date for half an hour; ``.show()`` shows a new picture.
     """
-    # Imported only by notebooks that start the robot, because it needs many message types.
+    # imported here, because it imports many message types, which only notebooks with the robot need
     from autograder.notebook.robot.starting import LiveRobot
 
     robot = LiveRobot()

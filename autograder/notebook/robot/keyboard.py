@@ -1,4 +1,4 @@
-"""Drives the robot by keyboard: JupyterLab sends the arrow keys here, and a node publishes them as commands."""
+"""Drives the robot by keyboard: JupyterLab calls :func:`drive` for the arrow keys, and a node publishes the command."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from rclpy.publisher import Publisher
 
 NAME = "keyboard"
-"""The name of the node; ``draw_graph`` shows it next to the robot."""
+"""The name of the node that publishes the commands. ``draw_graph`` shows it next to the robot."""
 _DISCOVERY = 1.0
-"""Seconds after which a robot that listens would have been discovered."""
+"""Time limit in seconds for discovering a robot. After that, there is none."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ def drive(forward: float, turn: float) -> str:
         turn: Turning speed in radians per second, to the left.
 
     Returns:
-        A message for the student if no robot can be driven; otherwise empty.
+        A message for the student if there is no robot; otherwise an empty text.
     """
     global _keyboard
     if not rclpy.ok():

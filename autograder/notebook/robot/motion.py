@@ -1,4 +1,4 @@
-"""The motion of the robot in its two rooms: it turns, rolls forward, and stops at a wall."""
+"""Computes the motion of the robot in its two rooms: the robot turns, rolls forward, and stops at a wall."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FASTEST = 1.0
 FASTEST_TURN = 2.0
 """The maximum turning speed in radians per second."""
 _STEP = 0.05
-"""The distance in meters between two tests for a wall."""
+"""The distance in meters that the robot rolls between two tests for a wall."""
 
 
 @dataclass(frozen=True)
@@ -52,10 +52,10 @@ class Walls:
     """The walls around the robot.
 
     Attributes:
-        width: The width in meters.
-        height: The height in meters.
+        width: The width of both rooms together, in meters.
+        height: The height of the rooms on the map, in meters.
         walls: The outer and the inner walls.
-        door: The center of the doorway.
+        door: The center of the doorway between the rooms.
     """
 
     width: float
@@ -86,7 +86,7 @@ ROOM = _two_rooms()
 
 @dataclass(frozen=True)
 class Pose:
-    """The position of the robot in meters, and its heading in radians to the left of the x axis."""
+    """The position of the robot in meters, and the heading in radians, counterclockwise from the x axis."""
 
     x: float
     y: float
@@ -104,13 +104,13 @@ START = Pose(1.0, 2.0, 0.0)
 
 @dataclass(frozen=True)
 class Velocity:
-    """A command to the robot: meters per second forward, radians per second to the left."""
+    """A velocity: meters per second forward, and radians per second to the left."""
 
     forward: float = 0.0
     turn: float = 0.0
 
     def within_limits(self) -> Velocity:
-        """Return the command within the limits of the motors; zero if a value is not a number."""
+        """Return the velocity, limited to what the motors can do. A value that is NaN becomes 0."""
         return Velocity(_limited(self.forward, FASTEST), _limited(self.turn, FASTEST_TURN))
 
 
@@ -127,7 +127,7 @@ class Moved:
 
     Attributes:
         pose: The pose after the step.
-        velocity: The actual velocity: zero forward if a wall is in the way.
+        velocity: The actual velocity. Its forward speed is 0 if a wall is in the way.
         bumped: True if a wall is in the way.
     """
 
@@ -137,13 +137,13 @@ class Moved:
 
 
 def move(pose: Pose, velocity: Velocity, seconds: float, room: Walls) -> Moved:
-    """Return where the robot is after turning and rolling for some seconds, at most up to the first wall."""
+    """Return the pose of the robot after turning and rolling for some seconds. A wall stops it."""
     speed = velocity.within_limits()
     pieces = max(1, math.ceil(abs(speed.forward) * seconds / _STEP))
     here = pose
     for _ in range(pieces):
         turned = here.heading + speed.turn * seconds / pieces
-        # Use the heading halfway between before and after the turn, so that a circle stays a circle.
+        # Roll in the direction halfway between the old and the new heading, so that a circle stays a circle.
         way, heading = speed.forward * seconds / pieces, (here.heading + turned) / 2
         there = Pose(here.x + way * math.cos(heading), here.y + way * math.sin(heading), _wrapped(turned))
         clearance = room.clearance(there.point)
@@ -154,7 +154,7 @@ def move(pose: Pose, velocity: Velocity, seconds: float, room: Walls) -> Moved:
 
 
 def towards(pose: Pose, goal: tuple[float, float]) -> Velocity:
-    """Return the next command on the way to a point: first turn, then roll."""
+    """Return the velocity for the next step on the way to a point: first turn, then roll."""
     off = _wrapped(math.atan2(goal[1] - pose.y, goal[0] - pose.x) - pose.heading)
     if abs(off) > 0.3:
         return Velocity(0.0, math.copysign(1.2, off))

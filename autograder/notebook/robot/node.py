@@ -1,4 +1,4 @@
-"""The robot's node: it obeys ``/cmd_vel`` and publishes its position on ``/odom`` and its laser scan on ``/scan``."""
+"""The robot's node. It obeys ``/cmd_vel``, and publishes the position on ``/odom`` and the laser scan on ``/scan``."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 SCAN_EVERY = 5
 """The number of steps between two messages on ``/scan``."""
 OBEYS_FOR = 1.0
-"""Seconds for which a command is valid; if no other comes by then, the robot stops."""
+"""Seconds for which the robot obeys a command. If no other command arrives by then, it stops."""
 RAYS = 36
-"""The number of distances in a scan, all around the robot."""
+"""The number of distances in a laser scan, all around the robot."""
 FARTHEST = 10.0
 """The range of the laser, in meters."""
 
@@ -37,9 +37,10 @@ class RobotState:
     Attributes:
         pose: The pose of the robot.
         velocity: The current velocity of the robot.
-        bumped: True if a wall is in its way.
-        lamp: True if its lamp is on.
-        ranges: The distances to the walls in meters, all around, from straight ahead to the left.
+        bumped: True if a wall is in the robot's way.
+        lamp: True if the robot's lamp is on.
+        ranges: The distances to the walls in meters, at equal angles all around, beginning straight ahead and going
+            left.
         says: The text of the speech bubble; empty if it has none.
     """
 
@@ -52,9 +53,9 @@ class RobotState:
 
 
 class RobotNode(Node):
-    """Simulates the robot. Any program of the same ROS domain may drive it: a node, a terminal, another notebook.
+    """Simulates the robot. Any program on the same ROS domain may drive it: a node, a terminal, another notebook.
 
-    Its callbacks run one at a time, so none of them needs a lock.
+    The callbacks run one at a time, so they need no lock.
     """
 
     def __init__(self) -> None:
@@ -73,11 +74,11 @@ class RobotNode(Node):
 
     @property
     def state(self) -> RobotState:
-        """The current state. Any thread may read it."""
+        """The current state of the robot. Any thread may read it."""
         return self._state
 
     def play(self, scene: Scene) -> None:
-        """Let a scene drive the robot until another command arrives. The scene replaces an earlier one."""
+        """Let a scene drive the robot, instead of an earlier scene. Commands and goals from other nodes come first."""
         self._scene = scene
 
     @property

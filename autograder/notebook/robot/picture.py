@@ -1,4 +1,4 @@
-"""Draws the robot in its two rooms, as SVG in an ``img`` like all live pictures, and describes it in words."""
+"""Draws the robot in its two rooms as SVG, and describes the picture in words."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SCALE = 75
 _MARGIN = 14
 _FOOT = 26
 _LETTER, _PADDING, _BUBBLE = 7.85, 10, 24
-"""Sizes in pixels: the width of a letter, the space beside the text, the height of the bubble."""
+"""Sizes in pixels: the width of a letter, the space left and right of the text, the height of the speech bubble."""
 
 _STYLE = """
 .ground { fill: #fff; }
@@ -41,13 +41,13 @@ text.name { fill: #2e7d32; font-size: 12px; }
 
 @dataclass(frozen=True, repr=False)
 class RobotPicture:
-    """The robot at one moment.
+    """A picture of the robot at one moment.
 
     Attributes:
         state: The state of the robot.
         trail: The earlier positions, the oldest first.
-        before: The pose in the previous picture, from which the robot glides; None if it stands still.
-        glide: The duration of that animation in seconds.
+        before: The pose in the previous picture, from which an animation moves the robot; None for no animation.
+        glide: The duration of the animation in seconds.
         robots: The number of robots with this name on the ROS domain.
     """
 
@@ -84,7 +84,7 @@ class RobotPicture:
 
     def _repr_html_(self) -> str:
         width, height = _page()
-        # The new picture is decoded before it is shown. Until then the old one stays, so nothing flickers.
+        # decoding="sync": the browser decodes the new picture before it removes the old one, so nothing flickers.
         attributes = (
             f'width="{width}" height="{height}" decoding="sync" style="max-width: 100%; height: auto"'
         )
@@ -137,7 +137,7 @@ class RobotPicture:
         )
 
     def _bubble(self) -> str:
-        """Return the speech bubble, above the robot or, if there is no space, below it."""
+        """Return the speech bubble as SVG, above the robot or, if there is no space, below it; empty without a text."""
         if not self.state.says:
             return ""
         x, y = _at(self.state.pose.point)
@@ -174,7 +174,7 @@ def _page() -> tuple[int, int]:
 
 
 def _at(point: Point) -> tuple[float, float]:
-    """Convert meters, y up, to pixels, y down."""
+    """Convert a position in meters, with y up, to pixels, with y down."""
     return round(_MARGIN + point[0] * _SCALE, 1), round(_MARGIN + (ROOM.height - point[1]) * _SCALE, 1)
 
 
@@ -184,12 +184,12 @@ def _line(kind: str, start: Point, end: Point) -> str:
 
 
 def _placed(pose: Pose, length: str, angle: str = "") -> str:
-    """Return a transform that places the robot. An SVG attribute has no units; for CSS, pass them."""
+    """Return the transform that moves and turns the drawn robot. CSS needs units; an SVG attribute has none."""
     x, y = _at(pose.point)
     return f"translate({x}{length}, {y}{length}) rotate({-math.degrees(pose.heading):.1f}{angle})"
 
 
 def _unwound(before: Pose, state: RobotState) -> Pose:
-    """Return the earlier pose with its heading changed by full turns, so that the robot turns the short way."""
+    """Return the new pose, with a heading at most half a turn from the earlier one: the robot turns the short way."""
     turned = math.remainder(state.pose.heading - before.heading, math.tau)
     return replace(state.pose, heading=before.heading + turned)

@@ -1,4 +1,4 @@
-"""Scenes of the labs: the robot reports its position on a topic, or walks the numbers that an action computes."""
+"""Scenes for the labs: the robot reports its position on a topic, or walks an arc for each number of an action."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ if TYPE_CHECKING:
     from autograder.notebook.robot.motion import Pose
 
 SAYS_EVERY = 5
-"""The number of steps between two messages about the position."""
+"""The number of simulation steps between two messages about the position."""
 METRES = 0.1
-"""The radius in meters of the arc for the number 1."""
+"""The radius in meters of the arc for the number 1; other numbers multiply it."""
 _TOUR = ((2.5, 2.4), (3.6, 2.0))
-"""The points, in meters, on the way to the door."""
+"""The points on the robot's way to the door, in meters."""
 _QUARTER = math.pi / 2
 
 
 class Tour:
-    """The robot rolls to the door and reports its position on a topic.
+    """A scene in which the robot rolls to the door and reports its position on a topic.
 
     Args:
         node: The robot.
@@ -45,7 +45,7 @@ class Tour:
         return not self._way
 
     def next(self, pose: Pose, bumped: bool) -> Velocity | None:
-        """Return the command for the next step; every fifth step the robot reports its position."""
+        """Return the velocity for the next step; None at the end. Report the position every fifth step."""
         if bumped:
             self._way.clear()
         if self._way and math.dist(pose.point, self._way[0]) < NEAR_ENOUGH:
@@ -61,9 +61,9 @@ class Tour:
 
 
 class Spiral:
-    """The robot walks a quarter of a circle for each number in an action's feedback.
+    """A scene in which the robot walks a quarter of a circle for each number in an action's feedback.
 
-    For the Fibonacci sequence this is the Fibonacci spiral: each radius is the sum of the two before.
+    The radius is proportional to the number. So for the Fibonacci sequence the robot walks the Fibonacci spiral.
 
     Args:
         node: The robot.
@@ -71,7 +71,7 @@ class Spiral:
         name: The name of the action.
 
     Raises:
-        TypeError: The feedback does not begin with a list.
+        TypeError: The first field of the feedback is not a list.
     """
 
     def __init__(self, node: Node, action_type: Any, name: str) -> None:
@@ -95,7 +95,7 @@ class Spiral:
 
     @property
     def is_over(self) -> bool:
-        """True if the robot has walked all numbers so far."""
+        """True if the robot has walked all numbers that have arrived."""
         return not self._left and not self._steps
 
     def _hear(self, message: Any) -> None:
@@ -105,7 +105,7 @@ class Spiral:
         self._numbers = numbers
 
     def next(self, pose: Pose, bumped: bool) -> Velocity | None:
-        """Return the command for the next step. The robot does not walk through walls."""
+        """Return the velocity for the next step; None if no number is left. A wall ends the walk."""
         del pose
         if bumped:
             self._left.clear()
@@ -122,7 +122,7 @@ class Spiral:
 
 
 def _quarter_circle(radius: float) -> tuple[Velocity, int]:
-    """Return the velocity for a quarter circle to the left, within the motors' limits, and the number of steps."""
+    """Return the velocity for a quarter of a circle to the left, and the number of simulation steps that it takes."""
     if radius <= 0:
         return STILL, 0
     speed = min(FASTEST, FASTEST_TURN * radius)
@@ -132,4 +132,4 @@ def _quarter_circle(radius: float) -> tuple[Velocity, int]:
 
 
 Scene = Tour | Spiral
-"""A scene: drives the robot step by step until the scene is over."""
+"""A scene, which drives the robot step by step until the scene is over."""

@@ -24,30 +24,31 @@ if TYPE_CHECKING:
     from autograder.notebook.robot.node import RobotState
 
 NAME = "robot"
-"""The name of the background, so that a second run of the cell replaces the first."""
+"""The name for ``spin_in_background``, so that a second run of the cell replaces the first robot."""
 MINUTES = 30.0
-"""Minutes for which a picture is kept up to date."""
+"""The number of minutes for which a picture is kept up to date."""
 PERIOD = 0.2
 """Seconds between two pictures if the robot has moved."""
 _TRAIL = 150
 """The maximum number of positions in the trail."""
 _TRAIL_STEP = 0.08
-"""The distance between two positions in the trail, in meters."""
+"""The minimum distance between two positions in the trail, in meters."""
 _BUTTON = (
     '<button type="button" class="ros2-course-drive" hidden="hidden" data-commandlinker-command="ros2-course:drive" '
     'data-commandlinker-args="{}">Drive with the arrow keys</button>'
 )
-"""The button's HTML; the button is visible only if JupyterLab has the command."""
+"""The HTML of a button. JupyterLab shows it only if the extension of this course is installed."""
 LONGEST_WAIT = 20.0
 """The maximum time in seconds for which a cell waits until a scene has ended."""
 _LOOK_EVERY = 0.05
 _TELEPORT = 0.5
-"""Meters: if the robot moved farther than this between two pictures, it cannot have rolled but was reset to the start.
+"""A distance in meters that the robot cannot roll between two pictures. If the distance is larger, the robot was reset
+to the start.
 """
 
 
 class LiveRobot:
-    """A robot that runs in the background. ``start_robot`` makes it."""
+    """A robot that runs in the background. ``start_robot`` returns this object."""
 
     def __init__(self) -> None:
         start_ros()
@@ -67,21 +68,21 @@ class LiveRobot:
         return self._node.state
 
     def show(self) -> None:
-        """Show the robot below this cell. An earlier picture is no longer updated, but stays."""
+        """Show the robot below this cell. An earlier picture stays, but is not updated any more."""
         if self._picture is not None:
             self._picture.stop()
         self._picture = LivePicture(_RobotPictures(self._node), MINUTES)
         self._picture.start()
         if self._picture.running:
-            # The button is below the picture and not part of it, so that it is not redrawn while a student clicks it.
+            # The button is not a part of the picture, so that it is not redrawn while a student clicks it.
             display({"text/html": _BUTTON, "text/plain": ""}, raw=True)  # type: ignore[no-untyped-call]
 
     def talk(self, topic: str) -> None:
-        """Make the robot roll to the door, and report its position twice a second on a topic of strings."""
+        """Make the robot roll to the door, and report its position twice a second on a topic of type ``String``."""
         self._node.play(Tour(self._node, topic))
 
     def walk_numbers(self, action_type: Any, name: str) -> None:
-        """Make the robot walk a quarter of a circle for each number in an action's feedback from now on."""
+        """Make the robot walk a quarter of a circle for each number that arrives as an action's feedback."""
         self._node.play(Spiral(self._node, action_type, name))
 
     def wait(self) -> None:
@@ -91,7 +92,7 @@ class LiveRobot:
             time.sleep(_LOOK_EVERY)
 
     def stop(self) -> None:
-        """End the robot and its picture. A second call does nothing."""
+        """Destroy the robot's node and stop updating the picture. A second call does nothing."""
         self._background.stop()
         if self._picture is not None:
             self._picture.stop()
@@ -132,7 +133,7 @@ class _RobotPictures:
         return RobotPicture(self._shown, tuple(self._trail))
 
     def _follow(self) -> bool:
-        """Record the current position. Return True if the robot cannot have rolled there from the last one."""
+        """Add the robot's position to the trail. Return True if it cannot have rolled there since the last picture."""
         state, before = self._robot.state, self._shown
         far = math.dist(state.pose.point, before.pose.point) > _TELEPORT
         if far:

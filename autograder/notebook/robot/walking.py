@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 NEAR_ENOUGH = 0.1
 """The distance to the goal, in meters, at which the robot counts as arrived."""
 TRIES = 5
-"""The number of steps with a wall in the way after which the robot gives up."""
+"""The number of successive steps with a wall in the way after which the robot gives up."""
 FEEDBACK_EVERY = 5
-"""The number of steps between two feedback messages."""
+"""The number of simulation steps between two feedback messages."""
 
 
 class _Ending(Enum):
@@ -42,7 +42,7 @@ class _Walk:
 
 
 class Walking:
-    """Serves the action. Only one walk happens at a time: a new goal replaces the earlier one.
+    """Serves the action ``/walk_to``. The robot walks to one goal at a time: a new goal replaces the earlier one.
 
     Args:
         node: The robot.
@@ -62,7 +62,7 @@ class Walking:
         )
 
     def next(self, pose: Pose, bumped: bool) -> Velocity | None:
-        """Return the command for the next step; None if no walk is in progress.
+        """Return the velocity for the next step; None if the robot is not walking to a goal.
 
         Args:
             pose: The pose of the robot.
@@ -87,7 +87,7 @@ class Walking:
         return None
 
     def give_up(self) -> None:
-        """End the walk, if there is one, because another node drives."""
+        """Abort the current goal, if there is one, because another node drives the robot."""
         self._end(_Ending.GAVE_UP)
 
     def _end(self, ending: _Ending) -> None:

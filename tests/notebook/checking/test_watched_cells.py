@@ -120,7 +120,7 @@ def test_another_cell_does_not_wait_for_a_check_which_begins_again_afterwards(wa
     watched.run("patient.clear()", "other")
     watched.wait_for("5 of 10 points")
     (shown,) = watched.cards.values()
-    assert any("as soon as the cell that runs now has ended" in text for text in shown)
+    assert any("as soon as the running cell has ended" in text for text in shown)
 
 
 def test_a_check_that_goes_on_tells_its_time_and_after_half_a_minute_what_is_known(watched: Watched) -> None:

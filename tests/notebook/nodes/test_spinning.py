@@ -201,5 +201,5 @@ def test_a_callback_that_still_awaits_is_closed_in_silence(capfd: pytest.Capture
 
 def test_forgetting_with_is_told(nodes: Any) -> None:
     assert repr(spinning(nodes.Ticker())) == (
-        "ticker not spinning: write `with spinning(...):` and indent what is to happen meanwhile."
+        "ticker not spinning: write `with spinning(...):` and indent the lines that run meanwhile."
     )

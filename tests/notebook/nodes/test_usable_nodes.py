@@ -38,11 +38,11 @@ def make_nothing() -> Any:
     ("things", "message"),
     [
         ((NoSuperInit,), r"NoSuperInit is a class\. Add parentheses .*: spinning\(NoSuperInit\(\)\)"),
-        ((threading.Thread,), "Thread is a class, and not one of nodes"),
+        ((threading.Thread,), "Thread is a class that is not derived from Node"),
         (([1, 2],), r"one by one, not in a list: .*spinning\(\*nodes\)"),
         ((make_nothing,), r"make_nothing is a function\. Call it"),
         ((make_nothing(),), "must end with `return node`"),
-        (("talker",), "this is of type str: 'talker'"),
+        (("talker",), "this argument is of type str: 'talker'"),
         ((), r"at least one node, such as spinning\(TalkerNode\(\)\)"),
     ],
     ids=["class", "other class", "list", "function", "None", "text", "nothing"],
