@@ -54,7 +54,7 @@ def add_entry_points(workspace: str | Path, entries: Iterable[str], package: str
 
     Returns:
         A text for the student: the executables that the package has now, with a warning for each module without a
-            package; or, if nothing was changed, what the student has to do.
+        package; or, if nothing was changed, what the student has to do.
     """
     setup = Path(workspace) / "src" / package / "setup.py"
     wanted = list(entries)

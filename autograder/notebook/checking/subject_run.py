@@ -146,7 +146,7 @@ def formatted(error: BaseException) -> str:
 
 
 def _mark(node: Node, number: int) -> str:
-    """Create the marker, a publisher and a subscription after all others: who sees them has seen all endpoints."""
+    """Create the marker, a publisher and a subscription. A process that sees them has seen all earlier endpoints."""
     name = f"/_ready_{number}"
     try:
         Node.create_publisher(node, Empty, name, 1)

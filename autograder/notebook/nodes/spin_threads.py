@@ -2,9 +2,9 @@
 
 Three properties of rclpy shape this file (``rclpy/executors.py`` of Jazzy):
 
-* an exception in a callback ends ``spin``, so the thread would end, and with it the spinning of all nodes; *
-``Executor.shutdown`` destroys the executor even if another thread still waits in it, so this thread must end first; *
-nodes reference their executor only weakly, so this module keeps a reference to it.
+* an exception in a callback ends ``spin``, so the thread would end, and all its nodes would stop;
+* ``Executor.shutdown`` destroys the executor even if another thread still waits in it, so this thread must end first;
+* nodes reference their executor only weakly, so this module keeps a reference to it.
 
 One property of Python matters as well: a thread that still runs rclpy code when the interpreter ends aborts the whole
 process. So every thread is joined, and a callback that does not return is interrupted by an exception.
