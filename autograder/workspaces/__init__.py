@@ -1,5 +1,6 @@
-"""Students' colcon workspaces: built once for the same sources, and run without sourcing a setup script by hand.
+"""Builds students' colcon workspaces, and runs their programs.
 
-A workspace goes through these steps: its sources are read, a key is computed, it is built (here or in a box), the
-artefacts are accepted, and by the exercise's plan a program is run.
+Each workspace is built only once for the same sources. The steps: read the sources, compute their key, build them (here
+or in a box), check the files that the build made, and run the program that the exercise's plan names. No step needs a
+sourced setup script.
 """

@@ -36,7 +36,7 @@ def main(arguments: Sequence[str]) -> int:
     """Run ``python -m autograder.workspaces EXERCISE PATH``, or ``EXERCISE -- COMMAND`` for a launch command.
 
     If an exercise has several programs, the path is followed by the name of one. A launch may be followed by
-    ``--alone`` and the name of a program to run instead of the launch.
+    ``--alone`` and the name of a program to run instead of the launch. The exit code is returned.
     """
     exercise = exercises.get(arguments[0])
     die_with_parent(number=signal.SIGTERM)
@@ -75,12 +75,12 @@ def _run(launch: Prepared) -> int:
     On the wire, a topic that was renamed in the code looks like one that the launch file remaps. The command lines of
     the processes tell the two apart, because a launch passes a remapping on a node's command line.
     """
-    # Ctrl-C reaches the whole process group. The launch ends its nodes and then itself, and this process waits for
-    # that.
+    # Ignore Ctrl-C here. It also reaches the launch, which ends its nodes and itself; this process waits for the
+    # launch.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     process = subprocess.Popen(launch.command, env=launch.environment, preexec_fn=_listen_to_interrupts)
     signal.signal(signal.SIGTERM, lambda *_: process.terminate())
-    # The launch may have written half a line. Begin a new line, or the report would not be recognized.
+    # Start each report on a new line, because the launch may have written only part of a line.
     with watched(process.pid, lambda line: tell(f"\n{line}")):
         return process.wait()
 

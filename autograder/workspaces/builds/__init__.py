@@ -1,1 +1,1 @@
-"""Builds of a workspace: colcon, the cache of builds, and what colcon leaves in the install folder."""
+"""Builds of a workspace: colcon's command line, the cache of builds, and the install folder that colcon makes."""

@@ -1,8 +1,7 @@
-"""The result of a build, accepted only as data: regular files and folders, nothing else.
+"""Packs the files that a build made, and unpacks them safely: only as regular files and folders.
 
-Outside a box, files that were made in a box must be nothing but bytes. A link in the archive (a library has one, from
-its name to the name with its version) becomes a copy of its target, so that no later reader of the folder follows a
-link.
+A build runs a student's code, so its archive may contain anything. A link in the archive (such as `libx.so`, which
+leads to `libx.so.1`) is replaced by a copy of its target, so that no later reader of the folder follows a link.
 """
 
 from __future__ import annotations
@@ -21,15 +20,15 @@ if TYPE_CHECKING:
 MAX_FILES = 5_000
 MAX_BYTES = 64_000_000
 BLOCK = 4_096
-"""Bytes that each file and folder counts in addition to its content, so that thousands of empty ones count, too."""
+"""The number of bytes that is added for each file and folder, so that thousands of empty files also reach the limit."""
 MAX_NAME = 240
 """The maximum length of one part of a path, in bytes."""
 MAX_DEPTH = 24
 """The maximum number of parts of a path."""
 MAX_LINKS = 8
-"""The maximum number of links in a chain."""
+"""The maximum number of links to follow, one after the other, until a file is reached."""
 MAX_PAX = 2_000
-"""The maximum size of a pax header in bytes; one with a long path has some hundreds.
+"""The maximum size in bytes of a pax header of a tar archive; a header with a long path has some hundred bytes.
 
 The limit is needed because Python searches the header in quadratic time: a few megabytes of digits would take hours.
 """
@@ -44,7 +43,7 @@ _OF_THIS_MACHINE = (
     errno.EIO,
     errno.EROFS,
 )
-"""Errors of this machine that no archive can cause: a full disk, an exhausted quota, too many open files."""
+"""Numbers of errors that are this machine's fault and not the archive's, such as a full disk."""
 
 
 class BadArtefacts(ValueError):
@@ -66,7 +65,7 @@ class _ShortHeaders(tarfile.TarInfo):
 
 
 def pack(install: Path) -> bytes:
-    """Return an install folder as an archive; empty if it is missing or too large. Only regular files are opened."""
+    """Return an install folder as a tar archive; empty if the folder is missing or too large."""
     file, size = io.BytesIO(), 0
 
     def bounded(member: tarfile.TarInfo) -> tarfile.TarInfo:
@@ -85,7 +84,7 @@ def pack(install: Path) -> bytes:
 
 
 def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> None:
-    """Unpack an archive of a build's install folder into a folder.
+    """Unpack the archive of an install folder into a new folder.
 
     Args:
         archive: A tar file. It may contain anything, because the code that was built could have written it.
@@ -93,8 +92,8 @@ def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> None:
         most: The maximum size in bytes of all files and folders together.
 
     Raises:
-        BadArtefacts: The archive has entries that lead out of the folder, links to anything but its own files,
-            devices, or too much of anything. Files written before the error stay.
+        BadArtefacts: The archive has entries that lead out of the folder, links to anything but its own files, devices,
+            or too many files or bytes. Files written before the error stay.
         OSError, MemoryError: The disk, memory or open files of this machine are used up, which is not the build's
             fault.
     """
@@ -129,15 +128,15 @@ def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> None:
 
 
 def check_room(size: int, most: int, number: int = 0) -> None:
-    """Check the size of a build's result.
+    """Check that the files that a build made do not exceed the limits.
 
     Args:
-        size: The size of its files and folders in bytes.
+        size: The size of all files and folders together in bytes.
         most: The maximum size in bytes.
         number: The number of files and folders.
 
     Raises:
-        BadArtefacts: The result is too large.
+        BadArtefacts: A limit is exceeded.
     """
     if number > MAX_FILES or size > most:
         raise BadArtefacts(
@@ -176,7 +175,10 @@ def _parts(name: str) -> tuple[str, ...]:
 
 
 def _target(member: tarfile.TarInfo) -> PurePosixPath:
-    """Return the target of a link. The text of the link is enough, because nothing in the folder itself is a link."""
+    """Return the target of a link as a path inside the install folder.
+
+    The target is computed from text alone. This is correct because the folder on the disk never contains links.
+    """
     inside = os.path.normpath(PurePosixPath(*_parts(member.name)).parent / member.linkname)
     if inside.startswith(("..", "/")) or "\0" in inside:
         raise BadArtefacts(f"{member.name!r} leads out of the install folder")
@@ -184,7 +186,7 @@ def _target(member: tarfile.TarInfo) -> PurePosixPath:
 
 
 def _copy(link: PurePosixPath, links: Mapping[PurePosixPath, PurePosixPath], folder: Path) -> int:
-    """Replace a link by a copy of its target, following other links on the way. Return the size in bytes."""
+    """Write a copy of the file to which a link leads, directly or through other links. Return its size in bytes."""
     target = link
     for _ in range(MAX_LINKS):
         target = links.get(target, target)

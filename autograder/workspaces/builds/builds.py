@@ -1,8 +1,8 @@
-"""Builds of workspaces. Each build is made only once for the same sources.
+"""Makes builds of workspaces, and stores them in a cache, so that the same sources are built only once.
 
-The sources are read once. A build depends only on these bytes and on the tools; a hash of both is the key under which
-the build is stored. Builds in a student's kernel, in a terminal and for a class differ only in the process that makes
-them (:class:`autograder.workspaces.running.jobs.Jobs`).
+The key of a build in the cache is a hash of the sources and of the build tools, because the result depends on nothing
+else. The sources are read only once, for the hash and for the build. Builds in a student's kernel, in a terminal and
+for a class differ only in the process that makes them (:class:`autograder.workspaces.running.jobs.Jobs`).
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ if TYPE_CHECKING:
     from autograder.workspaces.sources import Tree
 
 FORMAT = "3"
-"""The version of the stored form of a build; it is part of every key. Change it when the form changes."""
+"""The version of the layout of a build in the cache; it is part of every key. Change it when the layout changes."""
 MAX_LINE = 1_000
-"""The maximum number of characters of an output line that are parsed."""
+"""The number of characters after which a line of a build's output is cut."""
 NO_DEFAULTS = {"COLCON_DEFAULTS_FILE": os.devnull}
 """Environment variables that make colcon ignore the user's own settings. The key of a build in the cache does not cover
 these settings, so they must not affect the build.
@@ -56,7 +56,7 @@ class BuildTookTooLong(RuntimeError):
         log: The output of the build so far.
 
     Attributes:
-        build: The build in the form of a failed build.
+        build: The description of the failed build.
     """
 
     def __init__(self, seconds: float, found: Build, log: str) -> None:
@@ -73,7 +73,7 @@ class Builds:
         room: The maximum size in bytes that a build may add to the cache, if the build comes as an archive.
 
     Attributes:
-        jobs: The jobs that were passed to the constructor.
+        jobs: The argument ``jobs``.
     """
 
     def __init__(self, folder: Path, jobs: Jobs, room: int = artefacts.MAX_BYTES) -> None:
@@ -91,15 +91,13 @@ class Builds:
     ) -> Build:
         """Build the packages of a workspace that an exercise needs.
 
-        If a package that others depend on (in package.xml) cannot be built, those others are built without it. From
-        Lab 1.3 on, ``my_robot_pkg`` depends on ``my_robot_interfaces``, but its programs of earlier labs import
-        nothing from it. At run time a program finds its imports among the course's own packages, or reports what is
-        missing.
+        If only a dependency fails, the needed packages are built again without their dependencies. For example,
+        ``my_robot_pkg`` depends on ``my_robot_interfaces`` from Lab 1.3 on, but its programs of earlier labs import
+        nothing from there. A program that does need a missing import reports that when it runs.
 
         Args:
-            found: The workspace, after :func:`autograder.workspaces.builds.colcon.look`.
-            targets: Returns the needed packages. They are built with their dependencies, or without one if only that
-                one fails. None for all packages.
+            found: The workspace, as :func:`autograder.workspaces.builds.colcon.look` returns it.
+            targets: A function that returns the names of the needed packages; None if all packages are needed.
             name: The kind of workspace; see :meth:`autograder.workspaces.running.jobs.Jobs.place`.
             cancelled: Returns True when the build is no longer needed.
 
@@ -118,17 +116,17 @@ class Builds:
         if not wanted or not made.package or made.package in wanted:
             return made
         own = tuple(package for package in found.packages if package.name in wanted)
-        # CMake looks for a package's dependencies during the build, so it would fail; setuptools does not.
+        # Only Python packages can be built without their dependencies; CMake fails if a dependency is missing.
         if any(package.build_type != "ament_python" for package in own):
             return made
         alone = self._build(replace(found, packages=own), targets, name, cancelled)
         return replace(alone, packages=found.packages) if alone.ok else made
 
     def lend(self, made: Build, course: Build) -> Build:
-        """Return the course's build with the student's files added, for a package that lacks the course's programs.
+        """Return a copy of the course's build to which the student's files have been added.
 
-        ROS finds each package in one prefix only. So the prefix with the course's programs must also contain the
-        student's launch files, because other launch files may include them by the name of the package.
+        It is used if the student's package lacks programs that the course's package has. ROS finds a package in one
+        prefix only, so this prefix must also contain the student's launch files.
         """
         assert course.install is not None
         names = {prefix.name for prefix in made.prefixes}
@@ -158,20 +156,20 @@ class Builds:
         except BadSources as error:
             return replace(found, trouble="bad_package", line=str(error))
         except cache.GivenUp as error:
-            # The build was canceled, so no process will read this.
+            # The caller has canceled the build, so no student will see this reason.
             return replace(found, trouble="build", line=str(error))
         return replace(made, seconds=time.monotonic() - began)
 
     def _find_or_make(self, found: Build, chosen: Sequence[Package], order: BuildOrder) -> Build:
-        """Return the build of the chosen packages, from the cache or new.
+        """Return the build of the chosen packages from the cache, or make it.
 
-        The build request gives the folders of the packages as paths inside the box.
+        In the request (``order``), the folders of the packages are relative to the folder of the build.
         """
         del chosen
         return self._entry(found, self._keyed(order))
 
     def _keyed(self, order: BuildOrder, *words: str) -> BuildOrder:
-        """Return the build request with its key, a hash of the request and of further words."""
+        """Return the build request with its key for the cache: a hash of the request and of ``words``."""
         return replace(
             order,
             key=key(
@@ -186,7 +184,7 @@ class Builds:
         )
 
     def _entry(self, found: Build, order: BuildOrder, folder: Path | None = None) -> Build:
-        """Return the build from the given cache, or make it there; by default in the cache of these builds."""
+        """Return a build from the cache in ``folder``, or make it there. None stands for the cache of this object."""
         with cache.entry(order.key, folder or self._folder, order.cancelled) as entry:
             install = entry.folder / "install"
             if entry.complete:
@@ -211,7 +209,7 @@ class Builds:
             return failed(found, log)
         try:
             if built.archive is not None:
-                # Builds stay in the cache for a while, so this one must leave space for others.
+                # The build may only use the space that is left in the cache.
                 artefacts.unpack(built.archive, install, self._room)
         except artefacts.BadArtefacts as error:
             return failed(found, f"{log}\nerror: {error}")
@@ -219,7 +217,7 @@ class Builds:
 
 
 def key(tree: Tree, *words: str) -> str:
-    """Return the key of a build: a hash of everything that is built, and of everything that builds it.
+    """Return the key of a build: a hash of the sources, of the build tools, and of ``words``.
 
     Args:
         tree: The sources.
@@ -229,7 +227,7 @@ def key(tree: Tree, *words: str) -> str:
 
 
 def toolchain() -> tuple[str, ...]:
-    """Return everything else that influences a build: interpreter, build tools, compiler and underlay."""
+    """Return the tools that influence a build, with their versions: Python, colcon, compilers and so on."""
     programs = [
         shutil.which(os.environ.get(name) or usual) or "" for name, usual in (("CC", "cc"), ("CXX", "c++"))
     ]
@@ -247,7 +245,7 @@ def toolchain() -> tuple[str, ...]:
 
 
 def _underlay() -> str:
-    """Return the path and a version mark of the ROS that a build finds first; empty if there is none."""
+    """Return path, size and time of a file of the ROS that a build finds first; empty if there is none."""
     for prefix in filter(None, (*os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep), sys.prefix)):
         generators = str(Path(prefix, "share", "rosidl_default_generators", "package.xml"))
         if mark := state(generators):
@@ -257,21 +255,21 @@ def _underlay() -> str:
 
 @functools.cache
 def _tools() -> tuple[str, ...]:
-    """Return the build tools with their versions, taken from the names of their folders (PEP 376).
+    """Return the build tools with their versions, such as ``colcon_core-0.18.1.dist-info``.
 
-    This runs each time a program in a workspace starts, and importing importlib.metadata would take five times as
-    long.
+    The names of folders (PEP 376) are read instead of using importlib.metadata, which takes five times as long: this
+    runs each time a program in a workspace starts.
     """
     entries: set[str] = set()
     for folder in filter(None, sys.path):
-        # A path that is missing, not a folder or unreadable is skipped, as Python does.
+        # Like Python, skip an entry of sys.path that is missing, unreadable or not a folder.
         with contextlib.suppress(OSError):
             entries.update(entry.name for entry in Path(folder).iterdir())
     return tuple(sorted(e for e in entries if e.startswith(_TOOLS) and e.endswith(("dist-info", "egg-info"))))
 
 
 def state(file: str) -> str:
-    """Return a text that changes when a tool's file changes; empty if the file is missing."""
+    """Return the size and the modification time of a file as text; empty if the file is missing."""
     try:
         found = Path(file).stat()
     except OSError:
@@ -286,7 +284,7 @@ def _are_light(packages: Sequence[Package]) -> bool:
 
 
 def _log(built: Built, place: Path) -> str:
-    """Return the output of a build as text, cut so that any content can be parsed quickly."""
+    """Return the output of a build as text. Long lines are cut, so that any output can be parsed quickly."""
     text = built.output.decode("utf-8", "replace").replace(f"{place}/", "")
     if built.returncode is None:
         text += "\nerror: the build took more memory, processes or processor time than a build may take"

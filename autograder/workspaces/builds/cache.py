@@ -1,9 +1,9 @@
-"""A cache of builds: one folder for each build, named by the key of its sources. Only its owner may use it.
+"""A cache of builds: one folder (entry) for each build, named by the build's key. Each user has a separate cache.
 
-An entry is built at its final path, because an install folder contains its own path. This happens under a lock, and
-the entry counts only once its marker is written, so an interrupted build is removed and repeated. If the builder is
-killed, as a kernel is when JupyterLab restarts it, the build is ended, too; it holds the lock until none of its
-processes can write any more.
+A build is made at its final path, because files in an install folder contain that path. Meanwhile the entry is locked.
+At the end, a marker file is written. An entry without a marker is an interrupted build; it is removed and made again.
+If the process that makes a build is killed (as JupyterLab kills a kernel to restart it), the build is ended, too. The
+lock is released only when no process of the build can write any more.
 """
 
 from __future__ import annotations
@@ -29,19 +29,19 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 VARIABLE = "AUTOGRADER_WORKSPACE_CACHE"
-"""The environment variable for the path of the cache. A grader gives each box a separate one."""
+"""The environment variable that contains the path of the cache. The grader sets a separate cache for each box."""
 LIMIT = 1_000_000_000
 """The maximum size in bytes of all entries together; one interface package takes two million."""
 IN_USE = 900.0
-"""Seconds for which an entry is kept after its last use, because its programs may run as long as a check lasts."""
+"""Seconds for which an entry is kept after its last use, because programs of the build may still run."""
 ASK_EVERY = 0.1
-"""Seconds between two checks whether an entry is free, for callers that may give up waiting."""
+"""Seconds between two attempts to lock an entry that another process has locked."""
 _MARKER = "complete"
 _NAME = "ros2-course-autograder"
 
 
 class GivenUp(RuntimeError):
-    """The caller no longer needs the entry."""
+    """The caller has stopped waiting for an entry."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class CachedBuild:
     Attributes:
         folder: The path of the folder.
         complete: True if the entry contains a finished build.
-        lock: The descriptor of the lock. Every process that writes into the folder holds it, too.
+        lock: The descriptor of the locked file. Every process that writes into the folder inherits it.
     """
 
     folder: Path
@@ -59,22 +59,22 @@ class CachedBuild:
     lock: int
 
     def finish(self) -> None:
-        """Mark the build as finished. From now on the entry counts."""
+        """Mark the build as finished, so that it is kept and used again."""
         (self.folder / _MARKER).write_text(self.folder.name, encoding="utf-8")
 
 
 def root() -> Path:
-    """Return the folder of the cache, which only this user owns and can open.
+    """Return the folder of the cache.
 
-    If another user owns the folder or may write to it, it is not used, because programs from it would be run. A new
-    temporary folder is used instead, without the earlier builds.
+    Programs in the cache are run, so the folder must belong to this user, and no other user may write to it. Otherwise
+    a new, empty temporary folder is used instead.
     """
     named = os.environ.get(VARIABLE)
     return _own(Path(named) if named else platformdirs.user_cache_path(_NAME) / "workspaces")
 
 
 def graders_root() -> Path:
-    """Return the folder for builds of the course's own packages, made in boxes and shown to boxes only as needed."""
+    """Return the folder for the grader's builds of the course's packages. A box sees only the builds that it needs."""
     return _own(platformdirs.user_cache_path(_NAME) / "graded-builds")
 
 
@@ -90,13 +90,13 @@ def _own(folder: Path) -> Path:
 
 @functools.cache
 def _in_place_of(folder: Path) -> Path:
-    """Make a folder for this process alone, to use instead of an unsafe one. It is removed when the process ends."""
+    """Make a temporary folder to use instead of an unsafe folder. It is removed when this process ends."""
     del folder
     made, owner = fresh_folder("workspace-builds-"), os.getpid()
 
     @atexit.register
     def remove() -> None:
-        if os.getpid() == owner:  # not in a forked process, which also runs this function when it ends
+        if os.getpid() == owner:  # a forked child runs this function, too, but must not remove the folder
             shutil.rmtree(made, ignore_errors=True)
 
     return made
@@ -110,12 +110,12 @@ def is_ones_own(folder: Path) -> bool:
 
 
 def is_complete(key: str, base: Path) -> bool:
-    """Return True if a finished entry exists, without waiting for a process that may be making it."""
+    """Return True if the cache contains a finished build with this key. This never waits for an unfinished one."""
     return _is_of(key, base / key / _MARKER)
 
 
 def _is_of(key: str, marker: Path) -> bool:
-    """Return True if the marker was written for a build with this key, not for one whose folder was renamed later."""
+    """Return True if a marker file contains this key. In a folder that was renamed, the marker contains another key."""
     try:
         return marker.read_text(encoding="utf-8") == key
     except (OSError, UnicodeDecodeError):
@@ -124,9 +124,10 @@ def _is_of(key: str, marker: Path) -> bool:
 
 @contextlib.contextmanager
 def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -> Iterator[CachedBuild]:
-    """Hold the entry of a key, so that no other process builds it at the same time.
+    """Lock the entry with a key during a ``with`` block, so that no other process makes this build at the same time.
 
-    If the entry is not finished, the caller gets it empty. It is removed again unless the caller finishes it.
+    If the entry has no finished build, it is an empty folder. It is removed at the end unless the caller has called
+    :meth:`CachedBuild.finish`.
 
     Args:
         key: The key of the build.
@@ -156,10 +157,9 @@ def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -
 
 @contextlib.contextmanager
 def _turn(file: Path, cancelled: Callable[[], bool]) -> Iterator[IO[str]]:
-    """Hold the lock file of a cache entry.
+    """Hold a lock on the lock file of an entry.
 
-    The previous holder may have removed the entry together with this lock file. If so, make a new lock file and lock
-    that one.
+    While this process waited, another one may have removed the entry and the lock file. Then lock a new lock file.
     """
     while True:
         with file.open("a") as lock:
@@ -177,10 +177,10 @@ def _is_at(lock: IO[str], file: Path) -> bool:
 
 
 def await_turn(lock: int, cancelled: Callable[[], bool]) -> None:
-    """Take a lock as soon as no other process has it.
+    """Wait until no other process has locked a file, and lock it.
 
     Args:
-        lock: A descriptor of the locked file; closing it releases the lock.
+        lock: A descriptor of the file; closing it releases the lock.
         cancelled: Called from time to time. If it returns True, waiting ends.
 
     Raises:
@@ -190,7 +190,7 @@ def await_turn(lock: int, cancelled: Callable[[], bool]) -> None:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            # No event reports that a lock has become free, so this polls.
+            # Waiting inside flock could not be canceled. So try to lock again and again.
             if cancelled():
                 raise GivenUp("nobody waits for the entry any more") from None
             time.sleep(ASK_EVERY)
@@ -201,7 +201,7 @@ def await_turn(lock: int, cancelled: Callable[[], bool]) -> None:
 def make_room(base: Path, limit: int = LIMIT, in_use: float = IN_USE) -> list[str]:
     """Remove the least recently used entries until all entries together have at most ``limit`` bytes.
 
-    Leftovers of failed or killed builds are removed, too.
+    Entries of failed or killed builds are removed, too.
 
     Args:
         base: The folder of the cache.
@@ -228,16 +228,19 @@ def make_room(base: Path, limit: int = LIMIT, in_use: float = IN_USE) -> list[st
 
 
 def _remove(base: Path, folder: Path, used: float | None) -> bool:
-    """Remove an entry that was last used at this time (None: unfinished). Return False if it is in use or was since."""
+    """Remove an entry, unless it is locked or was used after the time ``used``. Return True if it was removed.
+
+    An entry without a finished build has no time of last use: ``used`` is None.
+    """
     file = base / f"{folder.name}.lock"
     with file.open("a") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
-            return False  # another process is using it
+            return False  # another process has locked the entry
         if not _is_at(lock, file) or _last_use(folder) != used:
-            return False  # another process has just removed, made or used it
-        # Remove the marker first: without it the entry does not count, even if removing the rest fails.
+            return False  # another process has just removed, made or used the entry
+        # Remove the marker first. If removing the rest fails, the entry then counts as an interrupted build.
         (folder / _MARKER).unlink(missing_ok=True)
         shutil.rmtree(folder, ignore_errors=True)
         file.unlink(missing_ok=True)

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 MAX_LOG = 40_000
 """The maximum number of characters to keep from the end of a failed build's log."""
 _REFUSED = "setup()' was never called"
-"""The last line of a build contains this if setuptools refuses the arguments in setup.py. Then no log contains the
-reason.
+"""The last line of a build's output contains this text if setuptools rejects an argument in setup.py. The output then
+does not contain the reason.
 """
 _WHAT_REFUSED = (
     "setuptools refuses setup.py; `python3 setup.py --version`, in the folder of the package, says why"
@@ -42,11 +42,11 @@ class Build:
         install: The folder of the installed packages; None if the build failed.
         chosen: The packages of ``install`` that belong to this build; empty if all of them do.
         packages: The packages of the workspace, as their files describe them.
-        unusable: The reasons why other packages cannot be used.
+        unusable: For each package that cannot be used, a sentence with the reason.
         seconds: The duration of the build in seconds of wall time.
         reused: True if the build was already in the cache.
-        trouble: ``"no_workspace"``, ``"no_package"``, ``"bad_package"``, ``"entry_point"`` or ``"build"``; empty if
-            there is none.
+        trouble: The kind of failure: ``"no_workspace"``, ``"no_package"``, ``"bad_package"``, ``"entry_point"`` or
+            ``"build"``; empty if there is none.
         package: The name of the package that failed; empty if none did.
         line: The line of the log that explains the failure best.
         log: The log of the failed build.
@@ -69,7 +69,7 @@ class Build:
 
     @property
     def prefixes(self) -> list[Path]:
-        """The prefixes of the installed packages, one folder for each."""
+        """The install folder (prefix) of each package of this build."""
         found = package_prefixes(self.install) if self.install else []
         return [prefix for prefix in found if not self.chosen or prefix.name in self.chosen]
 
@@ -89,15 +89,16 @@ class Build:
 
 
 Targets = Callable[[Build], Iterable[str]]
-"""A function that returns the names of the packages that are needed in a workspace. No names means all packages."""
+"""A function that returns the names of the needed packages of a workspace. An empty result means all packages."""
 
 
 def failed(found: Build, log: str) -> Build:
-    """Return a workspace that could not be built, with the reason taken from colcon's output."""
+    """Return the description of a failed build, with the reason taken from colcon's output."""
     search = _FAILED.search(log)
     name = search["name"] if search else ""
     own = _log_of(log, name)
-    # Before the build, colcon asks setup.py for its metadata; that output is not in the package's part of the log.
+    # If setup.py fails when colcon asks for its metadata, the error is not in the package's part of the log. Then use
+    # the whole log.
     own = log if "CalledProcessError" in telling_line(own) else own
     made = replace(found, trouble="build", package=name, line=telling_line(own), log=own[-MAX_LOG:])
     if _REFUSED not in made.line:
@@ -107,7 +108,7 @@ def failed(found: Build, log: str) -> Build:
 
 
 def look(workspace: Path) -> Build:
-    """Return a workspace with the packages that can be built, without building them.
+    """Return the description of a workspace that is not built: its packages, or why there is none to build.
 
     Args:
         workspace: The workspace folder, which contains ``src``.
@@ -126,9 +127,10 @@ def look(workspace: Path) -> Build:
 
 
 def choose(found: Build, targets: Targets | None) -> tuple[list[Package], Build]:
-    """Return the packages to build, and the workspace. Its ``trouble`` is set if these packages cannot be built.
+    """Return the packages to build, and the workspace.
 
-    A package that is not needed does no harm, even if it is unfinished or broken.
+    If the workspace contains none of the targets, all its packages are built. But if one of these is unusable, no
+    packages are returned, and the workspace's ``trouble`` is set. If there are targets, other packages may be unusable.
     """
     chosen = needed(found.packages, targets(found)) if targets is not None else []
     if chosen or not found.unusable:
@@ -137,22 +139,22 @@ def choose(found: Build, targets: Targets | None) -> tuple[list[Package], Build]
 
 
 def moved(packages: Iterable[Package], src: Path, there: Path) -> list[Package]:
-    """Return the packages with the paths that they will have when their sources are written to another folder.
+    """Return copies of the packages, with the paths that they have when their sources are in another folder.
 
     Args:
         packages: The packages.
-        src: The current folder of the packages.
+        src: The folder that contains the packages now.
         there: The other folder.
     """
     return [replace(package, folder=there / package.folder.relative_to(src)) for package in packages]
 
 
 def command(packages: Iterable[Package], folder: Path, cmake: Sequence[str] = ()) -> list[str]:
-    """Return colcon's command line for these packages only, with ``build``, ``install`` and ``log`` in the folder.
+    """Return the command with which colcon builds only these packages.
 
     Args:
         packages: The packages.
-        folder: The folder for everything that colcon makes.
+        folder: The folder in which colcon makes ``build``, ``install`` and ``log``.
         cmake: More arguments for CMake.
 
     The build type is Release, which defines NDEBUG. Without NDEBUG, a value of the wrong type in a field of a

@@ -1,4 +1,4 @@
-"""`colcon` in a graded notebook: the grader makes plain builds, and the real colcon does everything else.
+"""The command `colcon` in a graded notebook: the grader makes plain builds, and the real colcon does everything else.
 
 A plain build is ``colcon build`` in a workspace, with at most ``--packages-select`` or ``--packages-up-to``. It ends
 as usual, with the packages in ``install`` and lines that list the finished packages. Only the files for colcon's next
@@ -27,7 +27,7 @@ UP_TO = "--packages-up-to"
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Request a build from the grader, or become the real colcon.
+    """Request a plain build from the grader, or replace this process by the real colcon. Return the exit code.
 
     Args:
         arguments: The arguments of the command line.
@@ -64,7 +64,7 @@ def _targets(option: str, names: Sequence[str]) -> Targets | None:
 
 
 def _told(made: Build) -> int:
-    """Print what colcon would print. Return the exit code.
+    """Copy the build into the workspace, and print what colcon would print. Return the exit code.
 
     Raises:
         CannotPlace: The build cannot be copied into the workspace's install folder.

@@ -21,7 +21,7 @@ _NINJA_MAKE = re2.compile(r"^(?:make|gmake|ninja|---|<<<|>>>)")
 
 
 def telling_line(log: str) -> str:
-    """Return the line of a failed build that explains it best, with file and line number if the log has them.
+    """Return the line of a log that explains best why a build failed, with file and line number if the log has them.
 
     Args:
         log: The output of colcon's commands, in order.
@@ -32,10 +32,10 @@ def telling_line(log: str) -> str:
     if found := _COMPILER.search(log):
         return f"{_short(found['file'])}:{found['line']}: {found['what']}"
     python = _python(log)
-    # CMake prints status lines to another stream. On a busy machine they appear between the lines of an error.
+    # Remove CMake's status lines. They come from another stream, so they may appear between the lines of an error.
     log = _CMAKE_STATUS.sub("", log) or log
     if found := _CMAKE.search(log):
-        # The error in a generator is the cause; the failure of CMake's call to the generator is only a consequence.
+        # CMake reports that a Python program that it called has failed. The cause is the error in that program.
         if python and "execute_process" in found["what"]:
             return python
         what = " ".join(found["what"].split())
@@ -51,7 +51,7 @@ def telling_line(log: str) -> str:
 
 
 def _python(log: str) -> str:
-    # The failure of a call by colcon or CMake is only a consequence; the called program printed the cause.
+    # CalledProcessError means that a program that colcon or CMake called has failed. The cause is that program's error.
     found = list(_PYTHON.finditer(log))
     errors = [error for error in found if "CalledProcessError" not in error["what"]] or found
     if not errors:
@@ -61,7 +61,7 @@ def _python(log: str) -> str:
     if not places:
         return error["what"].strip()
     file, line = places[-1]["file"], places[-1]["line"]
-    # setuptools executes the text of setup.py without the name of the file.
+    # setuptools executes setup.py as a text, so tracebacks call the file "<string>".
     file = "setup.py" if file == "<string>" and "run_setup" in log else file
     return f"{_short(file)}:{line}: {error['what'].strip()}"
 
@@ -71,7 +71,7 @@ def _is_a_library(file: str) -> bool:
 
 
 def _place(error: re2.Match[str], log: str) -> str:
-    """Return the line of the package's own files that led to a CMake error, even if a library's file raised it."""
+    """Return the file and line in the package that caused a CMake error, even if the error is in a library's file."""
     stack = _CALL_STACK.match(log, error.end())
     own = _CALL.search(stack["calls"].strip().splitlines()[-1].strip()) if stack else None
     place = own or error

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 LIBRARY = f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
 BESIDE = ("build", "log")
-"""The other folders that colcon makes: for its next build, and for people to read."""
+"""The folders that colcon makes next to ``install``: for its next build, and with logs for people to read."""
 _LAYOUT = ".colcon_install_layout"
 _INDEX = "share/ament_index/resource_index"
 
@@ -34,7 +34,7 @@ class CannotPlace(RuntimeError):
 
 
 def package_prefixes(install: Path) -> list[Path]:
-    """Return the prefix of each package in an isolated install folder, sorted by package name."""
+    """Return the prefixes in an install folder that has one for each package, sorted by package name."""
     if not install.is_dir():
         return []
     return sorted(folder for folder in install.iterdir() if (folder / "share").is_dir())
@@ -54,7 +54,7 @@ def python_folders(prefix: Path) -> list[Path]:
 def linked_build(prefix: Path) -> Path | None:
     """Return the build folder from which Python imports a package; None unless `--symlink-install` installed it.
 
-    The path is computed and not read from the link in the prefix, because the prefix may belong to a submission.
+    The path is computed. The link in the prefix is not read, because in a submission it could lead anywhere.
     """
     build = prefix.parent.parent / BESIDE[0] / prefix.name
     linked = any(any(folder.glob("*.egg-link")) for folder in _libraries(prefix))
@@ -138,7 +138,7 @@ def with_prefixes(
 
 
 def relocated(environment: Mapping[str, str], here: Path, there: Path) -> dict[str, str]:
-    """Return the environment for a process that sees a folder at a different path."""
+    """Return the environment with the path ``here`` replaced by ``there``, for a process that sees the folder there."""
     old, new = f"{here}{os.sep}", f"{there}{os.sep}"
     return {
         name: os.pathsep.join(
@@ -151,7 +151,7 @@ def relocated(environment: Mapping[str, str], here: Path, there: Path) -> dict[s
 
 
 def without_workspaces(environment: Mapping[str, str], workspace: Path) -> dict[str, str]:
-    """Return the environment without paths in a workspace, because a build must not see results of an earlier one."""
+    """Return the environment without paths inside a workspace, so that a build does not use an earlier build."""
     result = dict(environment)
     inside = f"{workspace.resolve()}{os.sep}"
     for name in (
@@ -168,9 +168,9 @@ def without_workspaces(environment: Mapping[str, str], workspace: Path) -> dict[
 
 
 def merge(lent: Iterable[Path], own: Iterable[Path], install: Path) -> None:
-    """Write the lent prefixes into a new install folder, with all files of a student's prefix of the same name.
+    """Copy the course's prefixes (``lent``) into a new install folder, and add the student's files (``own``).
 
-    Lent programs and modules replace the student's. Of all other files, the student's are kept.
+    If both have a file with the same path, the course's is taken in ``lib`` (programs, modules), else the student's.
     """
     students = {prefix.name: prefix for prefix in own}
     for prefix in lent:
@@ -220,7 +220,7 @@ def _replace(old: Path, new: Path) -> None:
 
 
 def rename_paths(folder: Path, old: str, new: str) -> None:
-    """Replace one path by another in a folder's text files: setup scripts, and files by CMake and setuptools."""
+    """Replace a path by another one in all text files of a folder, such as setup scripts and CMake files."""
     for root, _, names in os.walk(folder):
         for file in (Path(root, name) for name in names):
             content = file.read_bytes()

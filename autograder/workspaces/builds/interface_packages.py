@@ -1,7 +1,7 @@
-"""Packages that only define interfaces, and which differences between their texts do not affect a build.
+"""Simplifies the sources of packages that only define interfaces, so that sources with the same meaning are equal.
 
-Students write the same three lines with different comments and spaces. A text is simplified only if the simple form
-certainly means the same. Otherwise it stays unchanged, and the package is built separately.
+Students write the same three lines with different comments and spaces; one build can serve them all. A text is
+simplified only if its meaning certainly stays the same. Otherwise the package is built separately.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ if TYPE_CHECKING:
     from autograder.workspaces.packages import Package
 
 MAX_SIMPLIFIED = 50_000
-"""The maximum size in bytes of sources to be simplified; a student's have about a thousand.
+"""The maximum size in bytes of sources to be simplified; a student's sources have about a thousand bytes.
 
 Larger sources are built as they are, because simplifying takes quadratic time.
 """
 _PROSE = ("LICENSE", "README.md", "README.rst", "CHANGELOG.rst")
-"""Files for people to read; no build reads them."""
+"""Files that people read and builds do not."""
 _FOR_PEOPLE = {"description", "maintainer", "author", "license", "url"}
-"""Elements of package.xml that only people read. Required ones are put back with a fixed text."""
+"""Elements of package.xml that only people read. They are removed, or replaced by a fixed text if they are required."""
 
 
 def holds_only_interfaces(package: Package) -> bool:
-    """Return True if a package can contain only interfaces, because it has only the files of an interface package."""
+    """Return True if a package contains nothing but interfaces and the files with which they are built."""
     files = [path for path in package.folder.rglob("*") if path.is_file()]
     known = {"package.xml", "CMakeLists.txt", *_PROSE}
     return (
@@ -49,7 +49,7 @@ def holds_only_interfaces(package: Package) -> bool:
 
 
 def simplified(tree: Tree) -> Tree:
-    """Return the sources of such packages with simplified texts, so that sources with the same meaning are equal."""
+    """Return the sources of interface packages, simplified so that sources with the same meaning are equal."""
     if sum(len(source.data or b"") for source in tree.sources) > MAX_SIMPLIFIED:
         return tree
     return Tree(tuple(replace(source, data=_simple(source)) for source in tree.sources))
@@ -67,7 +67,7 @@ def _simple(source: Source) -> bytes | None:
 
 
 def simple_definition(text: str) -> str:
-    """Return a definition without comments and needless spaces. A line with anything unusual stays unchanged.
+    """Return an interface definition without comments and needless spaces. Unusual lines stay unchanged.
 
     rosidl rejects a space after ``---`` or before a type, and any whitespace that is not ASCII.
     """
@@ -120,7 +120,7 @@ def simple_package_xml(text: str) -> str:
 
 
 def _simple_elements(root: ElementTree.Element) -> str:
-    """Return the simplified text of a parsed package.xml; empty if its elements are not simple enough."""
+    """Return the simplified text of a package.xml; empty if an element other than ``export`` contains elements."""
     kept = [element for element in root if element.tag not in _FOR_PEOPLE]
     if any(len(element) for element in kept if element.tag != "export"):
         return ""

@@ -1,8 +1,7 @@
-"""Builds of a student's own workspace: in a notebook or a terminal, on the student's own computer.
+"""Builds a student's own workspace, in a notebook or a terminal on the student's own computer.
 
-In a graded notebook, builds are requested from the grader instead. The result of ``colcon build`` depends only on the
-sources, so the check can use the same build. The box receives the build as an archive, and does not see the folder in
-which it was made.
+In a graded notebook, builds are requested from the grader instead, and a check uses the same build as ``colcon build``.
+The box receives the build as an archive, and does not see the folder in which it was made.
 """
 
 from __future__ import annotations
@@ -37,10 +36,9 @@ LIMIT = 300.0
 
 
 class OwnBuilds(Builds):
-    """Builds made in the cache itself or, in a graded notebook, by the grader.
+    """Makes builds in the cache or, in a graded notebook, requests them from the grader.
 
-    Each build is made as if for the first time: the workspace is not written to, and earlier results in its
-    ``install`` folder are not used.
+    A build does not write to the workspace, and does not use earlier results in its ``install`` folder.
     """
 
     def __init__(self) -> None:
@@ -67,10 +65,10 @@ class OwnBuilds(Builds):
 
 
 class StudentsBuilds(OwnBuilds):
-    """Builds for a student's own check: the student's build if it is up to date with the sources, else a new build.
+    """Finds builds for a student's own check: the student's build if it is up to date, else a new one.
 
-    If sources were changed, the check builds them, as the grader of a class does. The sources are what is handed in,
-    and a right answer must not fail because the student has not built it yet. The card then names the changed files.
+    If sources were changed since the student's build, the check builds them, because only the sources are handed in and
+    the grader of a class builds them, too. The card then names the changed files.
     """
 
     def _find_or_make(self, found: Build, chosen: Sequence[Package], order: BuildOrder) -> Build:

@@ -1,4 +1,4 @@
-"""The student's own build of a workspace: is `install` up to date with `src`, and what was changed since?
+"""Finds out whether a student's own build (`install`) is up to date with the sources (`src`), and what was changed.
 
 This is decided by comparing two times: when a file's content or name last changed (``st_ctime``), and when the
 package's last `colcon build` began. Both times come from the same file system, and so from the same clock, and no
@@ -7,9 +7,9 @@ CMakeLists.txt. But a newer file that equals its installed copy counts as unchan
 writes a program touches the file.
 
 `colcon` never removes what an earlier build has installed. So an `install` folder with a module or program that the
-sources do not have is not used: the grader of a class builds from the sources alone and would not have it either. The
-same holds for a launch file that the last build did not install, because `ros2 launch` refuses a name that it finds
-twice.
+sources do not have is not used: the grader of a class builds from the sources alone and would not have it either. Nor
+is it used if it contains a launch file that the last build did not install, because `ros2 launch` refuses a name that
+it finds twice.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def is_current(workspace: Path, packages: Sequence[Package]) -> bool:
 
 
 def changed_since(workspace: Path, packages: Iterable[Package]) -> str:
-    """Return in words the sources that were changed since the last `colcon build`; empty if there are none.
+    """Return the names of the sources that were changed since the last `colcon build`; empty if there are none.
 
     A package that was never built has no changed sources.
     """
@@ -106,7 +106,7 @@ def _left_over(workspace: Path, package: Package) -> Iterator[Path]:
     launches = [prefix / file for file in launch_files(prefix)]
     yield from (file for file in launches if str(file) not in recorded)
     linked = _linked(prefix)
-    # If the workspace is a copy, its links still lead to the original workspace.
+    # If the workspace was copied, its links still lead to the original workspace; such links are left over.
     yield from (folder for folder in linked if not folder.is_relative_to(package.folder))
     modules = [] if linked else [(f, m) for f in python_folders(prefix) for m in f.rglob("*.py")]
     shared = prefix / "share" / package.name
@@ -118,7 +118,7 @@ def _left_over(workspace: Path, package: Package) -> Iterator[Path]:
 
 
 def _linked(prefix: Path) -> list[Path]:
-    """Return the folders of modules that `--symlink-install` has linked, which are the ones that run."""
+    """Return the source folders to which `--symlink-install` made links. Python imports the modules from there."""
     build = linked_build(prefix)
     return (
         [entry.resolve() for entry in build.iterdir() if entry.is_symlink() and entry.is_dir()]
@@ -128,12 +128,12 @@ def _linked(prefix: Path) -> list[Path]:
 
 
 def _folders(workspace: Path, package: Package) -> tuple[Path, Path]:
-    """Return the folders into which colcon has built and installed a package."""
+    """Return the build folder and the install folder of a package."""
     return workspace / "build" / package.name, workspace / "install" / package.name
 
 
 def _sources(package: Package) -> Iterator[Path]:
-    """Yield the files of a package that a grader would take; links are not among them."""
+    """Yield the files of a package that a grader would build; links are left out."""
     for file in sorted(package.folder.rglob("*")):
         if (
             is_source(file.relative_to(package.folder).as_posix())
@@ -144,7 +144,7 @@ def _sources(package: Package) -> Iterator[Path]:
 
 
 def _is_copy(copy: Path, file: Path, folder: Path) -> bool:
-    """Return True if a file has the same bytes as another one, and the same path below its folder."""
+    """Return True if ``copy`` has the bytes of ``file``, and its path ends with the path of ``file`` in ``folder``."""
     inside = file.relative_to(folder).parts
     return copy.parts[-len(inside) :] == inside and copy.is_file() and copy.read_bytes() == file.read_bytes()
 
