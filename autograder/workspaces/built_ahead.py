@@ -1,4 +1,4 @@
-"""Builds that all submissions share: packages of the course itself, built before any notebook needs them.
+"""Builds the course's own packages before any notebook needs them; all submissions share these builds.
 
 ``solutions/ros2_ws`` contains the course's own programs. ``solutions/*/built_ahead.json`` contains the packages that
 the labs' texts and solutions make; ``python -m tests.measure built_ahead`` writes these files. If a package is
@@ -34,13 +34,13 @@ if TYPE_CHECKING:
 
 FILE = "built_ahead.json"
 Files = dict[str, str | None]
-"""Packages that are built together, by paths relative to ``src``: the text of each file, and None for a folder."""
+"""Packages that are built together: the text of each file by its path relative to ``src``; None for a folder."""
 _ROOM = 1_000_000_000
 _done: set[Path] = set()
 
 
 def recorded(root: Path) -> list[Files]:
-    """Return the packages that the chapters of a course have recorded."""
+    """Return the packages in the files ``built_ahead.json`` of all chapters."""
     found: list[Files] = []
     for file in sorted((root / "solutions").glob(f"*/{FILE}")):
         found += msgspec.json.decode(file.read_bytes(), type=list[Files])
@@ -48,7 +48,7 @@ def recorded(root: Path) -> list[Files]:
 
 
 def build_ahead(folder: Path, jobs: Jobs) -> None:
-    """Build every shared package that is missing, once in the life of this process.
+    """Build every shared package that the cache lacks. Another call for the same folder in this process does nothing.
 
     Args:
         folder: The folder for these builds; see :func:`autograder.workspaces.builds.cache.graders_root`.
@@ -66,7 +66,7 @@ def build_ahead(folder: Path, jobs: Jobs) -> None:
         1, len(every)
     )  # workers that start at the same time begin with different packages
     for build in (*every[first:], *every[:first]):
-        # Each submission that contains this package then builds it for itself.
+        # If a build takes too long, skip it: each submission with this package then builds it for itself.
         with contextlib.suppress(BuildTookTooLong):
             build()
     _done.add(folder)

@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 FORM = re2.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*")
-"""Matches an entry point: executable, module and function. re2 does not accept texts with lone surrogates."""
+"""Matches an entry point: executable, module and function. Use it only for ASCII: re2 rejects lone surrogates."""
 
 
 def console_scripts(tree: ast.AST) -> ast.List | None:
-    """Return the list of ``console_scripts`` in a setup.py; None if there is none."""
+    """Return the list of ``console_scripts`` in the syntax tree of a setup.py; None if there is none."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Dict):
             for key, value in zip(node.keys, node.values, strict=True):

@@ -1,9 +1,9 @@
-"""Builds on which a grade may depend: made in a box from the sources alone, and accepted only as data.
+"""Makes the builds on which a grade depends: in a box, from the sources alone.
 
-No submission shares a build with another submission, or with a second execution of itself. Otherwise the duration of
-a build would reveal to a notebook what classmates have handed in, or that it runs for the second time. Only packages
-that the course itself publishes or makes are built in advance, once for all
-(:mod:`autograder.workspaces.built_ahead`). No box can write to either folder.
+No submission shares a build with another submission, or with a second execution of itself. Otherwise the duration of a
+build would reveal to a notebook what classmates have handed in, or that it runs for the second time. Only packages that
+the course itself publishes or makes are built in advance, once for all submissions
+(:mod:`autograder.workspaces.built_ahead`). No box can write to the folders with builds.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ ROOM = 32_000_000
 class GradedBuilds(Builds):
     """The builds for one execution of a submission.
 
-    Packages that only define interfaces often differ just in comments and spaces. So a build made in advance is used
-    if its sources mean the same.
+    Packages that only define interfaces often differ just in comments and spaces. For such a package, a build made in
+    advance is used even if its sources differ in comments and spaces.
 
     Args:
         folder: The folder for the builds of this execution. Only the grader can write to it.
@@ -62,7 +62,7 @@ class GradedBuilds(Builds):
         return self._entry(found, order)
 
     def _entry(self, found: Build, order: BuildOrder, folder: Path | None = None) -> Build:
-        """Return the build if the size limit allows it. A build made in advance counts as much as a new one."""
+        """Return the build, or a failed build if the size limit is exceeded. Builds made in advance count, too."""
         made = super()._entry(found, order, folder)
         if made.install is None or order.key in self._paid:
             return made
@@ -76,5 +76,5 @@ class GradedBuilds(Builds):
 
 
 def _hidden_from(packages: Sequence[Package]) -> Sequence[Path]:
-    """Return the files of the course's own interfaces, which a build of interfaces must not see."""
+    """Return the files to hide from a build: the course's own interfaces, if the packages define interfaces."""
     return course_interfaces() if any(package.interface_files for package in packages) else ()

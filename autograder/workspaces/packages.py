@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     from autograder.messages.workspaces import Source
 
 WORKSPACE = "ros2_ws"
-"""The name of every workspace in the course."""
+"""The name of the workspace folder in all labs."""
 DEFINITIONS = (".msg", ".srv", ".action")
 """The file name extensions of interface files."""
 UNREADABLE = (SyntaxError, ValueError, LookupError, RecursionError, MemoryError)
-"""The errors with which Python's parsers of Python and XML reject a text: malformed, in an unknown encoding, or too
+"""The errors that Python's parsers for Python and XML raise if a text is malformed, has an unknown encoding, or is too
 deeply nested.
 """
 LAUNCH_LANGUAGES = (".py", ".xml", ".yaml", ".yml")
@@ -41,16 +41,16 @@ MAX_PACKAGES = 50
 MAX_PACKAGE_XML = 20_000
 """The maximum size of a package.xml in bytes; real ones have a few thousand.
 
-The limit is needed because validating takes quadratic time. Entities are refused, because with them two thousand
-bytes can stand for eight million.
+The limit is needed because validating takes quadratic time. Entities (``<!ENTITY``) are refused, because they let two
+thousand bytes expand to eight million.
 """
 MAX_SETUP = 50_000
 """The maximum size of a setup.py in bytes. Python's own parser takes minutes for an f-string of half a megabyte."""
 MAX_CMAKE_LISTS = 50_000
 """The maximum size of a CMakeLists.txt in bytes."""
 MAX_LOOK = 100_000
-"""The maximum number of bytes, over all packages' files, for slow parsers: Python's parser and catkin_pkg need half a
-second for the largest file. A file beyond this limit is skipped, and not reported as missing or wrong.
+"""The maximum number of bytes, of all packages together, that slow parsers read. Python's parser and catkin_pkg need
+half a second for the largest allowed file. A file beyond this limit is skipped; it is not reported as missing or wrong.
 """
 
 _HIDING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
@@ -68,7 +68,7 @@ class Package:
         name: The package's name in its package.xml.
         folder: The folder of the package.
         build_type: The build type, such as ``"ament_python"``; empty if package.xml has none.
-        dependencies: Every package on which it depends, and the groups of which it is a member.
+        dependencies: The names of the packages on which it depends, and of the groups of which it is a member.
     """
 
     name: str
@@ -78,7 +78,7 @@ class Package:
 
     @property
     def commented(self) -> tuple[str, ...]:
-        """The dependencies that are only inside comments of the package.xml, and therefore do not count."""
+        """The dependencies that package.xml contains only inside comments, so they have no effect."""
         comments = re2.findall(r"(?s)<!--(.*?)-->", _text(self.folder / "package.xml"))
         line = r"<(?:\w*depend|member_of_group)\b[^>]*>\s*([^<\s]+)\s*</"
         return tuple(name for comment in comments for name in re2.findall(line, comment))
@@ -105,7 +105,7 @@ class Package:
 
     @property
     def programs(self) -> tuple[str, ...]:
-        """The console scripts that its setup.py names.
+        """The console scripts that are written in setup.py.
 
         The file is read and not run: every text in it of the form ``name = module:function`` counts. Computed names,
         and those in setup.cfg, are known only after the build.
@@ -119,7 +119,7 @@ class Package:
 
 
 def find_packages(src: Path) -> tuple[list[Package], list[str]]:
-    """Return the packages below ``src`` that colcon would build, by name, and what is wrong with unusable ones."""
+    """Return the packages below ``src`` that colcon would build, by name, and for each unusable one what is wrong."""
     packages, unusable, budget = [], [], ByteBudget(MAX_LOOK)
     files = sorted(islice(_package_files(src), MAX_PACKAGES + 1))
     if len(files) > MAX_PACKAGES:
@@ -143,7 +143,7 @@ def launch_files(folder: Path) -> list[Path]:
 
 
 def workspace_of(file: Path, beside: Iterable[Path]) -> Path | None:
-    """Return the workspace that contains a launch file, or a workspace in one of the folders next to it; else None.
+    """Return the workspace that contains a launch file, else one in the folders ``beside``; None if there is neither.
 
     Args:
         file: The launch file.
@@ -156,7 +156,7 @@ def workspace_of(file: Path, beside: Iterable[Path]) -> Path | None:
 
 
 def needed(packages: Iterable[Package], targets: Iterable[str]) -> list[Package]:
-    """Return the targets and everything on which they depend, as far as it is among the packages, in the same order."""
+    """Return the packages that are targets or on which a target depends, directly or indirectly. The order is kept."""
     there = list(packages)
     dependencies: dict[str, set[str]] = {}
     for package in there:
@@ -231,7 +231,7 @@ def _package(file: Path, budget: ByteBudget) -> Package:
 
 
 def _validate(file: Path, shown: str) -> None:
-    # colcon silently treats a package with an invalid package.xml as a plain Python package.
+    # Check package.xml here: colcon silently treats a package with an invalid one as a plain Python package.
     try:
         from catkin_pkg.package import InvalidPackage, parse_package
     except ImportError:
@@ -242,7 +242,7 @@ def _validate(file: Path, shown: str) -> None:
         what = re2.sub(r"^Error\(s\) in package '[^']*':\s*", "", str(error)).strip()
         raise BadPackage(f"{shown} is not valid: {what}") from error
     except AssertionError as error:
-        # catkin_pkg asserts only that the format is valid, and its message asks the user to update catkin_pkg.
+        # An AssertionError means an unknown format. catkin_pkg's own message, to update catkin_pkg, would not help.
         raise BadPackage(f'{shown} is not valid: <package format="…"> has to be 1, 2 or 3') from error
     except (*UNREADABLE, ExpatError) as error:
         raise BadPackage(f"{shown} is not valid: {_told(error)}") from error

@@ -1,4 +1,4 @@
-"""From a path to a program, here or in a box: check the workspace, build what is needed, and report."""
+"""Prepares the program that a check runs: checks the workspace, builds the needed packages, and reports on both."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Prepared:
 
     Attributes:
         command: The command.
-        environment: All environment variables, with which the program finds the builds.
+        environment: All environment variables of the program. They make ROS find the builds.
         builds: The builds that the program may read, by the names of their kinds of workspace.
     """
 
@@ -51,7 +51,7 @@ class Preparation:
     Attributes:
         builds: Finds or makes the builds. Their jobs will run the program.
         report: Called with each line of the report for the check.
-        build_ended: Called when a build has ended, before the line about it.
+        build_ended: Called when a build has ended, before its result is reported.
         cancelled: Returns True when the program is no longer needed.
     """
 
@@ -102,7 +102,10 @@ class Preparation:
         return self._launched(command, file, made, course) if made.ok else None
 
     def _course(self) -> Build | None:
-        """Return the build of the course's own packages; None in a hand-out, as they are Lab 1.2's solutions."""
+        """Return the build of the course's own packages; None in a student's copy of the course.
+
+        The packages are the solutions of Lab 1.2, so students do not get them.
+        """
         if not (own := reference_workspace()).is_dir():
             return None
         course = self.builds.build(look(own), None, name=COURSE)
@@ -113,7 +116,11 @@ class Preparation:
     def _launched(
         self, command: Sequence[str], file: Path | None, made: Build | None, course: Build | None
     ) -> Prepared:
-        """Return a launch with both builds. If the student lacks programs, the course lends them and comes first."""
+        """Return a launch that finds the student's build first, then the course's.
+
+        If the student's package lacks programs of the course's package, the course's build with the student's files
+        added comes first.
+        """
         environment: Mapping[str, str] = {**self.builds.jobs.environment, **_ALL_OUTPUT}
         builds: dict[str, Build] = {}
         if made is not None:
@@ -131,7 +138,7 @@ class Preparation:
     def _with(
         self, environment: Mapping[str, str], name: str, made: Build, *, last: bool = False
     ) -> Mapping[str, str]:
-        """Return environment variables with which a job finds a build at the path where the job sees it."""
+        """Return the environment with a build's folders added, by the paths at which a job sees them."""
         found = with_prefixes(environment, made.prefixes, last=last)
         if made.install is None:
             return found

@@ -40,8 +40,8 @@ class Plan:
 
     Attributes:
         targets: The names of the packages that the exercise needs; if empty, it needs all packages.
-        missing: Returns the things that the exercise needs and the build did not produce; empty if nothing is
-            missing.
+        missing: Returns the name of a package, program or file that the exercise needs and the build lacks; empty if
+            nothing is missing.
         command: Returns the command to run in the environment of the build. It is called only if nothing is missing.
         definition: The name of the interface file that the exercise is about; empty if there is none.
         launches: Returns the path of the installed launch file; None if the exercise launches none.
@@ -61,8 +61,8 @@ def plan_for(
 
     Args:
         runner: What the exercise runs.
-        arguments: The arguments of this start. If there are several programs, the first argument names one. The
-            arguments of a launch may name a program to run instead.
+        arguments: The arguments with which the program is started this time. If the exercise has several programs, the
+            first argument names one. The arguments of a launch may name a program to run instead of the launch.
     """
     match runner:
         case RunsProgram(package=package, program=program):
@@ -84,7 +84,7 @@ def _program_plan(package: str, program: str, arguments: Sequence[str]) -> Plan:
 
 
 def _missing(made: Build, package: str, wanted: str, there: Iterable[str]) -> str:
-    """Return the package if it was not built, else the thing wanted from it if that is missing; else an empty text."""
+    """Return ``package`` if it was not built, ``wanted`` if ``there`` does not contain it, else an empty text."""
     if not any(prefix.name == package for prefix in made.prefixes):
         return package
     return "" if wanted in there else wanted
@@ -162,7 +162,7 @@ def launch_targets(file: Path) -> Callable[[Build], Iterable[str]]:
 
 
 def alone(arguments: Sequence[str]) -> Sequence[str]:
-    """Return the command for the single program that the arguments name; empty if they ask for the launch."""
+    """Return the command for the single program that the arguments name; empty if the whole launch is to be run."""
     words = list(arguments)
     return [ros2(), "run", *words[words.index(ALONE) + 1 :]] if ALONE in words else []
 
@@ -170,9 +170,9 @@ def alone(arguments: Sequence[str]) -> Sequence[str]:
 def lacks_programs(file: Path, made: Build, course_build: Build) -> bool:
     """Return True if a launch file starts programs of the course's package that the student's package does not have.
 
-    A student who wrote talker and listener only in the notebooks has no programs to launch. If a student's launch
-    file starts programs with other names, it may still contain the word ``talker``, as a variable, a node's name or
-    in a comment.
+    A student who wrote talker and listener only in the notebooks has no programs to launch. The answer depends on the
+    words in the launch file: it is True if they include a program that only the course has, and none that only the
+    student has. With programs of the student, ``talker`` may be a variable, a node's name or part of a comment.
     """
     words, own, given = _launch_words(file, made), _programs(made), _programs(course_build)
     if words is None:
@@ -189,7 +189,7 @@ def reference_workspace() -> Path:
 def course_interfaces() -> tuple[Path, ...]:
     """Return all files and folders of the course's own interfaces.
 
-    A build of interfaces must not find these, because copies of them would look like generated files.
+    They are hidden from a build of interfaces, because copies of them would look like newly generated files.
     """
     prefixes = {sys.prefix, *os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)} - {""}
     packages = course.interfaces()
@@ -205,10 +205,9 @@ def ros2() -> str:
 
 
 def _launch_words(file: Path, build: Build) -> set[str] | None:
-    """Return the words in a launch file and in the files that it includes, that is, whose names are in its text.
+    """Return the words in a launch file and in the files whose names it contains; None if there is too much to parse.
 
-    Tags and keys, such as ``<node`` and ``node:``, are not among the words. It returns None if the files are too long
-    to parse.
+    Tags and keys are returned with their punctuation, such as ``<node`` and ``node:``, so that they differ from names.
     """
     near = [
         *file.parent.iterdir(),

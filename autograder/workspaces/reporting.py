@@ -27,9 +27,9 @@ def report_line(phase: str, made: Build, plan: Plan | None = None, missing: str 
     Args:
         phase: ``"found"`` for a report on the sources, before the build; ``"built"`` for one on the result of the
             build.
-        made: The workspace or its build.
+        made: The description of the workspace, or of its build.
         plan: The exercise's plan for it; None if all packages are equally important.
-        missing: The thing that the exercise needs and the workspace lacks.
+        missing: The name of a package, program or file that the exercise needs and the workspace lacks.
     """
     needed = set(plan.targets(made)) if plan else set[str]()
     definition = plan.definition if plan else ""
@@ -55,7 +55,7 @@ def report_line(phase: str, made: Build, plan: Plan | None = None, missing: str 
 
 
 def no_sources_line(trouble: str) -> str:
-    """Return the report for the case that there is nothing to build.
+    """Return the line of the report if there are no sources to build.
 
     Args:
         trouble: The reason, in words for the student.
@@ -91,7 +91,7 @@ def _interface(package: Package, file: Path, definition: str, budget: ByteBudget
 
 
 def _without_comments(text: str) -> str:
-    """Return a definition without comments and empty lines. A # inside quotes does not begin a comment."""
+    """Return an interface definition without comments and empty lines. A # inside quotes does not begin a comment."""
     lines = (
         line if re2.search(r"^[^#]*['\"]", line) else line.partition("#")[0] for line in text.splitlines()
     )

@@ -1,11 +1,11 @@
-"""The grader's side of checks of workspaces and launch files: it receives sources, builds, runs and reports.
+"""The grader's service for checks of workspaces: it receives sources, builds them, runs programs and reports.
 
 It runs in the grader's worker, outside all boxes, and has two Unix sockets:
 
 * The **judge's** socket, which the student's box cannot see. One connection is one check. The judge sends the sources
   that it got from the notebook. The service writes and reads them, and has them built and run. It tells the judge
   what the workspace contains, how the build ended, which processes were started, and what the programs print.
-* The **notebook's** socket, only for builds: what `colcon build` would make in the box is made once outside it.
+* The **notebook's** socket, only for builds: `colcon build` in the student's box lets the service make the build.
 
 The messages on both sockets are defined in :mod:`autograder.messages.workspaces`.
 """
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from autograder.workspaces.running.jobs import Jobs
 
 MAX_BUILDS = 20
-"""The maximum number of builds that one notebook may request. After that, colcon itself works in the box."""
+"""The maximum number of builds that one notebook may request. After that, colcon itself builds in the box."""
 PIECE = 400_000
 """The maximum number of bytes of an archive in one message."""
 
@@ -57,7 +57,7 @@ class ServiceSockets:
 
 
 class WorkspaceService:
-    """Serves one submission. At the end of the ``with`` block, everything that runs for it is ended.
+    """The service for one submission. At the end of the ``with`` block, its builds and programs are ended.
 
     Args:
         sockets: The sockets to create, in existing folders.
@@ -95,7 +95,7 @@ class WorkspaceService:
         self.close()
 
     def close(self) -> None:
-        """Close all connections, and end everything that runs for them."""
+        """Close all connections, and end their builds and programs."""
         self._closing.set()
         for listener in self._listeners:
             with contextlib.suppress(OSError):

@@ -53,7 +53,7 @@ class Submitted:
 
 
 class Session:
-    """One check. The judge may start the submitted programs several times, but they are built only once.
+    """One check of a workspace or launch file. The judge may start programs several times; they are built only once.
 
     Args:
         lines: The connection to the judge.
@@ -105,7 +105,7 @@ class Session:
                 self._lines.say(messages.Stopped(order.run))
 
     def _take_sources(self, check: messages.Check) -> str:
-        """Write the submitted sources. Return what is wrong with them; empty if nothing is."""
+        """Receive the sources, and write them into a folder. Return what is wrong with them; empty if nothing is."""
         self._tree.mkdir()
         try:
             receive(self._lines, check.count, check.path, self._tree)
@@ -126,7 +126,7 @@ class Session:
 
 
 class _Run:
-    """One start of the submitted program, until it ends or is ended."""
+    """One run of the submitted program, in a thread."""
 
     def __init__(
         self, lines: Lines, builds: GradedBuilds, submitted: Submitted, order: messages.Start
@@ -191,7 +191,7 @@ class _Run:
         self._follow(self._prepare.launch(command, file, workspace), watch=True)
 
     def _hidden(self) -> Sequence[Path]:
-        """Return the course's own interfaces that students have to make; hidden, so that they cannot be copied."""
+        """Return the files to hide from the program: the course's interfaces that students have to write themselves."""
         return course_interfaces() if isinstance(self._submitted.runner, ServesInterface) else ()
 
     def _follow(self, prepared: Prepared | None, *, watch: bool = False) -> None:
@@ -231,7 +231,6 @@ class _Run:
         self._lines.say(messages.ReportLine(self.number, text))
 
     def _build_ended(self) -> None:
-        """Tell the judge that the build has ended."""
         self._lines.say(messages.BuildEnded(self.number))
 
     def _exited(self, code: int | None) -> None:

@@ -1,13 +1,12 @@
-"""Sources as one value, read once: the hash in a build's key and the files of the build both come from it.
+"""The sources of a build, read into memory once: the key of the build and the files to build both come from there.
 
-So a build contains nothing that is not in its key. Neither the build nor the key contains files that are not sources:
-links, pipes, devices, files that tools leave behind or compilers make, unreadable files. Nor do they contain times,
-permissions other than to execute, or the order of files in a folder. Names are bytes: two names that differ in case or
-in their Unicode normal form are different.
+So a build depends on nothing that its key does not cover. Links, pipes, devices, unreadable files, and files that tools
+or compilers make are not sources. Times, the order of files in a folder, and permissions (except the one to execute)
+are not read, either. Names are bytes: two names that differ in case or in their Unicode normal form are different.
 
-When a class is graded, the sources are collected in the process that runs a student's code, and checked and written
-in another process. The student's process may send anything, and a student may write any files; so only the number,
-sizes and names of files must be harmless.
+When a class is graded, the sources are collected in the process that runs a student's code, and checked and written in
+another process. The student's process may send anything, so the number, sizes and names of the files are checked. Their
+content may be anything.
 """
 
 from __future__ import annotations
@@ -40,13 +39,13 @@ MAX_NAME = 120
 MAX_DEPTH = 16
 """The maximum number of parts of a path."""
 MAX_HELD = MAX_BYTES + MAX_FILES * MAX_PATH
-"""The maximum amount, in bytes of content and characters of paths, to hold in memory while sources are received."""
+"""The maximum of the bytes of contents and the characters of paths that are kept while sources are received."""
 LAUNCH_COMPANIONS = (".py", ".xml", ".yaml", ".yml", ".json", ".txt")
 """The extensions of files next to a launch file that the launch file may need."""
 _NOT_SOURCES = {"__pycache__", ".git", ".ipynb_checkpoints", ".pytest_cache", ".mypy_cache", ".ruff_cache"}
 """Folders that tools leave among the sources."""
 _MACHINE_CODE = (b"\x7fELF", b"!<arch>\n", b"!<thin>\n")
-"""The bytes with which programs, libraries and object files begin, and archives of these (elf(5), ar(5))."""
+"""The first bytes of compiled files: programs, libraries, object files and archives of these (elf(5), ar(5))."""
 
 
 class BadSources(ValueError):
@@ -75,7 +74,7 @@ class Tree:
         return digest.hexdigest()
 
     def write(self, folder: Path) -> None:
-        """Write the sources into a folder to which no other process can write, and which contains none of them yet.
+        """Write the sources into a folder. No other process may write to the folder.
 
         Raises:
             FileExistsError: One of the files already exists.
@@ -90,7 +89,7 @@ class Tree:
 
 
 def is_source(path: str) -> bool:
-    """Return True if a path may be a source. Names of compiled Python files and of tools' folders are not."""
+    """Return True if a file with this path may be a source: it is not a .pyc file, nor in a folder that tools make."""
     return not any(part in _NOT_SOURCES or part.endswith(".pyc") for part in path.split("/"))
 
 
@@ -103,7 +102,7 @@ def read(folder: Path, name: str, largest: int) -> Iterator[Source]:
         largest: The maximum size of a file in bytes.
 
     Raises:
-        BadSources: A file is larger than that.
+        BadSources: A file is larger than ``largest``.
     """
     folder = folder.resolve()
     if not folder.is_dir():
@@ -118,7 +117,7 @@ def read(folder: Path, name: str, largest: int) -> Iterator[Source]:
 
 
 def read_file(file: str | Path, name: str, largest: int, folder: int | None = None) -> Source | None:
-    """Read a regular file. Return None if it is not a regular file or is unreadable.
+    """Read a source file. Return None if it is unreadable, compiled, or not a regular file.
 
     Args:
         file: The path of the file.
@@ -127,7 +126,7 @@ def read_file(file: str | Path, name: str, largest: int, folder: int | None = No
         folder: The descriptor of the folder to which the path is relative.
 
     Raises:
-        BadSources: The file is larger than that.
+        BadSources: The file is larger than ``largest``.
     """
     try:
         with opened(file, folder) as stream:
@@ -143,9 +142,9 @@ def read_file(file: str | Path, name: str, largest: int, folder: int | None = No
 
 
 def collect_workspace(workspace: Path) -> list[Source]:
-    """Return everything in ``src`` of a workspace, under the workspace's name, without links and special files.
+    """Return all sources in ``src`` of a workspace. Their paths begin with the name of the workspace.
 
-    For a path that is not a folder it returns nothing; a later step reports that.
+    Return no sources if the path is not a folder; a later step reports that.
 
     Raises:
         BadSources: The workspace is too large.
@@ -153,7 +152,7 @@ def collect_workspace(workspace: Path) -> list[Source]:
     if not workspace.is_dir():
         return []
     name = workspace.resolve().name
-    # Giving a package instead of a workspace is a mistake with its own diagnosis, which needs the package.xml.
+    # Include a package.xml: if the path is a package instead of a workspace, a diagnosis reports this from the file.
     package = read_file(workspace / "package.xml", f"{name}/package.xml", MAX_FILE)
     sources = read(workspace / "src", f"{name}/src", MAX_FILE)
     return _bounded([Source(name), *([package] if package else []), *sources])
@@ -183,9 +182,10 @@ def collect_launch(file: Path, workspace: Path | None) -> tuple[str, list[Source
 
 
 def checked(sources: Iterable[Source]) -> list[Source]:
-    """Check that sources are harmless (names, number, sizes, no duplicates), and return those to use.
+    """Check that sources are harmless (names, number, sizes, no duplicates), and return the real sources among them.
 
-    Files that are not sources are dropped here again, so that a box sees nothing that is not in the key.
+    The sender should have left out other files. They are dropped here again, so that a box sees nothing that the
+    build's key does not cover.
 
     Raises:
         BadSources: The sources could do harm.
@@ -223,7 +223,7 @@ def receive(lines: Lines, count: int, path: str, folder: Path) -> None:
 
     Raises:
         BadSources: The sources could do harm.
-        NotUnderstood: A message of another kind came.
+        NotUnderstood: A message is not a source.
         Hangup: The connection was closed.
     """
     if not 0 <= count <= MAX_FILES:
@@ -233,7 +233,7 @@ def receive(lines: Lines, count: int, path: str, folder: Path) -> None:
     for _ in range(count):
         source = lines.hear(Source)
         room -= room_of(source)
-        # Sources beyond the limit are also read, because other messages may follow them, but they are not kept.
+        # Read sources beyond the limit, too, because other messages may follow, but do not keep them.
         if room >= 0:
             taken.append(source)
     if room < 0:

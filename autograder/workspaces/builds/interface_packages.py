@@ -69,7 +69,7 @@ def _simple(source: Source) -> bytes | None:
 def simple_definition(text: str) -> str:
     """Return an interface definition without comments and needless spaces. Unusual lines stay unchanged.
 
-    rosidl rejects a space after ``---`` or before a type, and any whitespace that is not ASCII.
+    rosidl rejects a space after ``---`` or before a type, and spaces that are not ASCII. So such a line is kept.
     """
     lines = []
     for line in text.splitlines():

@@ -1,1 +1,1 @@
-"""Builds and programs as jobs, run here or in a box, and what is known of their processes."""
+"""Runs builds and programs of workspaces, here or in a box, and watches the processes of a launch."""

@@ -1,4 +1,4 @@
-"""Jobs in boxes: builds without a network, and programs on a network that they share only with a judge."""
+"""Runs jobs in boxes: builds without a network, and programs on a network that they share only with a judge."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class BoxedJobs:
 
     Args:
         supervisors: The socket address of the fork server that starts the boxes' supervisors.
-        network: The network for programs' boxes. This class uses it from another thread.
+        network: The enclosure in which programs run. Its methods are called in the thread of a check.
         folder: A folder for intermediate files that nothing else uses.
         programs: The socket address of the fork server for programs; empty to start each program without a fork
             server.
@@ -64,14 +64,15 @@ class BoxedJobs:
         return HOME / name
 
     def tree(self, sources: Path) -> Path:
-        """Return the path at which the student's box sees the notebook's folder."""
+        """Return the path at which a box sees the notebook's folder."""
         del sources
         return WORK
 
     def build(self, order: BuildOrder, command: Sequence[str], entry: CachedBuild) -> Built:
-        """Build in a separate box, and pack the result when no process of the build is alive any more.
+        """Run a build in a separate box. Pack its install folder when no process of the build is alive any more.
 
-        If a build needs more than its share of memory, repeat it while no other such build runs.
+        Its memory limit is low at first, because other builds may run. A build that reaches the limit is run again with
+        a higher one, while no other build is run again.
         """
         built, needs_room = self._build(order, command, entry.folder, BUILD_LIMITS)
         if needs_room:
@@ -81,7 +82,9 @@ class BoxedJobs:
 
     @contextlib.contextmanager
     def _turn(self, cancelled: Callable[[], bool]) -> Iterator[None]:
-        """Hold a lock on the folder of the fork servers, which all workers of a batch share.
+        """Hold the lock that lets only one build at a time be run again with more memory.
+
+        The lock is on the folder of the fork servers, because all workers of a batch have the same one.
 
         Raises:
             GivenUp: The build is no longer needed.
@@ -96,7 +99,7 @@ class BoxedJobs:
     def _build(
         self, order: BuildOrder, command: Sequence[str], entry: Path, limits: Limits
     ) -> tuple[Built, bool]:
-        """Return the build, and whether it reached the limit of its share of memory."""
+        """Return the result of a build, and whether it reached the memory limit."""
         place = self.place(order.name, entry)
         folder = fresh_folder("build-", self._folder)
         binds = [Bind(entry / "src", place / "src"), *_covers(order.hidden, folder)]
@@ -125,7 +128,8 @@ class BoxedJobs:
                     output_bytes=MAX_ARCHIVE_BYTES,
                 )
                 if packed.returncode is None:
-                    # Packing a few MB takes milliseconds. So the machine was too busy; the build did not fail.
+                    # Packing takes milliseconds. So a timeout means that the machine was too busy, not that the build
+                    # failed.
                     return Built(None, output, late=PACK_SECONDS), False
                 whole = packed.returncode == 0 and not packed.cut
                 return Built(returncode, output, packed.output if whole else b""), False
@@ -134,7 +138,7 @@ class BoxedJobs:
             shutil.rmtree(folder, ignore_errors=True)
 
     def start(self, job: ProgramJob) -> BoxedProgram:
-        """Start the program in a box on the network. For `ros2 run`, fork it from the fork server for programs."""
+        """Start the program in a box on the network. If the command is `ros2 run`, let the fork server start it."""
         binds = [Bind(job.sources, WORK)]
         binds += [Bind(entry / "install", HOME / name / "install") for name, entry in job.entries.items()]
         command, *words = job.command
@@ -164,7 +168,7 @@ class BoxedProgram:
         self.pid = running.pid
 
     def read(self, within: float) -> bytes | None:
-        """Return the output so far, stdout and stderr in one; None if nothing has come yet, b"" at the end."""
+        """Return new output of stdout and stderr; None if there is none within ``within`` seconds, b"" at the end."""
         if self._guard.exceeded():
             self._ended = True
         if self._ended:
@@ -176,11 +180,11 @@ class BoxedProgram:
         return data
 
     def exit_code(self) -> int | None:
-        """Return the exit code of the first program in the box; None if it still runs."""
+        """Return the exit code of the program; None if it still runs or was stopped."""
         return self._code
 
     def interrupt(self) -> None:
-        """Send Ctrl-C, but only while the program runs: afterwards another process may have its id."""
+        """Send Ctrl-C, but only while the program runs: later another process may have the same process id."""
         if not self._ended:
             self._running.interrupt()
 
@@ -191,7 +195,7 @@ class BoxedProgram:
 
 
 def _wait(running: Running, over: Callable[[], bool]) -> tuple[int | None, bool]:
-    """Return the exit code (None if the box was stopped), and whether it was stopped because of the time limit."""
+    """Wait for a build. Return its exit code (None if it must be stopped), and True if the time limit is the reason."""
     deadline = time.monotonic() + BUILD_SECONDS
     while running.read(LOOK_EVERY):
         if over():

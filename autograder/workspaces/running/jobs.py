@@ -1,7 +1,7 @@
-"""Builds and programs as jobs: requests, results, and the interface of what runs them, here or in a box.
+"""Jobs (builds and programs): their requests, their results, and the interface of the classes that run them.
 
-A build yields only bytes: output, and the files in its install folder. The caller never executes or unpickles any of
-them.
+The result of a build is only bytes: its output, and the files in its install folder. The process that asked for the
+build never executes or unpickles them.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class BuildOrder:
 
     Attributes:
         name: The kind of workspace; see :meth:`Jobs.place`.
-        workspace: A folder whose content the build must not find.
+        workspace: The student's workspace. Earlier results in it must not influence the build.
         tree: The sources of the build. They are put into ``src`` of the build's folder.
         packages: The packages in the sources. Their folders are relative to the build's folder.
         cancelled: Called from time to time. If it returns True, the build is ended.
@@ -89,7 +89,7 @@ class ProgramJob:
         environment: All environment variables.
         sources: The folder of the submitted files. The program sees it at :meth:`Jobs.tree`, which is also its
             working folder.
-        entries: Builds that the program may read, by the names of their kinds of workspace.
+        entries: The folders of the builds that the program may read, by kind of workspace (see :meth:`Jobs.place`).
         hidden: Files and folders of the environment that the program must not find.
     """
 
@@ -155,7 +155,7 @@ class Jobs(Protocol):
 
     @property
     def environment(self) -> Mapping[str, str]:
-        """The complete environment of a job, before the variables of a request are added."""
+        """The environment variables of all jobs. The variables of a request are added to them."""
         ...
 
     def place(self, name: str, entry: Path) -> Path:
@@ -168,7 +168,7 @@ class Jobs(Protocol):
         ...
 
     def build(self, order: BuildOrder, command: Sequence[str], entry: CachedBuild) -> Built:
-        """Run colcon for a build.
+        """Run colcon. Return the result of the build.
 
         Args:
             order: The build request.

@@ -1,4 +1,4 @@
-"""A program in a session of its own: its output is read while needed, and all its processes are ended with it."""
+"""Runs a program in a new session (setsid(2)), reads its output, and ends all its processes."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ LOOK_EVERY = 0.5
 
 
 class OwnSession:
-    """A program that an interrupt of the terminal or kernel does not reach. Its stdout and stderr are one stream.
+    """A program in a new session, so that Ctrl-C in the terminal or an interrupt of the kernel does not reach it.
 
-    It runs below a keeper process (:func:`autograder.process_trees.keep`). So none of its processes outlives this
-    process, however this process ends.
+    Its stdout and stderr are one stream. It is the child of a keeper process (:func:`autograder.process_trees.keep`),
+    which ends all processes of the program as soon as this process ends, for whatever reason.
 
     Args:
         command: The program and its arguments.
@@ -130,6 +130,7 @@ class OwnSession:
                 self._process.wait(timeout=polite)
         if self.exit_code() is None:
             process_trees.end_below(self.pid)
-        # Kill the keeper, which may be stopped. If the program has killed the keeper, kill what is left of the group.
+        # Kill the keeper, which may be suspended. If the program has killed the keeper, this kills the rest of the
+        # group.
         process_trees.signal_group(self.pid, signal.SIGKILL)
         self._process.wait()

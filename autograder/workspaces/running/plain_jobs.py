@@ -1,4 +1,4 @@
-"""Jobs as processes of this user: in a notebook, in a terminal, and for a grader that is allowed to work without boxes.
+"""Runs jobs as this user's processes: in a notebook, in a terminal, and for a grader that may work without boxes.
 
 The reports are the same as with boxes, but nothing isolates a build or program from the process that runs it.
 """
@@ -31,8 +31,8 @@ class PlainJobs:
 
     Args:
         environment: The environment of the jobs.
-        handed_in: True if another person wrote the code. Then jobs get a separate home folder, and only files that an
-            archive can contain are taken from a build.
+        handed_in: True if the code is a submission. Then jobs get a separate home folder, and the result of a build is
+            packed into an archive.
     """
 
     def __init__(self, environment: Mapping[str, str], *, handed_in: bool) -> None:
@@ -49,7 +49,7 @@ class PlainJobs:
         return sources
 
     def build(self, order: BuildOrder, command: Sequence[str], entry: CachedBuild) -> Built:
-        """Build in the entry. A submitted build is packed, and then removed from the entry."""
+        """Run a build in the folder of the entry. For a submission, pack the install folder, and then remove it."""
         seconds, size = (
             (BUILD_SECONDS, MAX_LOG_BYTES) if self._handed_in else (OWN_BUILD_SECONDS, sys.maxsize)
         )

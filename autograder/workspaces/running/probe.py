@@ -11,7 +11,7 @@ import sys
 
 
 def main(type_name: str, service: str) -> None:
-    """Offer the service until interrupted. If the type cannot be imported, Python prints the traceback."""
+    """Offer a service of this type until interrupted. If the type cannot be imported, Python prints the traceback."""
     package, kind, name = type_name.split("/")
     interface = getattr(importlib.import_module(f"{package}.{kind}"), name)
     import rclpy

@@ -1,4 +1,4 @@
-"""The processes of a launch, as they are reported to the check."""
+"""Watches the processes of a launch, and reports their command lines to the check."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def _own_id(pid: int) -> int:
 
 
 def _parent_of(pid: int) -> int:
-    """Return the current parent of a process, which may have adopted it; 0 if the process has ended."""
+    """Return the id of a process's current parent (another one if the first has ended); 0 if the process has ended."""
     return int((_status(pid, "PPid") or ["0"])[0])
 
 
@@ -60,10 +60,10 @@ def tell(line: str) -> None:
 
 @contextlib.contextmanager
 def watched(pid: int, report: Callable[[str], None]) -> Iterator[None]:
-    """Watch all processes that descend from one process, in a thread.
+    """Watch all descendants of a process, in a thread, until the ``with`` block ends.
 
     Args:
-        pid: The process from which the others descend.
+        pid: The id of the process whose descendants are watched.
         report: Called once for each process and command line, with the line for the check's report.
     """
     ended = threading.Event()
