@@ -19,7 +19,7 @@ _UNFINISHED = re2.compile(r"\..+\.\d+\.new")
 
 
 def opened(path: str | Path, folder: int | None = None) -> IO[bytes]:
-    """Open a regular file for reading. A link is not followed, and a pipe or device is not waited for.
+    """Open a regular file for reading. If the path is a link, a pipe or a device, raise an error at once.
 
     Args:
         path: The path of the file. Links in its folders are followed. If other users can write to its folder, pass a

@@ -28,7 +28,7 @@ def private_stdout() -> BinaryIO:
 
 @contextmanager
 def stray_lines_on_stderr() -> Iterator[None]:
-    """In the block, redirect what libraries and child processes print to standard output to standard error."""
+    """During a ``with`` block, redirect the standard output of libraries and child processes to standard error."""
     sys.stdout.flush()
     kept = os.dup(STDOUT)
     os.dup2(STDERR, STDOUT)

@@ -36,7 +36,7 @@ def fresh_folder(prefix: str, parent: Path | None = None) -> Path:
         parent: A folder of this user; None for the folder for temporary files.
 
     Raises:
-        UnsafeTemporaryFolder: No place is safe, or the folder does not belong to this user alone.
+        UnsafeTemporaryFolder: There is no safe folder for temporary files, or another user can change the new folder.
     """
     folder = Path(tempfile.mkdtemp(prefix=prefix, dir=parent or _base()))
     if parent is not None:
@@ -44,7 +44,7 @@ def fresh_folder(prefix: str, parent: Path | None = None) -> Path:
     found = folder.lstat()
     if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid() or found.st_mode & _OF_OTHERS:
         raise UnsafeTemporaryFolder(
-            f"{folder} was made just now and is not a folder of yours alone: set TMPDIR to a folder of your own"
+            f"other users can change {folder}, which was just created: set TMPDIR to a folder of your own"
         )
     return folder
 

@@ -107,7 +107,7 @@ raise RuntimeError(f"it sees {{found}}")
 @pytest.mark.parametrize(
     ("folder", "command", "hint"),
     [
-        (Path.home(), ["true"], "holds too much"),
+        (Path.home(), ["true"], "must not see"),
         (TALKER, ["python3", "../listener.answers/right/text_as_it_stands.py"], "is not in"),
     ],
 )

@@ -1,1 +1,1 @@
-"""The execution of a submission's notebook: a separate kernel, limits on every resource, no process left behind."""
+"""Sandboxes (boxes) for submissions: separate namespaces, limits on every resource, no process left behind."""

@@ -40,7 +40,7 @@ class Box:
 
     @property
     def lost(self) -> bool:
-        """True if the supervisor, and so the box, has ended. An exit code then says nothing about the student."""
+        """True if the supervisor, and so the box, has ended. Exit codes then say nothing about the student's code."""
         return self.supervision.lost
 
     def end(self) -> int:
@@ -68,7 +68,7 @@ class Supervision:
 
     Args:
         supervisors: The socket address of the fork server that starts supervisors.
-        words: What :mod:`autograder.boxes.supervisor` needs to mount the scratch folder.
+        words: The arguments of the supervisor's method `_open`, such as the path and size of the scratch.
 
     Raises:
         NoSandbox: The supervisor could not make the namespaces.

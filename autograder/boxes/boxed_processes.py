@@ -30,7 +30,7 @@ _ITS_TIME = 1e6
 class ForkedProcess:
     """A process that a fork server has forked on request.
 
-    It is killed as soon as this object's connection is closed, even if this process crashes.
+    The forked process is killed as soon as this object's connection is closed, as also happens if this process crashes.
 
     Args:
         address: The socket address of the fork server.
@@ -233,7 +233,7 @@ class WarmCommand:
         self._process, self._output, self.pid = process, output, pid
 
     def next_output(self, within: float) -> bytes | None:
-        """Return new output; see :meth:`Running.next_output`. Processes that the command left behind end with it."""
+        """Return new output; see :meth:`Running.next_output`. Once the command has ended, kill what it left running."""
         process = self._process.fileno()
         ready = select.select([self._output, process], [], [], within)[0]
         if process in ready:

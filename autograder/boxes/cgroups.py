@@ -24,7 +24,7 @@ _KINDS = ("memory", "pids", "cpu", "cpuacct")
 """The controllers that are used. Version 2 has no ``cpuacct``, because each of its groups counts processor time."""
 _PREFIX = "autograder-"
 _SURELY_LEFT = 60.0
-"""The age in seconds from which an empty group has certainly been left behind."""
+"""The age in seconds above which an empty group of a grader that has ended is removed."""
 _numbers = itertools.count()
 
 
@@ -42,7 +42,7 @@ class Controller:
 
 
 class Group:
-    """The cgroups of one submission. Its processes together get the same share of the processors as any other group.
+    """The cgroups of one submission. Each submission gets the same share of the processors.
 
     Args:
         memory_bytes: The memory limit in bytes for all its processes together, including files in memory.

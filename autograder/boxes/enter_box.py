@@ -44,8 +44,8 @@ class Entrance:
         call: The argument for the function ``run``.
         reader_seconds: The limit in seconds of processor time for a process that may only read from and write to its
             descriptors (:func:`autograder.boxes.seccomp_filter.filter_for_readers`); 0 for any other process.
-        filters_itself: True for such a process that takes its filter itself, before it reads anything: a desk first
-            connects to its kernel (:mod:`autograder.execution.kernel_desk`).
+        filters_itself: True if this process installs its filter of system calls itself: a desk must connect to its
+            kernel first (:mod:`autograder.execution.kernel_desk`).
     """
 
     cwd: str
@@ -105,7 +105,7 @@ def _end_of(pid: int, channel: Channel) -> int:
 
 
 def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
-    """Do everything that the process in the box does after its fork."""
+    """Run the child after its fork: apply the limits, give up rights, call ``run``, and exit."""
     code = 1
     try:
         os.setsid()
@@ -140,17 +140,18 @@ def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
 
 
 def give_up_rights(filters: bytes) -> None:
-    """Give up all capabilities, gaining any by executing a program, and the system calls that a box may not make."""
+    """Drop all capabilities, let no executed program gain any, and install a filter of system calls."""
     syscalls.drop_capabilities()
     syscalls.filter_system_calls(filters)
-    # A process that changed its rights no longer owns its /proc/self, which programs read, so make it dumpable again.
+    # After a change of rights, a process cannot read its own /proc/self, as programs do, unless it is made dumpable.
     syscalls.prctl(syscalls.PR_SET_DUMPABLE, 1)
 
 
 def _limit_processor_time(seconds: int) -> None:
-    """Set the limit on processor time. Under the filters of readers and desks, SIGXCPU cannot be caught or held back.
+    """Set the limit on processor time, at which SIGXCPU ends this process.
 
-    SIGXCPU comes a second before SIGKILL, so that reaching the limit differs from a machine that is out of memory.
+    The process cannot catch or block SIGXCPU, because the filters of readers and desks refuse the calls for it. SIGKILL
+    is set a second later: it would look as if the machine were out of memory.
     """
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
 

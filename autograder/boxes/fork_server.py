@@ -120,7 +120,7 @@ def main(arguments: list[str]) -> None:
 
 
 def _tidy(address: str) -> None:
-    """Remove the socket, and the folder that was made for it, because their maker may have been killed."""
+    """Remove the socket and its folder, because the process that made them may have been killed."""
     socket_file = Path(address)
     with contextlib.suppress(OSError):
         socket_file.unlink(missing_ok=True)
@@ -184,7 +184,7 @@ def preload_ros(interfaces: Iterable[str]) -> None:
 
 
 class ForkServer:
-    """A fork server that this process started. It ends with this object, or with this process.
+    """A fork server that this process started. It ends when :meth:`stop` is called or when this process ends.
 
     Args:
         mode: ``BESIDE`` or ``INSIDE``; see :mod:`autograder.boxes.fork_server`.
@@ -299,11 +299,11 @@ class ForkServers:
 
     @property
     def alive(self) -> bool:
-        """True if all of them still run."""
+        """True if all fork servers still run."""
         return all(process.alive for process in self._all())
 
     def stop(self) -> None:
-        """End them with all boxes, kernels and judges that they started. This may be called twice."""
+        """End the fork servers, and all boxes, kernels and judges that they started. This may be called twice."""
         for process in self._all():
             process.stop()
         self._folder.remove()

@@ -59,7 +59,7 @@ class BoxGuard:
 
     @property
     def hidden_memory(self) -> bool:
-        """True if the box may use memory that does not show up in any process."""
+        """True if the box may use memory that belongs to no process, because a cgroup counts that memory, too."""
         return self._memory
 
     @property
@@ -124,7 +124,7 @@ class BoxGuard:
         self._group.close()
 
     def _look(self) -> Ended | None:
-        # If the kernel killed any process, the memory was used up. Which process it kills depends on chance.
+        # If the kernel killed any process of the group, memory was used up. Which process it chose does not matter.
         if self._group.ran_out_of_memory:
             return Ended.OUT_OF_MEMORY
         use = use_of(self._first, None if self._memory else _memory_of)
@@ -162,8 +162,8 @@ class Use:
         memory: Memory in bytes that belongs to no file; 0 if it was not measured.
         most_memory: The largest memory in bytes that any single process had at any time.
         cpu_seconds: Processor time in seconds, including that of children that have ended and were waited for.
-        files: The number of open files, sockets and pipes. They matter because data waiting in them, and event
-            watches on them, belong to no process.
+        files: The number of open files, sockets and pipes. They are limited because data that waits in them, and event
+            watches on them, take memory that belongs to no process.
     """
 
     threads: int
@@ -262,7 +262,7 @@ def _network_of(first: int, most: int) -> _Network:
 
 
 def _locks_of(first: int, most: int) -> int:
-    """Count the file locks that the processes of a box hold or wait for. No limit counts the kernel's memory for them.
+    """Count the file locks that the processes of a box hold or wait for. No other limit covers their memory.
 
     A box's ``/proc/locks`` shows the locks of its own processes. It also shows the locks that belong to an open file
     instead of a process, from the whole machine, with -1 as the PID. Such locks do not count: no process in a box can
@@ -325,8 +325,8 @@ def _exact_memory_of(process: str) -> tuple[int, int]:
 def _sizes_in(file: Path) -> Counter[str]:
     """Return the sizes in bytes in a file such as /proc/PID/status, by the name of the field; 0 for a missing field.
 
-    Only whole lines such as ``VmPTE: 64 kB`` are read. A process chooses its own name, which is in the file as well and
-    could contain such words.
+    Only whole lines such as ``VmPTE: 64 kB`` are read. The file also contains the process's name, which the process
+    chooses itself and which could imitate a field.
     """
     return Counter({name: int(size) * 1024 for name, size in _SIZE.findall(file.read_text(errors="replace"))})
 
@@ -349,14 +349,14 @@ Guard = BoxGuard | NoGuard
 
 
 def guards() -> Mapping[str, str]:
-    """Return what enforces each limit on this host, by limit. ``autograder doctor`` shows this."""
+    """Return, for each limit, how it is enforced on this host. ``autograder doctor`` shows this."""
     watched = "checked four times a second (no cgroup can be made here)"
     return {
         "memory": _cgroup("memory") or watched,
         "processes": _cgroup("pids") or _processes_without(watched),
         "processor time": "the total is checked four times a second, and each process has a limit of its own",
         "share of the processors": _cgroup("cpu") or "none (no cgroup can be made here)",
-        "disk": "a file system in memory, with a size and a number of files",
+        "disk": "a file system in memory that limits the size and the number of files",
         "open files": "each process has a limit of its own, and the total is checked four times a second",
     }
 

@@ -11,7 +11,7 @@ from enum import StrEnum
 Left = Callable[[], float]
 """A function that returns the seconds that are left; zero or less when the time is over."""
 Patient = Callable[[float], Left]
-"""A function that, given a number of seconds, starts a time limit and returns a function for the seconds left of it."""
+"""A function that starts a time limit of so many seconds, and returns a function for the seconds that are left."""
 
 
 class Ended(StrEnum):
@@ -38,8 +38,8 @@ class Limits:
     Attributes:
         cell_seconds: Time limit in seconds for one cell on an idle machine; on a busy machine it stretches. A check
             cell gets its exercise's limit plus ``check_margin`` instead.
-        terminal_factor: A cell that is a terminal (``%%bash``) gets this many times the limit of a cell, because it
-            may build.
+        terminal_factor: A ``%%bash`` cell gets this many times the limit of another cell, because it may build a
+            workspace.
         check_margin: Seconds beyond the judge's own limit, so that the verdict arrives before the cell is stopped.
         notebook_seconds: Wall time in seconds for all cells together, including checks.
         interrupt_grace: Seconds for an interrupted cell to end before its kernel is killed.
@@ -60,8 +60,8 @@ class Limits:
             subject can send to the judge.
         processes: The maximum number of processes and threads of a box together.
         open_files: The maximum number of open files, sockets and pipes of one process.
-        all_open_files: The maximum number of these for all processes of a box together, and of sockets in the box's
-            network.
+        all_open_files: The maximum number of open files, sockets and pipes of all processes of a box together; also
+            that of sockets in the box's network.
         file_locks: The maximum number of file parts that all processes of a box may lock together; a database locks
             five.
         socket_bytes: The maximum number of bytes that may wait in the sockets of a box's network. The machine has one
@@ -70,7 +70,7 @@ class Limits:
         scratch_files: The maximum number of files, folders and links in a box.
     """
 
-    # docs/decisions.md, on limits, says what honest notebooks need, and why these limits are several times that.
+    # docs/decisions.md says how much notebooks need, and why these limits are several times as high.
     cell_seconds: float = 60.0
     terminal_factor: float = 2.0
     check_margin: float = 10.0

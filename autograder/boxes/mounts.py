@@ -89,8 +89,8 @@ def box_arguments(
     Args:
         scratch: The supervisor's file system in memory.
         binds: What the box sees in addition to the system, Python and this package.
-        scratch_visible: True if the scratch is the box's home, ``/tmp`` and ``/dev/shm``. If False, the box has small
-            ones of its own.
+        scratch_visible: True if the box's home, ``/tmp`` and ``/dev/shm`` are folders of the scratch. If False, they
+            are small file systems of this box alone.
     """
     words = [
         "--unshare-user", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--unshare-cgroup-try",
@@ -146,7 +146,7 @@ def _etc(scratch: Path) -> list[str]:
 
 @functools.cache
 def etc_files() -> Mapping[str, bytes]:
-    """Return the files in a box's ``/etc``: user, host name, linker and clock, and no name service."""
+    """Return the files for a box's ``/etc``, by name. They name the user and the host, and set up linker and clock."""
     files = {name: text.encode() for name, text in _ETC_FILES.items()}
     for name in _ETC_OF_THE_HOST:
         with contextlib.suppress(OSError):
@@ -166,7 +166,7 @@ def _proc_covers() -> tuple[str, ...]:
         if path.name.isdecimal() or path.is_symlink():
             continue
         if path.is_dir():
-            # bubblewrap reads the list of mounts again for each bind, so there are only as many as needed.
+            # Bind only folders that need it, because bubblewrap reads the list of mounts again for each bind.
             words += ["--ro-bind", str(path), str(path)] if _can_be_written_below(path) else []
         elif path.name in _PROC_HIDDEN or path.stat().st_mode & 0o222:
             words += ["--ro-bind", "/dev/null", str(path)]

@@ -1,4 +1,4 @@
-"""Boxes for one command: for a program that a user runs by hand."""
+"""Boxes for a command that a user runs by hand."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _OF_PYTHON = ("PYTHONUNBUFFERED", "PYTHONFAULTHANDLER")
 
 
 class OneCommandBox:
-    """A network for this process, in which each start of a command gets a separate box.
+    """Gives this process a new network, and each start of a command a separate box in that network.
 
     Args:
         scratch: An empty folder. Only this process and the boxes see the files that are made in it.
@@ -40,14 +40,14 @@ class OneCommandBox:
             file = self._folder / word
             if os.sep in word and file.exists() and not self._sees(file):
                 raise ValueError(
-                    f"in a box a command sees the folder it starts in, and {word} is not in {self._folder}: "
-                    "go to the folder of what was handed in, and name it from there"
+                    f"a command in a box sees only the folder in which it starts, and {word} is not in "
+                    f"{self._folder}: change to the folder of the submission, and use a path relative to it"
                 )
         for kept in (Path.home(), Path(__file__).resolve().parents[2]):
             if kept.resolve().is_relative_to(self._folder):
                 raise ValueError(
-                    f"in a box a command sees the folder it starts in, and {self._folder} holds too much for that: "
-                    "go to the folder of what was handed in"
+                    f"a command in a box sees the folder in which it starts, and {self._folder} contains files that it "
+                    "must not see: change to the folder of the submission"
                 )
         self._guard = BoxGuard(Limits())
 
@@ -85,5 +85,5 @@ class OneCommandBox:
         take_limits(self._guard.cgroups, self._guard.rlimits)
 
     def close(self) -> None:
-        """Remove everything that was made. Call this after every command has ended."""
+        """Remove the cgroups. Call this after every command has ended."""
         self._guard.close()

@@ -216,7 +216,7 @@ def filter_for_readers(machine: str = "") -> bytes:
     """Return the filter for a process that only reads what it was given and writes its answer.
 
     Such a process cannot open, start or reach anything, and it cannot sleep: it either ends or uses up its processor
-    time. So processes for several students can be in one box, and nothing of one is left for the next.
+    time. So such processes for several students can share a box, and no data of one student is left for the next.
 
     Args:
         machine: The machine as in ``uname -m``; by default this machine.

@@ -157,7 +157,7 @@ class _Supervisor:
                 stdout=subprocess.PIPE if idle else descriptors[1],
                 stderr=subprocess.STDOUT if idle else descriptors[2],
                 pass_fds=kept,
-                # Safe because this process has no other threads.
+                # preexec_fn is safe, because this process has no other threads.
                 preexec_fn=lambda: take_limits(cgroups, rlimits or {}),
                 start_new_session=True,
             )
@@ -168,7 +168,7 @@ class _Supervisor:
             text = told.read()
         first = json.loads(text)["child-pid"] if text else 0
         if first:
-            with contextlib.suppress(ProcessLookupError):  # it was a command that ended at once
+            with contextlib.suppress(ProcessLookupError):  # the command has ended already
                 started.first = os.pidfd_open(first)
         if not idle:
             self._tell_started(name, first)

@@ -89,7 +89,9 @@ def filter_system_calls(program: bytes, *, every_thread: bool = False) -> None:
     if every_thread:
         call = ctypes.c_long(_SECCOMP[platform.machine()])
         flags = (_SECCOMP_SET_MODE_FILTER, _SECCOMP_FILTER_FLAG_TSYNC)
-        result = -abs(_libc.syscall(call, *flags, ctypes.c_char_p(head)))  # or the number of a thread
+        result = -abs(
+            _libc.syscall(call, *flags, ctypes.c_char_p(head))
+        )  # a positive result is the number of a thread that could not be given the filter
     else:
         result = _libc.prctl(PR_SET_SECCOMP, _SECCOMP_MODE_FILTER, ctypes.c_char_p(head), 0, 0)
     _check(result, "seccomp")

@@ -1,4 +1,4 @@
-"""Places moments from left to right: by time, or one after the other if all are at the same time."""
+"""Places the moments of a timeline from left to right: by time, or one after the other if all have the same time."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from autograder.cards.traffic import TrafficPart
 
 CHARACTER = 6.7
-"""The width in pixels of a character of the 11-pixel monospaced label font. Names of lanes are one pixel larger."""
+"""The width in pixels of a character of the 11-pixel monospaced label font. Names of lanes use a 12-pixel font."""
 MARGIN = 10.0
 SHORTEST = 0.002
 """The minimum length of an axis, in seconds."""
@@ -44,7 +44,7 @@ class Axis:
 
     @classmethod
     def of(cls, part: TrafficPart, lengths: Sequence[float], width: int) -> Axis:
-        """Return an axis on which the label of every moment fits between its mark and the right edge.
+        """Return an axis that leaves enough space between each mark and the right edge for the mark's label.
 
         Args:
             part: The part of the traffic to draw.

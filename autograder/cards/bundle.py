@@ -1,8 +1,8 @@
 """Turns a verdict into the MIME bundle that a notebook displays: its text, and one self-contained piece of HTML.
 
-The HTML contains no script, no id and no URL, so several cards can share a page and nothing is loaded. From a
-notebook that is not trusted, JupyterLab's sanitizer removes ``<style>``, ``<svg>`` and ``aria-*``. Even then the card
-is a heading, sentences and tables in the right order.
+The HTML contains no script, no id and no URL, so several cards can share a page and nothing is loaded. If a notebook is
+not trusted, JupyterLab's sanitizer removes ``<style>``, ``<svg>`` and ``aria-*`` from the card. The card then still
+consists of a heading, sentences and tables in the right order.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def waiting_bundle(title: str, doing: str, *, over: bool = False) -> dict[str, s
     Args:
         title: The title of the exercise.
         doing: The current step, or why there is no result.
-        over: True if the check has ended. If False, JupyterLab ends the card when the kernel ends.
+        over: True if the check has ended. If False, JupyterLab changes the card as soon as the kernel ends.
     """
     css, template = _templates()
     waiting = template.environment.get_template("waiting.html.j2")
@@ -131,14 +131,14 @@ def _templates() -> tuple[Any, Template]:
     shapes: Any = environment.get_template("shapes.html.j2").module
     environment.globals |= {"shape": shapes.shape, "wording": wording}
     for name in environment.list_templates(extensions=["j2"]):
-        # Compile the included templates now, or the first card would have to wait for that.
+        # Compile the included templates now, so that the first card does not have to wait for that.
         environment.get_template(name)
     css = (files("autograder.cards") / "card.css").read_text(encoding="utf-8")
     return Markup(css), environment.get_template("card.html.j2")
 
 
 def _breakable(text: str) -> Any:
-    """Return ``text`` escaped, with a possible line break after each slash, because names in ROS are long."""
+    """Return ``text`` escaped, with a possible line break after each slash, because ROS names are long."""
     from markupsafe import Markup, escape
 
     return Markup("/<wbr/>").join(escape(part) for part in text.split("/"))

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from autograder.verdict import CriterionResult, State, Verdict
 
 UNFOLDED = 16
-"""The maximum length of a traceback, in lines, that is shown unfolded."""
+"""A traceback is shown unfolded if it has fewer lines than this."""
 SOLUTION_LINES = 120
 SOLUTION_COLUMNS = 200
 """The maximum numbers of lines, and of characters in a line, of a cell of the reference solution."""
@@ -50,7 +50,7 @@ class Solution:
 
     Attributes:
         code: The solution cells, in order.
-        why: One or two sentences about why it is written this way.
+        why: One or two sentences about why the solution is written this way.
         other_way: The advantage of another way to write it; empty if no other way is worth showing.
         other_code: The code of that other way.
     """
@@ -61,7 +61,7 @@ class Solution:
     other_code: str = ""
 
     def readable(self) -> Solution:
-        """Return the solution with strings that are safe to show."""
+        """Return the solution with all texts made safe to show."""
         code = tuple(_code(cell) for cell in self.code)
         other_way, other_code = paragraph(self.other_way, 600), _code(self.other_code)
         return Solution(code, paragraph(self.why, 600), other_way, other_code)
@@ -164,7 +164,7 @@ class Card:
         solution: Solution | None = None,
         short: bool = False,
     ) -> Card:
-        """Return the card of a verdict in one form. For the other arguments see :class:`Choices`."""
+        """Return the content of a verdict's card, in one form. For the other arguments see :class:`Choices`."""
         mark = form.mark
         advice = wording.advice(verdict)
         shown = traffic(verdict.timeline, at_most=form.moments)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from autograder.verdict import CriterionResult
 
 ALIKE = 0.5
-"""The minimum similarity of two texts, from 0 to 1, to show their difference. Between unlike texts it would not help.
+"""The minimum similarity of two texts, from 0 to 1. If they are less similar, showing their difference would not help.
 """
 LONGEST = 120
 """The maximum length of a compared text, in characters, because the time grows with the square of the length."""
@@ -35,7 +35,7 @@ class DiffTag(StrEnum):
 
 @dataclass(frozen=True)
 class TextPiece:
-    """A run of characters of the same kind."""
+    """A sequence of characters, all equal in both texts, all missing, or all too much."""
 
     kind: DiffTag
     text: str

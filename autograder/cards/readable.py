@@ -24,12 +24,12 @@ _NAMED_ESCAPES = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
 
 def printable(text: str) -> str:
-    """Return ``text`` with those characters written as escapes that could forge a line or move the cursor."""
+    """Return ``text`` with escapes for characters that are not printable, such as newlines and terminal codes."""
     return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
 
 
 def printable_json(text: str) -> str:
-    """Return equivalent JSON in which characters that move the cursor or reverse a line are escaped.
+    """Return equivalent JSON in which characters that are not printable, such as terminal codes, are escaped.
 
     Args:
         text: JSON on a single line.
@@ -47,7 +47,7 @@ def one_line(text: str, limit: int, *, mark: str = "…") -> str:
     """
     # Cut first, because escaping makes a text only longer, and escaping a megabyte would take long.
     text = _cut(text, 4 * limit, mark)
-    # Characters that need escaping are never printable (Python's "isprintable"), and few texts contain any.
+    # Most texts are printable in Python's sense, and then contain no character that needs escaping.
     return _cut(text if text.isprintable() else "".join(map(_escaped, text)), limit, mark)
 
 

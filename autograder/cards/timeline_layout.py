@@ -26,13 +26,13 @@ HALF_WIDTH = 430
 """Like WIDTH, but for a check with many parts, so that a wide card can show two pictures side by side."""
 
 _MANY = 8
-"""The maximum number of moments in a lane for which optional labels have several levels. If there are more, these
-labels stay on one level, so that the lane stays readable.
+"""If a lane has more moments than this, labels that are not essential all stay on one level, so that the lane stays
+readable.
 """
 _LEVELS = 4
 
 _FEW = 5
-"""The maximum number of moments in a lane for which labels may be long."""
+"""If a lane has more moments than this, its labels are shortened."""
 _MARK = 11.0
 """The width of a mark in pixels. Marks that are nearer than this are drawn one below the other."""
 _ROWS = 3
@@ -147,7 +147,7 @@ def _lane(
     labels: Sequence[str],
     xs: Sequence[float],
 ) -> tuple[Lane, float]:
-    """Return one lane, and the vertical position in pixels at which it ends."""
+    """Return one lane, and its lower end: the distance from the top of the picture in pixels."""
     moments = part.moments
     placed = _flags([_Wish(labels[i], xs[i], needed=moments[i].key) for i in members])
     text = one_line(name, 60)
@@ -201,7 +201,7 @@ def _labels(part: TrafficPart) -> list[str]:
 
 
 def _continued(previous: str, label: str) -> str:
-    """Return ``label`` without the words that it shares with ``previous``; empty if the two are equal."""
+    """Return ``label`` without its first words that ``previous`` has, too; empty if both are equal."""
     if label == previous:
         return ""
     shared = next((i for i, (a, b) in enumerate(zip(previous, label, strict=False)) if a != b), len(previous))
@@ -265,7 +265,7 @@ def _flags(wishes: Sequence[_Wish]) -> list[_Flag | None]:
             wish = wishes[index]
             if not wish.label or wish.needed is not needed:
                 continue
-            # The first label may get a row of its own, because the other labels continue its words.
+            # The first label may get an extra level, because the other labels leave out the words that it contains.
             levels = len(wishes) + 1 if needed else (1 if many else _LEVELS) + (index == 0)
             before = wishes[index - 1].x if index else 0.0
             flag = _place(wish, levels, placed, free_left=0.0 if many else wish.x - before)

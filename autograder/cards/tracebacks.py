@@ -12,8 +12,8 @@ _LIBRARIES = ("/site-packages/", "/lib/python3", "/opt/ros/", "<frozen")
 _BUILT = re2.compile(r"/install/(?:[^/.]+/)?lib/python3[^/]*/site-packages/")
 """Matches the folder into which a build installs a workspace's modules, which the student wrote."""
 _CALLED_BY_ROS = "/rclpy/task.py"
-"""The file of rclpy that comes, in a traceback, after the student's line that spins, if the error was raised in a
-callback. That line is not the cause.
+"""The file of rclpy that calls callbacks. A student's line above it in a traceback only calls ``spin`` and is not the
+cause of the error.
 """
 _CANNOT_BE_READ = ("SyntaxError", "IndentationError", "TabError")
 """Errors that have no traceback, because Python cannot start the program."""
@@ -47,9 +47,9 @@ def last_error(detail: str) -> str:
 
 
 def place(detail: str) -> TracebackPlace | None:
-    """Return the student's last line in the last traceback of a text.
+    """Return the last line of the student's own code in the last traceback of a text.
 
-    It returns None if there is no such line, or if the line only spins, because the mistake is then in a callback.
+    Return None if there is no such line, or if the line only calls ``spin``: the mistake is then in a callback.
     """
     lines = detail.splitlines()
     error = last_error(detail)

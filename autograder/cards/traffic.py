@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from autograder.verdict import Moment
 
 OTHER_LANES = "other names"
-"""In a part with more than `MAX_LANES` lanes, the lane that takes the moments of the emptiest ones."""
+"""The lane that combines the lanes with the fewest moments, if a part has more than `MAX_LANES` lanes."""
 
 OWN_LANE = "your code"
 """The lane for events of the program itself, such as its end."""
@@ -27,8 +27,8 @@ MAX_LANES = 8
 _MAX_PARTS = 12
 _LAST = {OTHER_LANES: 1, "log": 2, "printed": 3, OWN_LANE: 4}
 _TOGETHER = 3
-"""The maximum number of moments in a lane at one simulated time that the clock can have caused. If there are more,
-their times do not show their order.
+"""If a lane has more moments than this at one simulated time, times do not show the order of the moments: a step of the
+simulated clock does not cause so many.
 """
 
 
@@ -40,7 +40,7 @@ class TrafficPart:
         title: The name of the part; empty if the check has only one part.
         simulated: True if the times are in simulated seconds.
         moments: The moments, sorted by time.
-        gaps: For the index of a shown moment, the number of moments that were left out after it.
+        gaps: The number of moments that were left out after a shown moment, by the index of the shown moment.
     """
 
     title: str
@@ -55,7 +55,7 @@ class TrafficPart:
 
     @property
     def lanes(self) -> tuple[str, ...]:
-        """The lanes: first names on the graph, by their first moment; then logged and printed lines."""
+        """The lanes: first names on the ROS graph, in the order of their first moments; then the log and the output."""
         found = dict.fromkeys(moment.lane for moment in self.moments)
         return tuple(sorted(found, key=lambda lane: _LAST.get(lane, 0)))
 
@@ -124,7 +124,7 @@ def traffic(timeline: Sequence[Moment], *, at_most: int) -> Traffic:
 
 def _part(title: str, simulated: bool, moments: list[Moment], share: int) -> TrafficPart:
     ordered = _few_lanes(sorted(moments, key=lambda moment: moment.t))
-    if len(ordered) <= share + 2:  # leaving out only one or two would not be worth it
+    if len(ordered) <= share + 2:  # leaving out only one or two moments would not be worth it
         return TrafficPart(title, simulated, tuple(ordered))
     # Keep both ends: the beginning shows the pattern and the end shows the outcome. The middle only repeats the
     # pattern, so it is left out, except for important moments.

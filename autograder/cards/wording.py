@@ -95,7 +95,7 @@ def points_of(earned: float, possible: float) -> str:
 
 
 def score_line(verdict: Verdict, before: float | None = None) -> str:
-    """Return the points in words. A check that could not be made has no points, which differs from zero.
+    """Return the points in words. If the check could not be made, the words differ from those for zero points.
 
     Args:
         verdict: The verdict.
@@ -131,7 +131,7 @@ def fine_print(verdict: Verdict) -> list[str]:
     """Return the facts to quote in a question or an appeal: exercise id, diagnosis, seed and duration of the check."""
     parts = [verdict.exercise]
     if verdict.diagnosis:
-        parts.append(verdict.diagnosis.key)  # docs/mistakes.md explains each diagnosis under its key
+        parts.append(verdict.diagnosis.key)  # the key is the heading of the diagnosis in docs/mistakes.md
     if verdict.seed:
         parts.append(f"seed {verdict.seed}")
     if verdict.seconds > 0:
@@ -145,7 +145,7 @@ def duration(seconds: float) -> str:
 
 
 def detail_heading(detail: str) -> str:
-    """Return the heading of the detail, with the most important line: for a traceback, its exception."""
+    """Return the heading above a traceback or output. For a traceback, it contains the exception."""
     if TRACEBACK in detail:
         return f"The traceback, ending in: {last_error(detail)}"
     return "The last lines of output"

@@ -1,1 +1,1 @@
-"""Runs a notebook cell by cell: the kernel, the desk that reads it, and what each cell came to. Boxes isolate it."""
+"""Runs a notebook cell by cell: its kernel, the desk that reads the kernel's messages, and the result of each cell."""

@@ -18,7 +18,7 @@ from autograder.execution.outputs import TRACEBACK_LINES
 MOST_ESCAPED = 8
 """The maximum number of bytes in an answer for each byte of output. In JSON, a control character takes six bytes."""
 FURTHER_BYTES = 1_000_000
-"""Limit in bytes of everything else in an answer."""
+"""The maximum number of bytes in an answer in addition to the outputs."""
 
 
 @dataclass(frozen=True)
@@ -26,12 +26,12 @@ class Setting:
     """The settings that a desk gets when it starts.
 
     Attributes:
-        address: The path in the names of the kernel's sockets.
+        address: The first part of the paths of the kernel's sockets; a number follows.
         key: The key that signs the messages.
         message_bytes: See :class:`autograder.boxes.limits.Limits`.
-        flood_bytes: See there.
-        cell_output_bytes: See there.
-        notebook_output_bytes: See there.
+        flood_bytes: See the same class.
+        cell_output_bytes: See the same class.
+        notebook_output_bytes: See the same class.
     """
 
     address: str
@@ -56,7 +56,7 @@ class Do(StrEnum):
 
 
 class Order(msgspec.Struct, frozen=True):
-    """One order. The desk answers each order exactly once, in order. A new order ends the wait for the one before.
+    """One order. The desk answers each order once. When a new order comes, it answers the one before at once.
 
     Attributes:
         number: Counted from 1; the answer has the same number. The answer 0 says that the kernel is ready.
@@ -77,7 +77,7 @@ class Said(StrEnum):
     DONE = "done"
     RAISED = "raised"
     EXITS = "exits"
-    """The cell has called ``exit()`` or ``quit()``. The kernel answers before it ends, a moment later."""
+    """The cell has called ``exit()`` or ``quit()``. The kernel has answered, and ends a moment later."""
     FLOODS = "floods"
     """The cell has sent too much, and still runs."""
     OPEN = "open"
@@ -96,7 +96,7 @@ class Stream(_Output, frozen=True, tag="stream"):
 
 
 class Display(_Output, frozen=True, tag="display_data"):
-    """Something shown, by media type."""
+    """A displayed object, as data by media type."""
 
     data: Annotated[
         Mapping[Literal["text/plain", "image/png", "image/jpeg"], str], msgspec.Meta(max_length=3)
@@ -148,5 +148,5 @@ def admitted_answer(line: bytes, orders: range, cells: Collection[int]) -> Answe
     except RecursionError as error:
         raise ValueError("it is nested too deeply") from error
     if answer.number not in orders or not all(cell in cells for cell in answer.outputs):
-        raise ValueError("it is about something else")
+        raise ValueError("it belongs to another order or cell")
     return answer

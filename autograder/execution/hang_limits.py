@@ -1,9 +1,9 @@
-"""Time limits after a hang in a student's code. The first hang gets its full time limit, later ones a short one.
+"""Shortens time limits after a student's function or class has hung.
 
 If a student's function has an endless loop, each cell that uses the function hangs, and each would take its whole time
-limit. A name is blamed for a hang only if a cell of the master, which ends with any right answer, uses exactly one name
-that the student defined. If the cell uses several, or if the student wrote the cell, no name is blamed. A check is
-never left out, and a check that reaches its verdict at the usual speed counts as usual.
+limit. So only the first such cell gets its full limit, later ones a short one. A function is blamed for a hang only if
+the cell that hung is a cell of the master (which ends with every right answer) and uses nothing else that the student
+defined. A check is never left out, and a check that reaches its verdict at the usual speed counts as usual.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class Hangs:
     def before(self, cell: Cell) -> tuple[str, str] | None:
         """Return a name in the cell that hung before, and the title of the cell in which it hung, or None."""
         if not self._hung:
-            return None  # as in nearly every notebook; then no cell has to be parsed
+            return None  # nothing has hung, as in nearly every notebook, so no cell has to be parsed
         return next(((name, self._hung[name]) for name in self._used(cell) if name in self._hung), None)
 
     def _used(self, cell: Cell) -> list[str]:

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from autograder.execution.outputs import NotebookOutputs
 
 SHELL, IOPUB = 1, 2
-"""The channels in use, by their numbers in the names of the sockets."""
+"""The numbers of the used channels; the path of each channel's socket ends with its number."""
 _DESK_SECONDS = 30.0
 """Seconds for a desk to take an order, to end, or to read what an ended kernel has left."""
 
@@ -282,7 +282,7 @@ class Kernel:
 
 
 def _listener(path: Path) -> socket.socket:
-    """Return a listening Unix socket. It is made here, because ZeroMQ would make one inside the box."""
+    """Return a listening Unix socket. ZeroMQ is not used to make it, because it would do so inside the box."""
     listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     listener.bind(str(path))
     listener.listen(8)

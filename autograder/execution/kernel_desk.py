@@ -31,9 +31,11 @@ if TYPE_CHECKING:
 
 _ASK_AGAIN_S = 0.5
 _LAST_OUTPUT_S, _LONGEST_LAST_OUTPUT_S = 5.0, 20.0
-"""Time limits in seconds for a cell's last outputs: the first without any message, the second in all."""
+"""Time limits in seconds for a cell's last outputs: the longest pause between two messages, and the longest time in
+all.
+"""
 _AT_ONCE = 100
-"""The maximum number of messages that are read before other connections have their turn."""
+"""The maximum number of messages that are read from one connection before the others have their turn."""
 _WAITING = 500
 """The maximum number of messages that ZeroMQ keeps for the desk. Further ones wait in the kernel, which drops some of
 them.
@@ -125,7 +127,7 @@ class _Desk:
         return self._ended(self._reply)
 
     def _ended(self, reply: Mapping[str, Any]) -> Said:
-        """Return how a cell ended, once its last outputs have come. They use another socket and may be late."""
+        """Wait for a cell's last outputs, which come through another socket. Return how the cell ended."""
         until = time.monotonic() + _LONGEST_LAST_OUTPUT_S
         self._wait(lambda: self._idle or time.monotonic() > until, _LAST_OUTPUT_S)
         if _asks_to_exit(reply):
@@ -248,7 +250,7 @@ def _await_threads(context: zmq.Context[Any]) -> None:
 
 
 def _asks_to_exit(reply: Mapping[str, Any]) -> bool:
-    """Return True if the cell called ``exit()`` or ``quit()``. The kernel answers before it ends, a moment later."""
+    """Return True if the kernel's answer says that the cell called ``exit()`` or ``quit()``."""
     payload = reply.get("payload")
     return isinstance(payload, list) and any(
         isinstance(part, dict) and part.get("source") == "ask_exit" for part in payload

@@ -100,8 +100,8 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
     """Run a kernel until it is shut down, or run the desk that reads a kernel's messages.
 
     Args:
-        call: ``key``, with which messages are signed, and ``address``, the path in the names of the sockets. For a desk
-            the argument of :func:`autograder.execution.kernel_desk.run`.
+        call: Contains ``key``, with which messages are signed, and ``address``, the first part of the sockets' paths.
+            For a desk, the argument of :func:`autograder.execution.kernel_desk.run`.
         descriptors: The listening sockets of the shell and iopub channels, and a descriptor for other output. For a
             desk the socket of its orders.
     """

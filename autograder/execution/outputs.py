@@ -179,12 +179,12 @@ class OutputCollector:
 
 
 class NotebookOutputs:
-    """The outputs of a notebook's cells. A process in a box reports them, and they are cut and cleaned here once more.
+    """The outputs of a notebook's cells, as a desk reports them. They are cut and cleaned again here.
 
     Args:
         cells: The number of cells.
         cell_bytes: The maximum number of bytes that the process may report for a cell.
-        notebook_bytes: The same for the notebook.
+        notebook_bytes: The maximum number of bytes that the process may report for all cells together.
     """
 
     def __init__(self, cells: int, cell_bytes: int, notebook_bytes: int) -> None:

@@ -1,4 +1,4 @@
-"""A process, forked by a fork server, that runs `ros2 run` and the student's program without their slow imports.
+"""A process, forked by a fork server, that runs `ros2 run` and a student's program after their slow imports.
 
 Most of a program's start-up time is spent on imports that all programs share. This process is forked from one that has
 already made these imports. It runs the course's own `ros2` (``environment.ros2_command``), so it finds programs as
@@ -157,7 +157,7 @@ def _imported() -> set[str]:
 
 
 def _names_in(folders: Sequence[str]) -> set[str]:
-    """Return every name that could be imported or loaded from these folders, and some that could not."""
+    """Return the names of all modules and libraries in these folders; a few other names may be among them."""
     return {
         entry.name.partition(".")[0]
         for folder in map(Path, folders)

@@ -56,7 +56,7 @@ LIMITS = {
 _SHORTAGES = {
     "OSError: [Errno 28]": (
         "disk_full",
-        "filled all the room that it has for files",
+        "filled all the space that it has for files",
         "Look for a file that grows, or for a loop that makes files.",
     ),
     "OSError: [Errno 24]": (
@@ -120,8 +120,8 @@ def without_verdict(
             return zero_points(
                 check,
                 "cell_timed_out",
-                f"`{hung[0]}` had already not come to its end in the cell that begins with “{hung[1]}”. "
-                f"This check waited {limit:g} s for it, and it did not end here either.",
+                f"`{hung[0]}` did not end in the cell that begins with “{hung[1]}”. "
+                f"This check waited {limit:g} s for it, and it did not end here, either.",
                 "Look for a call that waits without a limit or a loop that never ends.",
             )
         case Ended.TIMED_OUT:
@@ -175,14 +175,12 @@ def _out_of_time(check: CellCheck, before: list[tuple[str, CellRun]]) -> Verdict
     slow = [title for title, cell in before if cell.ended is Ended.TIMED_OUT]
     reason = "The notebook's time was over before this check cell could run."
     if slow:
-        reason = (
-            f"The cell that begins with “{slow[-1]}” did not end at its time limit, nor when interrupted."
-        )
+        reason = f"The cell that begins with “{slow[-1]}” did not end within its time limit, nor after an interrupt."
     return zero_points(
         check,
         "notebook_timed_out",
         reason,
-        "Look for a loop that never ends. Restart the kernel and run all cells: each must come to its end.",
+        "Look for a loop that never ends. Restart the kernel and run all cells: each must end.",
     )
 
 

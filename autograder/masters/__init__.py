@@ -1,6 +1,6 @@
-"""From a master in MyST Markdown to nbgrader's source notebook, and to the chapter notebook for students.
+"""Turns a master (MyST Markdown) into nbgrader's source notebook, and that into the chapter notebook for students.
 
 ``docs/writing-a-master.md`` explains the format to authors.
 
-This file imports nothing, so that importing one of the modules does not import all of them, and nbgrader.
+This file imports nothing. Otherwise importing one module would import all the others, and nbgrader.
 """

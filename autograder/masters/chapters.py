@@ -29,14 +29,15 @@ NOTEBOOK = ".ipynb"
 
 @dataclass(frozen=True)
 class BuildReport:
-    """The result of a build, or of a check without writing: chapter notebooks, solution files, README.
+    """What a build did with each chapter notebook, solution file and README, or what it would do in check mode.
 
     Attributes:
         written: The files that were written.
         unchanged: The files that were already up to date.
         stale: In check mode, the files that are missing or out of date.
         edited: The files that were not overwritten, because a person has changed them.
-        orphans: The files for which there is no master or no reason any more. They are never deleted.
+        orphans: Chapter notebooks whose master no longer exists, and solution files whose ``.why.md`` file no longer
+            exists. They are never deleted.
     """
 
     written: tuple[Path, ...] = ()
@@ -47,7 +48,7 @@ class BuildReport:
 
     @property
     def in_step(self) -> bool:
-        """True if everything is up to date now."""
+        """True if all files are up to date after the build."""
         return not (self.stale or self.edited or self.orphans)
 
 
@@ -59,7 +60,7 @@ def build(root: Path, *, check: bool = False, points: Points = exercise_points) 
     Args:
         root: The top folder of the course, which contains ``solutions`` and ``chapters``.
         check: True to write nothing, and report what is out of date.
-        points: Returns the points of an exercise; by default from the exercise itself.
+        points: A function that returns the points of an exercise; by default, it reads them from the exercise.
 
     Raises:
         MasterError: A master cannot be used, or there is none.
@@ -81,7 +82,7 @@ def build(root: Path, *, check: bool = False, points: Points = exercise_points) 
 
 
 def _settle(path: Path, text: str, *, check: bool) -> str:
-    """Bring one file up to date. Return one word that says what was done."""
+    """Write one file if necessary and allowed. Return the name of the field of :class:`BuildReport` for this file."""
     if path.exists() and path.read_bytes() == text.encode():
         return "unchanged"
     if path.suffix == NOTEBOOK and holds_work(path):
@@ -95,10 +96,10 @@ def _settle(path: Path, text: str, *, check: bool) -> str:
 def build_command(
     root: Path, *, check: bool = False, console: Console | None = None, points: Points = exercise_points
 ) -> int:
-    """Build or check, and print the result in a few lines. Return the exit code.
+    """Build the chapters, or check that they are up to date, and print the result.
 
     Returns:
-        0 if the chapters are up to date, 1 if they are not, 2 if a master cannot be used.
+        The exit code: 0 if the chapters are up to date, 1 if they are not, 2 if a master cannot be used.
     """
     console = console or Console()
     try:
@@ -119,8 +120,8 @@ def _lines(report: BuildReport) -> list[tuple[str, tuple[Path, ...], str]]:
     return [
         ("written", report.written, ""),
         ("stale", report.stale, f"— run: {COMMAND} build"),
-        ("edited", report.edited, "— it contains work: move it away, then build again"),
-        ("orphan", report.orphans, "— there is no master for it: write one, or delete the file"),
+        ("edited", report.edited, "— a person has changed it: move it away, then build again"),
+        ("orphan", report.orphans, "— it has no master: write a master for it, or delete the file"),
     ]
 
 
@@ -128,15 +129,15 @@ def holds_work(path: Path) -> bool:
     """Return True if a person has changed the notebook since a build wrote it.
 
     The metadata of a release contains the checksum of each code cell and of each question. A cell that no longer
-    matches was edited, and code without a checksum was added. Outputs do not count. A file that is not a notebook
-    counts as changed, because asking is better than overwriting.
+    matches was edited, and code without a checksum was added. Outputs do not count. A file that cannot be read as a
+    notebook counts as changed, so that it is not overwritten.
     """
     if not path.exists():
         return False
     try:
         notebook = nbformat.read(path, as_version=4)
     except Exception:
-        # nbformat passes on all errors of its JSON and schema libraries.
+        # Catch every exception, because nbformat also raises those of its JSON and schema libraries.
         return True
     return any(
         _edited(cell) for cell in notebook.cells if cell.cell_type == "code" or "nbgrader" in cell.metadata

@@ -1,4 +1,4 @@
-"""Reads a check cell: its exercise, from its one line of code, and the points of the exercise."""
+"""Reads check cells: which exercise a cell checks, and the points of the exercise."""
 
 from __future__ import annotations
 
@@ -42,10 +42,11 @@ class CheckCall:
 
 
 def read_check(master: Path, cell: MasterCell) -> CheckCall:
-    """Read a check cell.
+    """Return the call in a check cell.
 
     Raises:
-        MasterError: The cell has another form, its exercise belongs to another notebook, or its grade_id is wrong.
+        MasterError: The cell is not one call of ``check``, its exercise belongs to another notebook, or its grade_id is
+            wrong.
     """
     exercise, subject, is_path = _call(master, cell)
     if exercise.partition(".")[0] != lab_name(master):
@@ -61,7 +62,7 @@ def read_check(master: Path, cell: MasterCell) -> CheckCall:
             master,
             cell.line,
             f"The grade_id '{cell.grade_id}' does not match check(\"{exercise}\", …).",
-            f"Leave the grade_id out: it is '{expected}' by itself.",
+            f"Delete the grade_id: the cell gets '{expected}' automatically.",
         )
     return CheckCall(master, cell.line, exercise, subject, is_path)
 
@@ -104,6 +105,6 @@ def exercise_points(check: CheckCall) -> float:
             check.master,
             check.line,
             f"The exercise '{check.exercise}' has no points.",
-            "Give its criteria points in the exercise's file.",
+            "Give points to the criteria in the exercise's file.",
         )
     return points

@@ -1,4 +1,4 @@
-"""Reads a code cell: the region that the student writes, and magics that make the cell a file or a script.
+"""Reads code cells: the region that the student writes, and the file or script in a cell that begins with a magic.
 
 A solution cell of a master looks like this::
 
@@ -36,7 +36,7 @@ COPIED = "# copied from this notebook: "
 """The beginning of a stub line that is replaced with code from the notebook when its cell runs
 (:mod:`autograder.notebook.cells.program_files`).
 """
-ONE_THING = "One cell asks for one thing: split it into two cells."
+ONE_THING = "A cell may ask for one thing only: split it into two cells."
 MAGIC = re.compile(r"%%(?P<name>\w+)[ \t]*(?P<rest>.*)")
 
 
@@ -78,7 +78,7 @@ def find_region(source: str) -> Region:
     if length == 0:
         raise CellError(
             begin + 1,
-            "The region does not open with its stub.",
+            "The region does not begin with a TODO comment.",
             f"Begin it with a comment such as '{TODO}create the publisher.'; students get that comment.",
         )
     if not any(line.strip() for line in inside[length:]):
@@ -102,7 +102,9 @@ def find_model_answer(source: str) -> str:
     begin, end = _markers(lines)
     answer = "\n".join(lines[begin + 1 : end]).strip()
     if not answer:
-        raise CellError(begin + 1, "The region holds no answer.", "Write a good one, and what earns points.")
+        raise CellError(
+            begin + 1, "The region holds no answer.", "Write a good answer, and what earns points."
+        )
     if not "".join(lines[:begin]).strip():
         raise CellError(begin, "The question is missing.", f"Ask it above '{BEGIN}'.")
     return answer
@@ -112,7 +114,7 @@ def _markers(lines: list[str]) -> tuple[int, int]:
     """Return the indexes of the lines on which the region begins and ends."""
     begin, end = _marker(lines, BEGIN), _marker(lines, END)
     if end < begin:
-        raise CellError(end, f"'{END}' stands before '{BEGIN}'.", "Put the two lines in order.")
+        raise CellError(end, f"'{END}' stands before '{BEGIN}'.", "Swap the two lines.")
     return begin, end
 
 
@@ -134,13 +136,13 @@ def _marker(lines: list[str], marker: str) -> int:
         )
     if _words(lines[places[0]]) != marker:
         raise CellError(
-            places[0], "A marker is misspelt.", f"Its line must contain '{marker}' and nothing else."
+            places[0], "A marker is misspelt.", f"The line must contain '{marker}' and nothing else."
         )
     return places[0]
 
 
 def _stub_length(inside: list[str]) -> int:
-    """Return the number of comment lines at the top of the region; 0 if the first is neither a TODO nor a copy."""
+    """Return the number of lines of the TODO comment at the top of the region; 0 if there is none."""
     if not inside or not _words(inside[0]).startswith((TODO, COPIED)):
         return 0
     for offset, line in enumerate(inside):
@@ -205,7 +207,7 @@ def shell_script(source: str) -> str | None:
 
 
 def python_of(source: str) -> str:
-    """Return the part of a cell that must be valid Python, with the same number of lines; empty if no part must be."""
+    """Return the Python code of a cell, with an empty line instead of a magic; empty if the cell contains no Python."""
     if not has_magic(source):
         return source
     file = written_file(source)

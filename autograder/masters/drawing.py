@@ -1,6 +1,7 @@
 """Draws a PNG next to each SVG of the masters' figures: ``python -m autograder.masters.drawing``.
 
-This is for authors. A build only reads the PNGs, because with the fonts of another machine they would look different.
+An author runs this and commits the PNGs. A build does not draw, because on a machine with other fonts the PNGs would
+look different.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 SCALE = 1.5
-"""The number of pixels per unit of a drawing: sharp on most screens, and no wider than a wide notebook."""
+"""The number of pixels per unit of an SVG: sharp on most screens, and no wider than a wide notebook."""
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 """The bytes with which a PNG file begins."""
 _HEADER_LENGTH = len(SIGNATURE) + 8 + 13 + 4
@@ -75,7 +76,7 @@ def _is_drawn(svg: Path) -> bool:
 
 
 def _with_few_colours(page: Page, png: bytes) -> bytes:
-    """Return the picture as a PNG with a palette, a third as large, because every student's notebook contains it.
+    """Return the picture as a PNG with a palette of few colors, which makes the file a third as large.
 
     Args:
         page: A browser page, which decodes the picture.
@@ -92,7 +93,7 @@ def _with_few_colours(page: Page, png: bytes) -> bytes:
     palette = colours[kept].astype(numpy.uint8)
     lines = numpy.insert(
         rows, 0, 0, axis=1
-    ).tobytes()  # each line begins with the number of its filter; 0 means none
+    ).tobytes()  # in a PNG, each line of pixels begins with the number of its filter; 0 means none
     header = width.to_bytes(4) + height.to_bytes(4) + bytes((8, 3, 0, 0, 0))
     return SIGNATURE + b"".join(
         (
@@ -130,7 +131,10 @@ def main() -> int:
         return 2
     chromium = find_program(*CHROMIUM_NAMES)
     if figures and chromium is None:
-        print("Figures are drawn by Chromium, and none is installed.", file=sys.stderr)
+        print(
+            "Figures are drawn with Chromium, which is not installed: install it, then try again.",
+            file=sys.stderr,
+        )
         return 2
     if figures and chromium:
         draw(figures, chromium)

@@ -1,7 +1,8 @@
-"""The first cells of a notebook, with which it can be opened elsewhere: links to services, and the set-up.
+"""Adds cells to a notebook with which it runs outside of ``./course lab``, for example in Colab.
 
-These cells are only for a course that can be set up from its own folder, as this course can. They come after the text
-at the top of the notebook. In ``./course lab``, and when a class is graded, these cells do nothing.
+One cell contains links to such services, the other sets the course up. They come after the text at the top of the
+notebook. In ``./course lab``, and when a class is graded, they do nothing. They are only added if the course's folder
+contains the code that sets it up (:data:`PART`).
 """
 
 from __future__ import annotations
@@ -73,7 +74,7 @@ def links(address: str, notebook: str) -> dict[str, str]:
 
 
 def with_first_cells(master: Path, cells: list[MasterCell]) -> list[MasterCell]:
-    """Return the cells of a master, with the cells that set up the course before the first cell that is not text."""
+    """Return a master's cells, with the set-up cells of this module inserted before the first cell that is not text."""
     root = master.parents[3]
     first = next((place for place, cell in enumerate(cells) if cell.kind is not CellRole.TEXT), None)
     if first is None or not (root / PART).is_file():

@@ -54,7 +54,7 @@ def lab_name(master: Path) -> str:
 
 
 def before_and_after(master: Path) -> tuple[Path | None, Path | None]:
-    """Return the masters before and after ``master`` in its chapter; None at an end of the chapter."""
+    """Return the previous and the next master in the chapter of ``master``; None if there is none."""
     chapters = [one for one in course.chapters(master.parents[3]) if one.folder == master.parents[1]]
     found = [lab / LAB for chapter in chapters for lab in chapter.labs if (lab / LAB).is_file()]
     if master not in found:
@@ -70,7 +70,7 @@ def chapter_path(root: Path, master: Path) -> Path:
 
 
 def chapter_notebooks(root: Path) -> list[Path]:
-    """Return the existing chapter notebooks in order, without JupyterLab's checkpoints and the copies of a reset."""
+    """Return the chapter notebooks that exist, without JupyterLab's checkpoints and `./course reset`'s copies."""
     found = sorted((root / CHAPTERS).rglob("*.ipynb"))
     return [path for path in found if ".ipynb_checkpoints" not in path.parts and COPY not in path.name]
 
@@ -79,7 +79,7 @@ def find_root(start: Path) -> Path:
     """Return the course that contains ``start``: the nearest folder, at or above it, with a folder ``solutions``.
 
     Raises:
-        MasterError: No folder at or above ``start`` has such a folder.
+        MasterError: ``start`` is not in a course.
     """
     for folder in (start, *start.parents):
         if (folder / SOLUTIONS).is_dir():
@@ -87,18 +87,18 @@ def find_root(start: Path) -> Path:
     raise MasterError(
         start,
         None,
-        "This folder lies in no course.",
+        "This folder is not in a course.",
         "Go to the folder that holds 'solutions' and 'chapters'.",
     )
 
 
 def relinked(text: str, place: Callable[[str], str]) -> str:
-    """Return a text with its links to other notebooks adapted to a new place.
+    """Return a text with its links to other notebooks changed, for a copy of the text in another folder.
 
     Args:
         text: Markdown, or the content of a notebook file that contains Markdown.
-        place: Returns the path of a lab's notebook at the new place, by the lab's name; empty if it is not there.
-            Then only the text of the link stays.
+        place: Takes the name of a lab, and returns the path of its notebook from the other folder. If it returns an
+            empty text, the link is replaced by its words.
     """
 
     def there(link: Any) -> str:

@@ -1,7 +1,7 @@
 """Parses the text of a master into a list of cells, with their kinds and line numbers.
 
-A program of a package repeats what the student wrote in the cells above. Instead of repeating it, the master says
-what to copy, so that the two cannot differ::
+Students copy code from earlier cells into the programs of a package. In a master, a line ``### COPY`` names the code,
+which is then copied automatically, so that the two cannot differ::
 
     ### BEGIN SOLUTION
     # TODO: copy your class TalkerNode here.
@@ -40,7 +40,7 @@ kernelspec:
 
 
 class CellRole(StrEnum):
-    """The role of a cell. All values except the first are tags, of which authors type three for code cells."""
+    """The role of a cell. Except for the first, the value is the tag that an author may type."""
 
     TEXT = "text"
     """Markdown. Students may change it."""
@@ -60,7 +60,7 @@ TAGS = {kind.value: kind for kind in CellRole if kind not in (CellRole.TEXT, Cel
 COPY = re.compile(r"^### COPY (?P<names>\w+(?: \w+)*)$", re.MULTILINE)
 OPTIONS = {"tags", "grade_id"}
 MANUAL_FORM = '+++ {"tags": ["manual"], "points": 5, "grade_id": "some_name"}'
-"""The form of the line above a question that a person grades."""
+"""An example of the line above a question that a person grades."""
 
 
 @dataclass(frozen=True)
@@ -128,10 +128,10 @@ def _cell(path: Path, node: Any, place: int, lines: list[str]) -> MasterCell:
         except CellError as error:
             raise error.at(path, first) from error
     if node.cell_type == "raw":
-        raise MasterError(path, place, "A raw cell has no place in a chapter.", "Make it Markdown or code.")
+        raise MasterError(path, place, "A chapter cannot contain raw cells.", "Make it Markdown or code.")
     kind, grade_id = _options(path, node.metadata, place)
     if not node.source.strip():
-        raise MasterError(path, place, "An empty code cell.", "Fill it or take it out.")
+        raise MasterError(path, place, "An empty code cell.", "Fill it or delete it.")
     return MasterCell(kind, node.source, place, _body_line(node.source, place, lines), grade_id)
 
 
@@ -149,8 +149,8 @@ def _question(
         raise MasterError(
             path,
             line,
-            "Text has options only if a person grades it, and this cell has other options.",
-            f"Write them so: '{MANUAL_FORM}'.",
+            "A text cell may have options only if it is a question that a person grades.",
+            f"Write: '{MANUAL_FORM}'.",
         )
     return MasterCell(CellRole.MANUAL, text, line, line, str(name), figures, float(points))
 
@@ -168,7 +168,9 @@ def _options(path: Path, metadata: Any, line: int) -> tuple[CellRole, str | None
         if tag not in TAGS:
             raise MasterError(path, line, f"Unknown tag '{tag}'.", f"Known are: {', '.join(TAGS)}.")
     if len(tags) > 1:
-        raise MasterError(path, line, f"A cell with {len(tags)} tags.", "A cell is one thing: keep one tag.")
+        raise MasterError(
+            path, line, f"A cell with {len(tags)} tags.", "A cell may have only one: keep one tag."
+        )
     kind = TAGS[tags[0]] if tags else CellRole.GIVEN
     grade_id = metadata.get("grade_id")
     return kind, None if grade_id is None else str(grade_id)
@@ -184,14 +186,14 @@ def _body_line(source: str, place: int, lines: list[str]) -> int:
 
 
 def with_copies(master: Path, cells: list[MasterCell]) -> list[MasterCell]:
-    """Return the cells, with the lines that ask for a copy replaced by the copied text.
+    """Return the cells, with each line ``### COPY <names>`` replaced by the definitions of these names.
 
     Args:
         master: The master of the cells.
         cells: The cells as they were parsed.
 
     Raises:
-        MasterError: The name to copy is not defined above.
+        MasterError: No cell above the line defines one of the names.
     """
     defined: dict[str, str] = {}
     result = []
@@ -212,7 +214,7 @@ def _copied(master: Path, cell: MasterCell, defined: dict[str, str]) -> MasterCe
                 number = cell.body_line + cell.source.count("\n", 0, line.start())
                 remedy = f"Defined so far: {', '.join(defined) or 'nothing'}."
                 raise MasterError(
-                    master, number, f"'{name}' is to be copied and is not defined above.", remedy
+                    master, number, f"'### COPY' names '{name}', which no cell above defines.", remedy
                 )
         return "\n\n\n".join(defined[name] for name in names)
 

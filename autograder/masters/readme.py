@@ -1,6 +1,6 @@
-"""The parts of a course's README about its public repository: badges, and the address to clone.
+"""Fills in the parts of README.md that contain the address of the course's public repository: badges, `git clone`.
 
-If the course has no address, a sentence replaces the badges, and the line to clone contains a word to fill in.
+If the repository is not public yet, a sentence replaces the badges, and `git clone` is followed by a placeholder.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 NAME = "README.md"
 TO_FILL_IN = "ADDRESS_OF_THIS_REPOSITORY"
-"""The word in README that stands for the address of a repository that is not public yet."""
+"""The placeholder in README.md for the address of a repository that is not public yet."""
 WITHOUT_ADDRESS = (
     "This course has no public address yet. If you have its folder, leave the line with `git clone` out, and type the "
     "others in that folder.\n"
 )
-"""The sentence in README before the line to clone, as long as there is nothing to clone."""
+"""The sentence that README.md contains instead of badges while the repository is not public."""
 TESTS = ".github/workflows/ci.yml"
 PICTURES = {
     "Colab": "https://colab.research.google.com/assets/colab-badge.svg",
@@ -49,7 +49,7 @@ def badges(address: str, notebook: str) -> str:
 
 
 def readme(root: Path, notebook: Path) -> str | None:
-    """Return the right text of a course's README; None if the README has no place for badges.
+    """Return README.md with its badges and address filled in; None if it has no marks for the badges.
 
     Args:
         root: The folder of the course.

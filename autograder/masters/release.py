@@ -1,6 +1,6 @@
 """Turns a source notebook into the chapter notebook, with the steps of ``nbgrader generate_assignment``.
 
-The steps run in this process and without a gradebook, which takes milliseconds per notebook and not seconds. A test
+The steps run in this process and without a gradebook, which takes milliseconds per notebook instead of seconds. A test
 proves that nbgrader's own command gives the same bytes.
 """
 
@@ -36,7 +36,7 @@ class LeaveStubs(ClearSolutions):
             try:
                 cell.source = find_region(cell.source).unsolved
             except CellError:
-                # This is an instructor's own notebook, written for stock nbgrader.
+                # An instructor's own notebook, written for stock nbgrader, has solutions of another form.
                 pass
             else:
                 return cell, resources
@@ -72,10 +72,10 @@ def shown_attachments(source: str, attachments: NotebookNode) -> NotebookNode:
 
 
 def release_preprocessors() -> list[type[NbGraderPreprocessor]]:
-    """Return nbgrader's steps, with :class:`LeaveStubs` for ClearSolutions, and :class:`KeepShownPictures` added.
+    """Return the steps of nbgrader's ``generate_assignment``, adapted to this course.
 
-    A class's ``nbgrader_config.py`` names them indirectly, through
-    :class:`autograder.masters.release_steps.ReleaseSteps`.
+    :class:`LeaveStubs` replaces ClearSolutions, and :class:`KeepShownPictures` is added. A class's
+    ``nbgrader_config.py`` gets the steps through :class:`autograder.masters.release_steps.ReleaseSteps`.
     """
     steps = [LeaveStubs if step is ClearSolutions else step for step in GenerateAssignment().preprocessors]
     return [*steps, KeepShownPictures]
@@ -85,7 +85,8 @@ def release_text(source: NotebookNode) -> str:
     """Return the text of the chapter notebook's file, made from ``source``."""
     config = Config()
     config.Exporter.default_preprocessors = []
-    # This step is left out, as in `nbgrader generate_assignment --no-db`, because it only writes to the gradebook.
+    # Leave out the step SaveCells, which only writes to the gradebook. `nbgrader generate_assignment --no-db` does so,
+    # too.
     config.SaveCells.enabled = False
     exporter = NotebookExporter(config=config)
     for step in release_preprocessors():

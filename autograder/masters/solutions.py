@@ -1,8 +1,8 @@
 """Extracts the reference solution of each exercise from its master: as a program, and for students to read.
 
-Students may read it after full marks: the code, and the reasons for it. The reasons are in a file next to the
-exercise, such as ``talker.why.md``: one paragraph and, if another way is worth showing, the heading ``## Another
-way``, a paragraph and a block of code.
+After full marks, students may read the code and the reasons for it. The reasons are in a file next to the exercise,
+such as ``talker.why.md``: one paragraph and, if another way is worth showing, the heading ``## Another way``, a
+paragraph and a block of code.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from autograder.masters.source import NamedCell
 
 _KEPT = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
-"""The kinds of statements of a given cell that a program keeps, in addition to constants."""
+"""The kinds of statements that a program takes from a given cell. It also takes constants."""
 OTHER_WAY = "## Another way"
 LINES = 2
 """The maximum number of lines that explain a solution. They are few, because a student who has solved a task wants to
@@ -54,13 +54,13 @@ class ReferenceSolution:
 def reference_source(
     master: Path, exercise: str, *, points: Points = exercise_points, solved: bool = True
 ) -> ReferenceSolution:
-    """Return the source of everything that a notebook defines before the check of ``exercise``.
+    """Return a program that defines everything that a notebook defines before the check of ``exercise``.
 
     If ``solved`` is false, the solution cells are as students get them.
 
-    Solution cells are kept whole. Of given cells, only imports, functions, classes and constants are kept, because the
-    rest only shows something. Files are written. If the subject is a path, shell cells are run as well, because
-    commands such as ``ros2 pkg create`` make the files that are judged.
+    Solution cells are kept whole. Of given cells, only imports, functions, classes and constants are kept, because
+    other code only shows something. The program writes the files of ``%%writefile`` cells. If the subject is a path,
+    shell cells are run as well, because commands such as ``ros2 pkg create`` make the files that are judged.
 
     Raises:
         MasterError: The master cannot be used, or does not check ``exercise``.
@@ -126,14 +126,14 @@ def _is_constant(node: ast.stmt) -> bool:
 
 
 def solution_files(master: Path, cells: Sequence[NamedCell]) -> dict[Path, str]:
-    """Return the solution files of a master, that is, for each exercise that has a reason, the file and its text.
+    """Return the texts of a master's solution files, by path: one for each exercise that has a file with reasons.
 
     Args:
         master: The master.
         cells: The cells of the master.
 
     Raises:
-        MasterError: The file with a reason does not have the right form.
+        MasterError: A file with reasons does not have the right form.
     """
     return dict(_solution_files(master, cells))
 
@@ -141,7 +141,7 @@ def solution_files(master: Path, cells: Sequence[NamedCell]) -> dict[Path, str]:
 def _solution_files(master: Path, cells: Sequence[NamedCell]) -> Iterator[tuple[Path, str]]:
     code: list[str] = []
     for named in cells:
-        # Commands that a student types in a terminal are not part of the checked code.
+        # Leave out shell cells: commands that a student types in a terminal are not part of the checked code.
         if named.cell.kind is CellRole.SOLUTION and shell_script(named.cell.source) is None:
             code.append(find_region(named.cell.source).solved.strip())
         elif named.check is not None:

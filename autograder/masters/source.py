@@ -45,7 +45,7 @@ GRADE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
 SCHEMA_VERSION = 3
 """The version of nbgrader's cell metadata."""
 
-# No versions of Python or packages, so that the chapters are the same on every machine.
+# The metadata do not contain versions of Python or packages, so that the chapters are the same on every machine.
 NOTEBOOK_METADATA: dict[str, Any] = {
     "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
     "language_info": {
@@ -67,7 +67,7 @@ class NamedCell:
 
     Attributes:
         cell: The cell in the master.
-        name: The grade_id of a tracked cell. For any cell, also its id.
+        name: The id of the cell. If nbgrader tracks the cell, this is also its grade_id.
         check: The call in a check cell; None for any other cell.
         points: The points of a check cell or of a question that a person grades; None for any other cell.
     """
@@ -83,7 +83,7 @@ def source_notebook(master: Path, *, points: Points = exercise_points) -> Notebo
 
     Args:
         master: A MyST Markdown file.
-        points: Returns the points of an exercise; by default from the exercise itself.
+        points: A function that returns the points of an exercise; by default, it reads them from the exercise.
 
     Raises:
         MasterError: The master cannot be used. The message says where, why, and what to do.
@@ -117,7 +117,7 @@ def named_cells(master: Path, *, points: Points = exercise_points) -> list[Named
 
 
 def _links(master: Path) -> Iterator[MasterCell]:
-    """Yield the last cell of a notebook, which links to its neighbors in the chapter; nothing if it has none."""
+    """Yield a cell with links to the previous and the next notebook of the chapter; nothing if there is neither."""
     ways = zip(("← Previous: {}", "Next: {} →"), before_and_after(master), strict=True)
     links = [way.format(_link(other)) for way, other in ways if other is not None]
     if links:
@@ -134,7 +134,7 @@ def _name_all(master: Path, cells: list[MasterCell], points: Points) -> Iterator
     section = "start"
 
     def numbered(wanted: str) -> str:
-        """Return the name, with a number added from the second time on: ``given-talker-2``."""
+        """Return ``wanted`` the first time, then with a number added: ``given-talker``, ``given-talker-2``."""
         taken[wanted] += 1
         return wanted if taken[wanted] == 1 else f"{wanted}-{taken[wanted]}"
 
@@ -167,10 +167,10 @@ def _slug(text: str) -> str:
 
 
 def _defined_names(source: str) -> list[str]:
-    """Return the functions and classes that a code cell defines at its top level, or the Python file that it writes.
+    """Return the names of the functions and classes at the top level of a code cell, or of the Python file in the cell.
 
     Raises:
-        SyntaxError: The cell has to be valid Python and is not.
+        SyntaxError: The cell contains Python that is not valid.
     """
     definitions = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
     return [node.name for node in ast.parse(python_of(source)).body if isinstance(node, definitions)]
@@ -219,7 +219,7 @@ def _defined_name(master: Path, cell: MasterCell) -> str:
             master,
             cell.line,
             f"This solution cell defines {len(names)} functions and classes, so it has no name.",
-            "Let it define one, or name it: ':grade_id: some_name'.",
+            "Let it define exactly one, or name the cell: ':grade_id: some_name'.",
         )
     return names[0]
 
@@ -239,13 +239,13 @@ def _unique(master: Path, named: list[NamedCell]) -> None:
                 master,
                 item.cell.line,
                 f"The grade_id '{item.name}' is taken by the cell on line {seen[item.name]}.",
-                "Give one of them another: ':grade_id: some_name'; an exercise is checked in one cell only.",
+                "Give one of the cells another: ':grade_id: some_name'. An exercise may be checked in one cell only.",
             )
         seen[item.name] = item.cell.line
 
 
 def _subjects_are_solutions(master: Path, named: list[NamedCell]) -> None:
-    """Check that a solution cell above each check defines its subject, because the student has to write it."""
+    """Check that the subject of each check is defined in a solution cell above, because the student has to write it."""
     written: set[str] = set()
     on_disk = False
     for item in named:
@@ -267,7 +267,7 @@ def _subjects_are_solutions(master: Path, named: list[NamedCell]) -> None:
                 master,
                 item.cell.line,
                 f"The check judges '{item.check.subject}', which no solution cell above it defines.",
-                f"Name what the student writes there: {', '.join(sorted(written)) or 'nothing so far'}.",
+                f"Defined above it: {', '.join(sorted(written)) or 'nothing so far'}.",
             )
 
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 OPENING = re.compile(r":::\{hint\}\s*(?P<question>.*?)\s*")
 CLOSING = ":::"
 REFERENCE = re.compile(r"!\[\]\((?P<path>[^)\s]+\.svg)\)")
-"""Matches a line of a master that shows a figure. It has no alternative text, because the SVG contains that."""
+"""Matches a line of a master that shows a figure. The alternative text is in the SVG, not in this line."""
 KEYWORD = b"Drawn from SVG"
 _SVG = "{http://www.w3.org/2000/svg}"
 
@@ -117,7 +117,7 @@ def attach_figures(folder: Path, markdown: str) -> tuple[str, dict[str, dict[str
         markdown: The text of the cell.
 
     Returns:
-        The text, which shows the attachments, and the attachments by name.
+        The text with references to the attachments, and the attachments by name.
 
     Raises:
         CellError: A figure is missing, has no description, or its PNG is out of date.
@@ -158,7 +158,9 @@ def _read(svg: Path, named: str, line: int) -> tuple[str, str, bytes]:
         ) from error
     words = [(root.findtext(f"{_SVG}{tag}") or "").strip() for tag in ("title", "desc")]
     if not all(words):
-        raise CellError(line, f"The figure {named} has no words.", "Give its SVG a <title> and a <desc>.")
+        raise CellError(
+            line, f"The figure {named} has no description.", "Give its SVG a <title> and a <desc>."
+        )
     if KEYWORD + b"\0" + digest(drawing) not in picture:
         raise CellError(
             line,

@@ -1,1 +1,1 @@
-"""What students use: JupyterLab, the course page (also as text), resetting a notebook, and the hand-out."""
+"""What students use: JupyterLab, the course page, resetting a notebook, and the hand-out (their copy of the course)."""

@@ -1,8 +1,8 @@
-"""Help in a kernel that was just started, in which the notebook's given cells have not run yet.
+"""Helps in a kernel that was just started, in which the notebook's given cells have not run yet.
 
-JupyterLab's button *Check* asks :func:`cells_to_run` which of them to run first. If a student runs a check cell by
-hand, Python raises a ``NameError``; IPython loads this module as an extension, so that the error says what to run.
-This module does not import ROS, so that a kernel starts as fast as without it.
+JupyterLab's button *Check* asks :func:`cells_to_run` which given cells to run first. If a student runs a check cell by
+hand instead, Python raises a ``NameError``. IPython loads this module as an extension, so that this error says what to
+run. This module does not import ROS, so that a kernel starts as fast as without it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Makes the hand-out for students: notebooks and their judge, without solutions, answers and grader.
+"""Makes the hand-out: a copy of the course for students, with notebooks and judge, without solutions and grader.
 
 The repository contains every solution, so it cannot be given to a class. The hand-out is a separate course with the
 same ``./course``. Its exercises and reference outputs are in ``exercises/``, and it has no folder ``solutions``.
@@ -92,8 +92,8 @@ The last line opens a map of all notebooks; press *Begin*.""",
     "guide": "",
     "mistakes": "",
 }
-"""The words of the hand-out's README for a course that is not this repository. It has neither ``./course`` nor these
-pages; its students install the wheel.
+"""The parts of the hand-out's README for a course in another repository. Such a course has neither ``./course`` nor the
+pages in ``docs/``; its students install this package with pip.
 """
 
 
@@ -140,9 +140,11 @@ def hand_out(
         OSError: The hand-out cannot be written.
     """
     if not (root / course.SOLUTIONS).is_dir():
-        raise CannotHandOut(f"{root} was handed out itself: make a hand-out from the course with its masters")
+        raise CannotHandOut(
+            f"{root} is itself a hand-out: make a new one from the course that contains the masters"
+        )
     if place.is_file() or (place.is_dir() and (as_zip or any(place.iterdir()))):
-        raise CannotHandOut(f"{place} is there already, and nothing is overwritten: name another place")
+        raise CannotHandOut(f"{place} already exists and is not overwritten: name another path")
     chapters = _wanted(course.chapters(root), assignments)
     if not chapters:
         raise CannotHandOut(f"{root} has no notebook yet: there is nothing to hand out")
@@ -203,7 +205,7 @@ def _notebook(
         return
     if holds_work(notebook):
         raise CannotHandOut(
-            f"{notebook} contains work, which would be handed out: {COMMAND} reset {lab.name}"
+            f"{notebook} contains changes, which would be handed out. Reset it first: {COMMAND} reset {lab.name}"
         )
     # A link to a notebook that is not handed out would be broken, so only the text of the link stays.
     beside = {name: f"{name}.ipynb" for name in names}
@@ -250,7 +252,7 @@ def _pack(place: Path, files: dict[str, Path | bytes]) -> None:
         for name, content in files.items():
             entry = zipfile.ZipInfo(
                 f"{place.stem}/{name}"
-            )  # a fixed date, so that the same files always give the same zip
+            )  # ZipInfo has a fixed date, so that the same files always give the same zip
             entry.compress_type = zipfile.ZIP_DEFLATED
             runs = isinstance(content, Path) and content.stat().st_mode & stat.S_IXUSR
             entry.external_attr = (0o755 if runs else 0o644) << 16

@@ -1,8 +1,7 @@
-"""Keeps the journal of a student's checks: a small file next to the notebooks, which is never a grade.
+"""Keeps the journal of a student's checks, a small file next to the notebooks. Grades never depend on it.
 
-Each line is JSON: a check that ended, a notebook that was marked as read, or a notebook that was reset. The course
-page and ``./course progress`` read the journal. No grade depends on it: a check goes on even if the file cannot be
-written, and a damaged line is ignored.
+Each line is JSON: a check that ended, a notebook that was marked as read, or a notebook that was reset. The course page
+and ``./course progress`` read the journal. If the file cannot be written, checks still work. A damaged line is ignored.
 """
 
 from __future__ import annotations
@@ -64,7 +63,7 @@ class JournalEntry:
 
 
 def place(folder: Path) -> Path:
-    """Return the journal for a folder of notebooks: in that folder or, if it is read-only, in the user's home.
+    """Return the path of the journal for a folder of notebooks. If the folder is read-only, it is in the user's home.
 
     Args:
         folder: The folder that JupyterLab shows.
@@ -77,7 +76,7 @@ def place(folder: Path) -> Path:
 
 
 def own_place() -> Path | None:
-    """Return the journal of this session: that of ``./course lab``, or else that of the course's own chapters."""
+    """Return the path of this session's journal: that of ``./course lab``, else that of the course's own chapters."""
     named = os.environ.get(VARIABLE)
     if named is not None:
         return Path(named) if named else None
@@ -137,7 +136,7 @@ def entries(journal: Path | None) -> list[JournalEntry]:
 
 
 def best(lines: Iterable[JournalEntry]) -> dict[str, JournalEntry]:
-    """Return, for each exercise, the first of its best checks since its notebook was last reset."""
+    """Return the best check of each exercise since its notebook was last reset; the first if there are several."""
     found: dict[str, dict[str, JournalEntry]] = {}
     for entry in lines:
         if entry.kind == "reset":
@@ -167,8 +166,8 @@ def finished(chapter: course.Chapter, reached: dict[str, JournalEntry]) -> float
 
 @contextlib.contextmanager
 def _opened(path: Path, flags: int) -> Iterator[int]:
-    # The folder may belong to another user whose work is being viewed. So a pipe must not block a check, and a link
-    # must not make the check write to a file elsewhere.
+    # The folder may belong to another user, who could put a pipe or a link there. A pipe must not block a check, and a
+    # link must not make the check write to a file elsewhere.
     number = os.open(path, flags | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC, 0o600)
     try:
         if not stat.S_ISREG(os.fstat(number).st_mode):

@@ -1,7 +1,7 @@
 """Starts JupyterLab for a student: the chapters, nbgrader's Validate button, and one ROS domain for the session.
 
-An instructor starts JupyterLab directly (``jupyter lab``), so everything that is switched off here is on there. The
-files in ``lab_config/`` say what is off. Jupyter reads them because it searches their folder before its own.
+The files in ``lab_config/`` switch off what only instructors need. Jupyter reads them because it searches their folder
+before its own. An instructor starts JupyterLab directly (``jupyter lab``), where everything is on.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ COURSE_PAGE = "course"
 NOTHING_TO_SAVE = "--ServerApp.contents_manager_class=autograder.student.lab_server.OpenedNotebooks"
 """The option that keeps JupyterLab from marking a notebook as unsaved when it was only opened."""
 QUIET = ("--ServerApp.log_level=WARN", "--LabApp.log_level=WARN")
-"""Options that hide Jupyter's twenty lines about its start. ``lab_server`` prints the only one that a student needs,
-with the address.
+"""Options that hide Jupyter's twenty lines about its start. A student needs only the address, which ``lab_server``
+prints.
 """
 NOTEBOOKS_VARIABLE = "AUTOGRADER_NOTEBOOKS"
 """The environment variable that tells terminals the folder of the session's notebooks."""
 _CONFIG_PATH = "JUPYTER_CONFIG_PATH"
 _BUILD_TYPE = "CMAKE_BUILD_TYPE"
-"""The environment variable with which a student's `colcon build` builds interfaces as a check does. Otherwise a value
-of the wrong type would end the process, and a check would have to build them once more.
+"""The environment variable that makes a student's `colcon build` use the same build type as a check. With another build
+type, a value of the wrong type in a message would end the process, and a check would have to build again.
 """
 _DISCOVERY = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY")
 
@@ -96,8 +96,8 @@ def end_idle_workers() -> None:
 def join_domain() -> DomainClaim | None:
     """Claim a ROS domain on this computer for all kernels and terminals of the session.
 
-    A node in a notebook can then hear one in a terminal, but not another user's. A domain that the user has chosen is
-    kept.
+    Nodes in the notebooks and terminals of the session can then reach each other, but not other users' nodes. A domain
+    that the user has chosen is kept.
 
     Returns:
         The claim on the domain; None if ``ROS_DOMAIN_ID`` names the domain.
@@ -121,7 +121,7 @@ def _start_page() -> list[str]:
 
 
 def _start_folder(root: Path) -> list[str]:
-    """Return the options that open the chapter if there is only one: a single folder to click on does not help."""
+    """Return the options that make the file browser open the chapter's folder, if there is only one chapter."""
     inside = [path for path in root.iterdir() if not path.name.startswith((".", "_"))]
     return (
         [f"--FileContentsManager.preferred_dir={inside[0].name}"]

@@ -2,11 +2,9 @@
 
 ``lab_config/`` switches the page on. The page does not need JupyterLab, so it works even without the side panel.
 
-A released notebook names no version of Python, because it is made once and opened with any version. But JupyterLab
-writes the kernel's version into each notebook that has none or a different one. The notebook then has changes to
-save: it is marked as unsaved, and JupyterLab asks a question when it is closed, before the student has written a
-letter. So the server inserts the version when it reads the file. The file itself stays unchanged until the student
-saves.
+A released notebook contains no version of Python, because it is opened with any version. JupyterLab would insert the
+kernel's version and mark the notebook as unsaved, before the student has changed anything. So the server inserts the
+version when it reads the file. The file itself stays unchanged until the student saves.
 """
 
 from __future__ import annotations
@@ -50,7 +48,9 @@ If no page has opened in your browser, open this address:"""
 class _CourseHandler(JupyterHandler):
     auth_resource = "contents"
     _track_activity = False
-    """False, because a page that updates its points from time to time must not keep an idle server alive."""
+    """False: requests do not count as activity, because an open page asks for its points again and again, and must not
+    keep an idle server alive.
+    """
 
     @property
     def notebooks(self) -> Path:
@@ -59,7 +59,7 @@ class _CourseHandler(JupyterHandler):
 
     @property
     def journal(self) -> Path:
-        """The journal for that folder."""
+        """The path of the journal for the folder that JupyterLab shows."""
         named = os.environ.get(journal.VARIABLE)
         return Path(named) if named else journal.place(self.notebooks)
 

@@ -1,4 +1,4 @@
-"""Resets a notebook: restores the released one, and keeps the student's next to it."""
+"""Resets a notebook: restores the released one, and keeps a copy of the student's notebook next to it."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Reset:
 
 
 def reset(root: Path, folder: Path, name: str, entries_in: Path | None = None) -> Reset:
-    """Restore a released notebook, and keep the student's.
+    """Restore a released notebook, and keep a copy of the student's notebook.
 
     Args:
         root: The top folder of the course.

@@ -188,7 +188,7 @@ def _is_changed(notebook: Path, lab: Path) -> bool:
 
 
 def notebook_path(chapter: course.Chapter, lab: Path, folder: Path) -> Path:
-    """Return the path of a notebook, which need not exist, in a folder of notebooks or of one chapter."""
+    """Return the path of a lab's notebook in ``folder``, or in the chapter's folder below it. It need not exist."""
     alone = folder / f"{lab.name}.ipynb"
     return alone if alone.is_file() else folder / chapter.folder.name / f"{lab.name}.ipynb"
 

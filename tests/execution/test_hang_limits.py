@@ -56,7 +56,7 @@ def check(name: str) -> Cell:
 def test_a_class_that_hung_is_waited_for_once() -> None:
     given, said = seconds([TALKER, SHOWN, SHOWN_AGAIN, SHOWN, check("Talker")], "Talker")
     assert given == [120, 120, 10, 10, 40]
-    assert "`Talker` had already not come to its end in the cell that begins with “Talker().run()”" in said
+    assert "`Talker` did not end in the cell that begins with “Talker().run()”" in said
 
 
 def test_other_classes_have_all_their_time() -> None:

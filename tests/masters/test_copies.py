@@ -78,6 +78,6 @@ def test_what_is_not_defined_above_cannot_be_copied(
     write_master: Callable[[str], Path], ten_points: Points
 ) -> None:
     master = write_master(MASTER.replace("### COPY double", "### COPY triple"))
-    with pytest.raises(MasterError, match=r"'triple' is to be copied.*LIMIT, double") as refused:
+    with pytest.raises(MasterError, match=r"'triple', which no cell above defines.*LIMIT, double") as refused:
         source_notebook(master, points=ten_points)
     assert master.read_text().splitlines()[(refused.value.line or 0) - 1] == "### COPY triple"

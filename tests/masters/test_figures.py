@@ -55,7 +55,7 @@ def test_a_notebook_carries_its_figure_with_its_words(master: Path, ten_points: 
     ("name", "content", "problem"),
     [
         ("node.svg", SVG.replace("talks", "listens"), "has changed since its PNG was drawn"),
-        ("node.svg", SVG.replace("<desc>It talks [loudly].</desc>", ""), "has no words"),
+        ("node.svg", SVG.replace("<desc>It talks [loudly].</desc>", ""), "has no description"),
         ("node.svg", "<svg", "is not an SVG"),
         ("node.png", None, "needs .*node.png"),
         ("node.svg", None, "needs .*node.svg"),

@@ -28,8 +28,8 @@ REFUSED = {
     "no_markers": (12, "without '### BEGIN SOLUTION'", "Put what students"),
     "never_ended": (12, "without '### END SOLUTION'", "Put what students"),
     "misspelt_marker": (13, "marker is misspelt", "'### BEGIN SOLUTION' and nothing else"),
-    "markers_swapped": (13, "stands before", "in order"),
-    "no_stub": (14, "does not open with its stub", "# TODO: "),
+    "markers_swapped": (13, "stands before", "Swap"),
+    "no_stub": (14, "does not begin with a TODO comment", "# TODO: "),
     "two_todos": (13, "second TODO", "split it"),
     "two_regions": (17, "A second '### BEGIN SOLUTION'", "split it"),
     "nothing_in_the_region": (14, "holds no solution", "Write it"),
@@ -38,7 +38,7 @@ REFUSED = {
     "region_in_a_given_cell": (9, "in a cell that is not a solution cell", ":tags: [solution]"),
     "solution_without_a_name": (9, "it has no name", ":grade_id:"),
     "grade_id_with_a_space": (9, "'no good' cannot be a grade_id", "letters"),
-    "check_with_another_grade_id": (19, "'other' does not match", "it is 'lab_9_1-double' by itself"),
+    "check_with_another_grade_id": (19, "'other' does not match", "gets 'lab_9_1-double' automatically"),
     "check_of_another_notebook": (19, "does not belong to this notebook", "begin with 'lab_9_1.'"),
     "check_of_what_is_not_written": (
         19,
@@ -52,11 +52,11 @@ REFUSED = {
     "unknown_tag": (9, "Unknown tag 'solutoin'", "solution"),
     "two_tags": (9, "2 tags", "keep one"),
     "unknown_option": (9, "Unknown cell option 'points'", "grade_id, tags"),
-    "manual_without_points": (11, "only if a person grades it", '"points": 5'),
+    "manual_without_points": (11, "a question that a person grades", '"points": 5'),
     "manual_without_an_answer": (11, "without '### BEGIN SOLUTION'", "Put what students"),
     "manual_without_a_question": (12, "The question is missing", "Ask it above"),
     "manual_code": (9, "A person grades text, not code", '"manual"'),
-    "empty_cell": (9, "empty code cell", "take it out"),
+    "empty_cell": (9, "empty code cell", "delete it"),
     "open_hint": (11, "hint that is not closed", "':::'"),
     "hint_without_a_question": (11, "without its question", ":::{hint} What"),
     "options_no_yaml": (None, "Code cell 0 at line 9 could not be read", "YAML options"),
@@ -134,5 +134,5 @@ def test_a_folder_without_masters(tmp_path: Path) -> None:
 
 def test_the_course_is_found_from_inside(course: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
     assert find_root(course / "solutions/01_first") == course
-    with pytest.raises(MasterError, match="lies in no course"):
+    with pytest.raises(MasterError, match="is not in a course"):
         find_root(tmp_path_factory.mktemp("elsewhere"))

@@ -222,6 +222,6 @@ def test_a_course_of_three_labs_has_no_link_that_leads_nowhere(tmp_path: Path) -
 
 def test_nothing_is_overwritten(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("work")
-    with pytest.raises(CannotHandOut, match="is there already"):
+    with pytest.raises(CannotHandOut, match="already exists"):
         hand_out(tmp_path, ROOT)
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]

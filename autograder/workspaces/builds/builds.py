@@ -125,8 +125,8 @@ class Builds:
     def lend(self, made: Build, course: Build) -> Build:
         """Return a copy of the course's build to which the student's files have been added.
 
-        It is used if the student's package lacks programs that the course's package has. ROS finds a package in one
-        prefix only, so this prefix must also contain the student's launch files.
+        The copy is used if the student's package lacks programs that the course's package has. ROS finds a package in
+        one prefix only, so this prefix must also contain the student's launch files.
         """
         assert course.install is not None
         names = {prefix.name for prefix in made.prefixes}

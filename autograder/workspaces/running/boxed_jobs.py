@@ -71,7 +71,7 @@ class BoxedJobs:
     def build(self, order: BuildOrder, command: Sequence[str], entry: CachedBuild) -> Built:
         """Run a build in a separate box. Pack its install folder when no process of the build is alive any more.
 
-        Its memory limit is low at first, because other builds may run. A build that reaches the limit is run again with
+        The memory limit is low at first, because other builds may run. A build that reaches the limit is run again with
         a higher one, while no other build is run again.
         """
         built, needs_room = self._build(order, command, entry.folder, BUILD_LIMITS)

@@ -24,8 +24,9 @@ LOOK_EVERY = 0.5
 class OwnSession:
     """A program in a new session, so that Ctrl-C in the terminal or an interrupt of the kernel does not reach it.
 
-    Its stdout and stderr are one stream. It is the child of a keeper process (:func:`autograder.process_trees.keep`),
-    which ends all processes of the program as soon as this process ends, for whatever reason.
+    The stdout and stderr of the program are one stream. The program is the child of a keeper process
+    (:func:`autograder.process_trees.keep`), which ends all processes of the program as soon as this process ends, for
+    whatever reason.
 
     Args:
         command: The program and its arguments.
