@@ -36,7 +36,7 @@ def fresh_folder(prefix: str, parent: Path | None = None) -> Path:
         parent: A folder of this user; None for the folder for temporary files.
 
     Raises:
-        UnsafeTemporaryFolder: There is no safe folder for temporary files, or another user can change the new folder.
+        UnsafeTemporaryFolder: No safe folder for temporary files exists, or another user can change the new folder.
     """
     folder = Path(tempfile.mkdtemp(prefix=prefix, dir=parent or _base()))
     if parent is not None:

@@ -166,8 +166,8 @@ def finished(chapter: course.Chapter, reached: dict[str, JournalEntry]) -> float
 
 @contextlib.contextmanager
 def _opened(path: Path, flags: int) -> Iterator[int]:
-    # The folder may belong to another user, who could put a pipe or a link there. A pipe must not block a check, and a
-    # link must not make the check write to a file elsewhere.
+    # The folder may belong to another user. That user could put a pipe or a link there. A pipe must not block a check,
+    # and a link must not make the check write to a file elsewhere.
     number = os.open(path, flags | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC, 0o600)
     try:
         if not stat.S_ISREG(os.fstat(number).st_mode):

@@ -55,7 +55,7 @@ def report_line(phase: str, made: Build, plan: Plan | None = None, missing: str 
 
 
 def no_sources_line(trouble: str) -> str:
-    """Return the line of the report if there are no sources to build.
+    """Return the line of the report about a check without usable sources.
 
     Args:
         trouble: The reason, in words for the student.
