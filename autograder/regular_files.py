@@ -1,4 +1,4 @@
-"""Safe access to regular files: reads files that may have been replaced by anything, and writes files in one step."""
+"""Reads files that may have been replaced by a link, pipe or device, and writes files in one step."""
 
 from __future__ import annotations
 

@@ -143,7 +143,7 @@ class HeldFolder:
 
 
 def sweep(prefix: str) -> None:
-    """Remove the folders of one kind whose creators were killed."""
+    """Remove the folders with this prefix whose creators were killed."""
     for folder in _base().glob(f"{prefix}*"):
         with contextlib.suppress(OSError), _locked(folder):
             remove_tree(folder)

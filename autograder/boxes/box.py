@@ -47,7 +47,7 @@ class Box:
         """Kill the box, and wait until none of its processes is alive. This may be called twice.
 
         Returns:
-            The exit code of bubblewrap: that of the command, or 128 plus the number of a signal.
+            The exit code of the box's command; if a signal ended it, 128 plus the number of the signal.
 
         Raises:
             ChannelClosed: The supervisor has ended.

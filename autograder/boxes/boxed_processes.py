@@ -130,7 +130,7 @@ class Finished:
         returncode: As in :class:`subprocess.Popen`: the exit code, or a negative number if a signal ended it. None if
             the command was stopped at its time limit.
         output: Standard output and standard error, in the order of arrival, cut to the allowed number of bytes.
-        cut: True if there was more output than that.
+        cut: True if output was dropped, because it exceeded that number.
     """
 
     returncode: int | None

@@ -195,7 +195,7 @@ def _candidates(kind: str, own: str, mounts: str) -> list[Controller]:
 
 
 def _inside(place: str, root: str, path: str) -> Path:
-    """Return the folder of the group ``path`` in a hierarchy that is mounted from its folder ``root``."""
+    """Return the folder of the group ``path``, if the hierarchy's folder ``root`` is mounted at ``place``."""
     inside = os.path.relpath(path, root)
     return Path(place) if inside.startswith("..") else Path(place) / inside
 

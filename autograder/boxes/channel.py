@@ -52,7 +52,7 @@ class Channel:
         return self._socket.fileno()
 
     def send(self, message: dict[str, Any], descriptors: Sequence[int] = ()) -> None:
-        """Send one message. The descriptors stay open here.
+        """Send one message. The caller's copies of the descriptors stay open.
 
         Raises:
             ChannelClosed: The other end has closed.

@@ -1,4 +1,4 @@
-"""A desk: a process in a box that parses one thing that a student wrote, so that no trusted process parses it.
+"""Desks: processes in a box, each of which parses one file of a student, so that no trusted process has to.
 
 .. code-block:: python
 
@@ -7,8 +7,8 @@
         code = desk.ask(source, answer, most=1_000_000, seconds=20)
 
 All desks of one :class:`Desk` enter the same box. A desk can open no file, start no process and reach nothing
-(:func:`autograder.boxes.seccomp_filter.filter_for_readers`), so nothing of one student is left for the next. On a
-machine that cannot make namespaces for a box, there are still the process, its limits and its filter of system calls.
+(:func:`autograder.boxes.seccomp_filter.filter_for_readers`), so no data of one student is left for the next. On a
+machine on which no box can be made, a desk is still a separate process with limits and a filter of system calls.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ _WALL_SECONDS = 600.0
 class Desk:
     """The fork server of desk processes, and the box that they enter.
 
-    The server and the box end with this object, or with this process.
+    The server and the box end when :meth:`close` is called or this process ends.
 
     Args:
         module: The module that a desk process runs.
@@ -71,11 +71,11 @@ class Desk:
     def ask(
         self, source: int, answer: int, most: int, seconds: int, call: Mapping[str, Any] | None = None
     ) -> int:
-        """Let a new desk process read one file and write into another, and return its exit code.
+        """Start a desk process that reads a file and writes an answer into another file. Return its exit code.
 
         Args:
-            source: The descriptor of the file.
-            answer: The descriptor of an empty file.
+            source: The descriptor of the file to read.
+            answer: The descriptor of an empty file for the answer.
             most: The limit in bytes of the answer.
             seconds: The limit in seconds of the processor time. A process that reaches it ends with ``-SIGXCPU``.
             call: The argument for the function ``run`` of the module.
@@ -188,7 +188,7 @@ class KeptDesk:
 
 @contextlib.contextmanager
 def in_memory(data: bytes = b"") -> Iterator[int]:
-    """Give the descriptor of a file in memory with these bytes.
+    """Make a file in memory with these bytes for a ``with`` block, and yield its descriptor.
 
     Raises:
         ChannelClosed: The bytes do not fit into memory.

@@ -68,8 +68,8 @@ def enter(channel: Channel, run: Run) -> None:
     die_with_parent()
     message, descriptors = channel.receive()
     entrance = Entrance(**message)
-    # The files are opened here, while their paths are visible. Only the child joins, so that a box that runs out of
-    # memory cannot take this watching process with it.
+    # Open the files now, while their paths are visible. Only the child joins the cgroups: if the box runs out of
+    # memory, the kernel must not kill this process, which watches the child.
     groups = memberships(entrance.cgroups)
     if entrance.boxed:
         syscalls.setns(descriptors[0], _ALL_NAMESPACES)

@@ -45,7 +45,7 @@ def base_environment(given: Mapping[str, str] | None = None) -> dict[str, str]:
     """Return the environment of a fork server and of every box: what Python and ROS need, and nothing else.
 
     Args:
-        given: The environment to take values from; None for that of this process.
+        given: The environment to take values from; None for the environment of this process.
     """
     found = (os.environ if given is None else given).items()
     kept = {name: value for name, value in found if name in _KEPT or name.startswith(_KEPT_PREFIXES)}
@@ -60,7 +60,7 @@ def box_environment(
 
     Args:
         extra: Variables to set, whatever their values on the host.
-        given: The environment to take values from; None for that of this process.
+        given: The environment to take values from; None for the environment of this process.
     """
     return {
         **base_environment(given),

@@ -41,7 +41,7 @@ _PIECE = 1 << 16
 
 
 class BoxGuard:
-    """The guard of one submission's boxes. Close it after the boxes have ended."""
+    """Enforces the limits on the boxes of one submission. Close it after the boxes have ended."""
 
     def __init__(self, limits: Limits) -> None:
         self._limits = limits
@@ -75,8 +75,8 @@ class BoxGuard:
             "RLIMIT_SIGPENDING": 1000,
         }
         if not self._memory:
-            # This limits writable address space, including the stacks of threads, which is always larger than the
-            # memory in use.
+            # This limits writable address space, including the stacks of threads. It is always larger than the memory
+            # in use, so the limit is twice as high.
             limits["RLIMIT_DATA"] = 2 * self._limits.memory_bytes
         if not self._processes and os.geteuid() != 0:
             limits["RLIMIT_NPROC"] = self._limits.processes
@@ -292,7 +292,7 @@ def _rows(table: Path) -> list[list[str]]:
 
 
 def _scratch_of(first: int) -> int:
-    """Return the size in bytes of the files in a box's scratch, which are in memory and belong to no process."""
+    """Return the size in bytes of the files that a box has written. They are in memory and belong to no process."""
     try:
         inside, outside = (os.statvfs(place) for place in (f"/proc/{first}/root/tmp", "/tmp"))
     except OSError:

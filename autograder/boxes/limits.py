@@ -33,7 +33,7 @@ class Ended(StrEnum):
 
 @dataclass(frozen=True)
 class Limits:
-    """The limits of one notebook. If one is reached, the feedback names it.
+    """The limits of one notebook. If a limit is reached, the feedback names it.
 
     Attributes:
         cell_seconds: Time limit in seconds for one cell on an idle machine; on a busy machine it stretches. A check
@@ -52,7 +52,8 @@ class Limits:
         desk_bytes: Memory in bytes that the process that reads a kernel's messages may write to.
         cpu_seconds: Processor time in seconds for all processes of a box together, each time that a submission is
             executed.
-        memory_bytes: Memory in bytes for all processes of a box together, including files in the box's scratch.
+        memory_bytes: Memory in bytes for all processes of a box together, including the files that they write, which
+            are in memory.
         beside_bytes: The memory limit in bytes while other submissions run. A submission that needs more is executed
             again, alone, so this limit never decides a result.
         beside: True while other submissions run.

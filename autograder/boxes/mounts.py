@@ -1,9 +1,9 @@
 """The files that a box sees, as arguments for bubblewrap.
 
-A box sees only what Python, ROS and the build of a workspace need, read-only: the system's programs and libraries,
-the Python installation, the environment with the course's packages, and this package. It sees no ``solutions/``, no
-class and no home folder, even if an installation lies inside one. It can write only to the scratch, which has a size
-limit and disappears with the box.
+A box sees only what Python, ROS and the build of a workspace need, read-only: the system's programs and libraries, the
+Python installation, the environment with the course's packages, and this package. It sees no ``solutions/``, no class
+and no home folder, even if an installation lies inside one. It can write only to the scratch, a file system in memory
+that has a size limit and disappears with the box.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ ETC_FOLDERS = ("alternatives", "ld.so.conf.d")
 _SEARCH_PATHS = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH", "PATH")
 
 USER = "student"
-"""The name of the user in a box. The id is that of the first user on many systems."""
+"""The name of the user in a box. The user's id is 1000, as for the first user on many systems."""
 USER_ID = 1000
 HOME = Path("/home") / USER
 WORK = HOME / "notebook"
@@ -36,7 +36,7 @@ _PROC_HIDDEN = {"kcore", "kmsg", "keys", "key-users"}
 """Files in ``/proc`` that say more about the machine and its users than a program needs."""
 
 ETC = "etc"
-"""The folder of the scratch to which no box can write."""
+"""The folder of the scratch that becomes the ``/etc`` of a box. No box can write to it."""
 TERMINALS = "pts"
 """The folder of the scratch that contains the pseudo-terminals of all boxes of a supervisor."""
 _ETC_FILES = {
@@ -125,10 +125,10 @@ def box_arguments(
 
 
 def _course_below_the_scratch() -> tuple[str, ...]:
-    """Return the folder of the clone if it is below ``/tmp`` or the box's home, to make it read-only; else nothing.
+    """Return the folder of the course's git clone if a box could write to it; else nothing.
 
-    A box can write to both, and Python imports from the clone. An installed package needs no such protection: it is
-    inside Python's own folder, which the box sees read-only.
+    A box can write to ``/tmp`` and its home. Python imports from the clone, so a clone in one of these is made
+    read-only. A package installed with pip is inside Python's own folder, which the box sees read-only anyway.
     """
     folder = _PACKAGE.parent
     if folder.is_relative_to(sys.prefix) or not any(map(folder.is_relative_to, (HOME, Path("/tmp")))):

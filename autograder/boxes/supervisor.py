@@ -1,9 +1,9 @@
-"""The supervisor of one submission's boxes: it owns their network namespace and scratch, and ends the boxes.
+"""The supervisor of one submission's boxes: it makes and ends them, and owns their network and their scratch.
 
-It is forked by a separate fork server (:mod:`autograder.boxes.fork_server`), which has few imports. It enters new
-user, network and mount namespaces, in which bubblewrap then makes the boxes. Each box gets a further user namespace,
-so that no process in a box has rights over the network. When the connection to the worker is lost, for whatever
-reason, the supervisor kills all boxes and exits.
+The scratch is the file system in memory to which the boxes write. The supervisor is forked by a separate fork server
+(:mod:`autograder.boxes.fork_server`), which has few imports. It enters new user, network and mount namespaces, in which
+bubblewrap then makes the boxes. Each box gets a further user namespace, so that no process in a box has rights over the
+network. When the connection to the worker is lost, for whatever reason, the supervisor kills all boxes and exits.
 
 The worker sends ``open`` (once), ``start`` (for a box or a command) and ``kill``. The supervisor answers ``opened``,
 ``started``, ``ended`` or ``failed``.
@@ -33,10 +33,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 SCRATCH_FOLDERS = ("home", "tmp", "shm", "work")
-"""The folders in the scratch. A box sees each of them at a different path."""
+"""The folders in the scratch. A box sees each of them at another path, such as ``shm`` at ``/dev/shm``."""
 
 MOST_TERMINALS = 32
-"""The maximum number of terminals. A notebook's line that begins with an exclamation mark takes one while it runs."""
+"""The maximum number of terminals. A line of a notebook that begins with ``!`` uses a terminal while it runs."""
 
 
 def prepare() -> None:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from autograder.boxes.limits import Limits
 
 AGAIN_SECONDS = 10.0
-"""Time limit in seconds for a cell without points that uses a name that hung before."""
+"""Time limit in seconds for a cell without points that uses a function or class that hung before."""
 _SHARE_OF_A_CHECK = 0.25
 """The fraction of the judge's time limit that a check gets if an earlier check of the same class or function hung. This
 is enough, because a check normally takes a twentieth of the limit.
@@ -29,7 +29,7 @@ is enough, because a check normally takes a twentieth of the limit.
 
 @dataclass
 class Hangs:
-    """The names that have hung so far in a notebook.
+    """The functions and classes of a student that have hung so far in a notebook.
 
     Args:
         written: The names of the classes and functions that the student defined.
@@ -56,7 +56,7 @@ class Hangs:
             self._hung.setdefault(used[0], title)
 
     def before(self, cell: Cell) -> tuple[str, str] | None:
-        """Return a name in the cell that hung before, and the title of the cell in which it hung, or None."""
+        """Return a name in the cell whose function or class hung before, and the title of the cell that hung."""
         if not self._hung:
             return None  # nothing has hung, as in nearly every notebook, so no cell has to be parsed
         return next(((name, self._hung[name]) for name in self._used(cell) if name in self._hung), None)
@@ -68,11 +68,11 @@ class Hangs:
 
 
 def seconds_again(cell: Cell, usual: float, limits: Limits) -> float:
-    """Return the time limit, in seconds of wall time, for a cell that uses a name that hung before.
+    """Return the time limit, in seconds of wall time, for a cell that uses a function or class that hung before.
 
     Args:
         cell: The cell.
-        usual: The limit for a cell that uses no such name.
+        usual: The limit for any other cell.
         limits: All limits.
     """
     if cell.check is None or cell.check.asserts:

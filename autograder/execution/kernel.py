@@ -84,7 +84,7 @@ class Kernel:
         place: Starts the processes.
         limits: ``start_seconds``, ``interrupt_grace`` and ``notebook_output_bytes`` are used.
         outputs: Receives the outputs.
-        guard: Reports that the box has exceeded another limit.
+        guard: Reports if a limit of the box is exceeded.
 
     Raises:
         KernelFailed: The process could not be started.
@@ -127,7 +127,7 @@ class Kernel:
 
     @property
     def alive(self) -> bool:
-        """True if the process still runs."""
+        """True if the kernel's process still runs."""
         return self._process.alive
 
     @property
@@ -179,7 +179,7 @@ class Kernel:
         return Ended.DONE if said is Said.DONE else Ended.RAISED
 
     def kill(self) -> None:
-        """End the process and everything that it started."""
+        """End the kernel's process and everything that it started."""
         self._process.end()
 
     def close(self) -> None:
@@ -196,8 +196,8 @@ class Kernel:
         return Ended.TOO_MUCH_OUTPUT if self._desk_failed else why
 
     def _died(self) -> Ended:
-        """Record the kernel's last outputs. Return how the end of the kernel counts for the cell."""
-        self.kill()  # also the programs that it has started and that hold its sockets open
+        """Collect the last outputs of a kernel that has ended. Return how the cell that ran has ended."""
+        self.kill()  # also ends programs that the cell has started and that hold the kernel's sockets open
         if not self._desk_failed:
             self._ask(Do.DRAIN, wall_time(_DESK_SECONDS), of_living=False)
         if self._desk_failed:
@@ -224,7 +224,7 @@ class Kernel:
 
         Args:
             left: Returns the seconds that are left.
-            of_living: False if the kernel has ended already, so that its end and its limits no longer count.
+            of_living: False if the kernel has ended already. Then neither this nor an exceeded limit ends the wait.
         """
         waiting = select.poll()
         waiting.register(self._desk_says, select.POLLIN)
@@ -264,7 +264,7 @@ class Kernel:
         return answer
 
     def _desk_ended(self, error: Exception) -> None:
-        """End a kernel whose desk has failed. The kernel's messages caused this, unless the system killed the desk."""
+        """End a kernel whose desk has failed, and find out whether the system killed the desk or the messages did."""
         self._desk_failed = True
         has_ended = isinstance(error, Hangup) and not isinstance(error, TooLong)
         if has_ended and self._desk.wait(_DESK_SECONDS):

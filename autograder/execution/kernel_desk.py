@@ -166,7 +166,7 @@ class _Desk:
         return True
 
     def _arrived(self) -> Iterator[None]:
-        """Take the messages that have arrived, one by one. Outputs come first, because they were sent first."""
+        """Process the messages that have arrived, and yield after each. Outputs come first, as they are sent first."""
         for source in (self._iopub, self._shell):
             for _ in range(_AT_ONCE):
                 try:
@@ -182,7 +182,7 @@ class _Desk:
         parts: list[Any] = self._session.feed_identities(frames, copy=False)[1]
         if source is self._iopub and size > self._setting.message_bytes:
             request = self._session.unpack(bytes(parts[2])).get("msg_id")
-            # An earlier cell's message may come only now.
+            # A message of an earlier cell does not count for the current one.
             self._read += size if request == self._current else 0
             self._keep(request, "stream", {"name": "stdout", "text": _TOO_LARGE})
             return

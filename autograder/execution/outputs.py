@@ -153,7 +153,7 @@ class OutputCollector:
         return safe
 
     def _has_room(self, outputs: int = 1) -> bool:
-        """Use the bytes of ``outputs`` outputs, not counting the first one. Return True if enough were left."""
+        """Charge the minimum size of outputs to the budgets, except for the first. Return True if enough was left."""
         size = outputs * OUTPUT_BYTES if self._outputs and not self._clear_at_next else 0
         if self._notebook.take(self._own.take(size)) == size:
             return True

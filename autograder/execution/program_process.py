@@ -68,7 +68,7 @@ def prepare(libraries: str, *library_folders: str) -> None:
 
 
 def _never_unload() -> None:
-    """Make this process and its forks end before shared libraries are unloaded, the last thing that ``exit`` does.
+    """Make this process and its forks exit without unloading shared libraries.
 
     LTTng, which rclpy loads, would otherwise stop two threads that a fork does not have, and crash
     (``lttng_ust_exit``). Handlers run in reverse order (atexit(3)), so everything imported after this call is cleaned
@@ -171,8 +171,8 @@ class _Fork:
 
     def __init__(self, command: Sequence[str], standard_path: Sequence[str]) -> None:
         self._code: int | None = None
-        # Until the fork sets its own handlers, it has those of `ros2 run`, which expects its program to handle
-        # Ctrl-C.
+        # Block SIGINT until the fork has its own handler. Before, it has the handler of `ros2 run`, which leaves Ctrl-C
+        # to the program.
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         self._pid = os.fork()
         if self._pid == 0:
@@ -244,6 +244,6 @@ def _exit_code(script: str) -> int:
     if ctypes.pythonapi.PyRun_SimpleFileExFlags(file, name, 1, None) == 0:
         return 0
     if getattr(sys, "last_type", None) is KeyboardInterrupt:
-        # Python then ends itself by SIGINT, after its clean-up, when none of its code runs any more (Py_RunMain).
+        # As Python does after a KeyboardInterrupt, clean up, and then end this process with SIGINT (Py_RunMain).
         libc.__cxa_atexit(libc["raise"], ctypes.c_void_p(signal.SIGINT), None)
     return 1

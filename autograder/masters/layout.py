@@ -49,7 +49,7 @@ def masters(root: Path) -> list[Path]:
 
 
 def lab_name(master: Path) -> str:
-    """Return the name of a master's lab, which is also that of its notebook and folder, such as ``"lab_1_2"``."""
+    """Return the name of a master's lab, such as ``"lab_1_2"``. The lab's folder and notebook have the same name."""
     return master.parent.name
 
 

@@ -152,7 +152,10 @@ def standing(root: Path, folder: Path, entries: Sequence[JournalEntry]) -> Stand
 
 
 def _following(notebooks: Sequence[NotebookStanding]) -> NotebookStanding | None:
-    """Return the notebook last worked on; if it is done, the next one that is not. After the last comes the first."""
+    """Return the notebook to continue with; None if all are done.
+
+    This is the notebook last worked on or, if that is done, the next one that is not. The first follows the last.
+    """
     times = [notebook.worked for notebook in notebooks]
     here = times.index(max(times)) if times else 0
     in_order = [*notebooks[here:], *notebooks[:here]]

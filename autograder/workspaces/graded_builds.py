@@ -41,7 +41,7 @@ class GradedBuilds(Builds):
         folder: The folder for the builds of this execution. Only the grader can write to it.
         jobs: Runs colcon and the built programs.
         ahead: The folder of builds made in advance; None if nothing is shared.
-        room: The maximum size in bytes of all builds used here, including those made in advance.
+        room: The maximum size in bytes of all builds that the execution uses, including builds made in advance.
     """
 
     def __init__(self, folder: Path, jobs: Jobs, ahead: Path | None = None, room: int = ROOM) -> None:

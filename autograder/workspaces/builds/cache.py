@@ -159,7 +159,7 @@ def entry(key: str, base: Path, cancelled: Callable[[], bool] = lambda: False) -
 def _turn(file: Path, cancelled: Callable[[], bool]) -> Iterator[IO[str]]:
     """Hold a lock on the lock file of an entry.
 
-    While this process waited, another one may have removed the entry and the lock file. Then lock a new lock file.
+    While this process waited, another process may have removed the entry and the lock file. Then lock a new lock file.
     """
     while True:
         with file.open("a") as lock:

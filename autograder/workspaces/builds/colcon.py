@@ -130,7 +130,7 @@ def choose(found: Build, targets: Targets | None) -> tuple[list[Package], Build]
     """Return the packages to build, and the workspace.
 
     If the workspace contains none of the targets, all its packages are built. But if one of these is unusable, no
-    packages are returned, and the workspace's ``trouble`` is set. If there are targets, other packages may be unusable.
+    packages are returned, and the workspace's ``trouble`` is set. Unusable packages do not matter if a target is found.
     """
     chosen = needed(found.packages, targets(found)) if targets is not None else []
     if chosen or not found.unusable:
@@ -144,7 +144,7 @@ def moved(packages: Iterable[Package], src: Path, there: Path) -> list[Package]:
     Args:
         packages: The packages.
         src: The folder that contains the packages now.
-        there: The other folder.
+        there: The folder in which the sources will be.
     """
     return [replace(package, folder=there / package.folder.relative_to(src)) for package in packages]
 

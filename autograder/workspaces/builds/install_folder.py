@@ -34,7 +34,7 @@ class CannotPlace(RuntimeError):
 
 
 def package_prefixes(install: Path) -> list[Path]:
-    """Return the prefixes in an install folder that has one for each package, sorted by package name."""
+    """Return the prefix of each package in an install folder, sorted by package name."""
     if not install.is_dir():
         return []
     return sorted(folder for folder in install.iterdir() if (folder / "share").is_dir())
