@@ -30,7 +30,8 @@ _ITS_TIME = 1e6
 class ForkedProcess:
     """A process that a fork server has forked on request.
 
-    The forked process is killed as soon as this object's connection is closed, as also happens if this process crashes.
+    The forked process is killed as soon as this object's connection is closed, even if the reason is that this process
+    has crashed.
 
     Args:
         address: The socket address of the fork server.

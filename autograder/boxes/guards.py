@@ -214,8 +214,7 @@ def use_of(first: int, memory_of: _MemoryOf | None) -> Use:
 def _files_of(process: str) -> int:
     """Return the number of files that a process has open.
 
-    Linux 6.2 and later give this number as the size of the folder (proc_pid_fd(5)). A process with no open file is
-    rare.
+    Since Linux 6.2, this number is the size of the folder ``fd`` (proc_pid_fd(5)). If the size is 0, count the entries.
     """
     folder = f"{process}/fd"
     return os.stat(folder).st_size or len(os.listdir(folder))  # noqa: PTH116, PTH208 (several times a second)
@@ -364,7 +363,7 @@ def guards() -> Mapping[str, str]:
 def _processes_without(watched: str) -> str:
     if os.geteuid() == 0:
         return f"{watched}; a fork bomb may be faster than the checks: do not grade as root"
-    return f"{watched}, and a limit on the user in the box"
+    return f"{watched}, and the system limits the number of processes of the box's user"
 
 
 def _cgroup(kind: str) -> str:

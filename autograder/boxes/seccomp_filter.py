@@ -229,9 +229,9 @@ def filter_for_readers(machine: str = "") -> bytes:
 
 
 def filter_for_desks(machine: str = "") -> bytes:
-    """Return the filter of a process that reads what a kernel says on connections that it has already.
+    """Return the filter for the desk of a Jupyter kernel, which reads from existing connections to the kernel.
 
-    Such a process can open nothing, start nothing, reach no other process, and make no further connection.
+    A desk cannot open files, start processes, or make further connections.
 
     Args:
         machine: As for :func:`filter_for_boxes`.
@@ -289,7 +289,7 @@ def _load(argument: int) -> _Instruction:
 
 
 def _only_if(argument: int, value: int) -> list[_Instruction]:
-    """Return instructions that allow the call unless an argument has this value."""
+    """Return instructions that allow the call, but go on to the next instruction if an argument has this value."""
     return [_load(argument), (_JUMP_EQUAL, 1, 0, value), (_RETURN, 0, 0, _ALLOW)]
 
 

@@ -1,7 +1,7 @@
 """The orders to a kernel's desk and the desk's answers: lines of JSON on a socket.
 
 The desk (``kernel_desk.py``) reads the messages of a student's program, so that program may have taken control of the
-desk. The grader therefore uses an answer only if it has exactly this form.
+desk. The grader therefore uses an answer only if it has exactly the form that is defined here.
 """
 
 from __future__ import annotations

@@ -90,7 +90,7 @@ class _Desk:
         self._idle = self._probed = self._heard = False
 
     def serve(self) -> None:
-        """Say that the kernel is ready, then obey order by order."""
+        """Tell the grader that the kernel is ready, then carry out the grader's orders."""
         while not (self._probed and self._heard):
             # Send this repeatedly, because the kernel drops outputs until the desk's subscription has reached it.
             self._ask_for_a_sign()

@@ -96,7 +96,7 @@ def exercise_points(check: CheckCall) -> float:
             check.master,
             check.line,
             f"The exercise '{check.exercise}' does not exist.",
-            f"Add it to the lab's folder, or name an existing one: {', '.join(near)}.",
+            f"Write the exercise in the lab's folder, or name an existing one: {', '.join(near)}.",
         ) from error
     except exercises.BrokenExercise as error:
         raise MasterError(check.master, check.line, f"{error}.", "Correct that file.") from error

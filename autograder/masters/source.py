@@ -238,7 +238,7 @@ def _unique(master: Path, named: list[NamedCell]) -> None:
             raise MasterError(
                 master,
                 item.cell.line,
-                f"The grade_id '{item.name}' is taken by the cell on line {seen[item.name]}.",
+                f"The grade_id '{item.name}' is already used by the cell on line {seen[item.name]}.",
                 "Give one of the cells another: ':grade_id: some_name'. An exercise may be checked in one cell only.",
             )
         seen[item.name] = item.cell.line

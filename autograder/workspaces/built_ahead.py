@@ -64,7 +64,7 @@ def build_ahead(folder: Path, jobs: Jobs) -> None:
         every.append(lambda: builds.build(look(own), None, name=COURSE))
     first = os.getpid() % max(
         1, len(every)
-    )  # workers that start at the same time begin with different packages
+    )  # begin with different packages in workers that start at the same time
     for build in (*every[first:], *every[:first]):
         # If a build takes too long, skip it: each submission with this package then builds it for itself.
         with contextlib.suppress(BuildTookTooLong):

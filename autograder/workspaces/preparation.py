@@ -1,4 +1,4 @@
-"""Prepares the program that a check runs: checks the workspace, builds the needed packages, and reports on both."""
+"""Prepares the program that a check runs: checks the workspace, builds the needed packages, and reports the results."""
 
 from __future__ import annotations
 

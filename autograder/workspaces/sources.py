@@ -39,7 +39,9 @@ MAX_NAME = 120
 MAX_DEPTH = 16
 """The maximum number of parts of a path."""
 MAX_HELD = MAX_BYTES + MAX_FILES * MAX_PATH
-"""The maximum of the bytes of contents and the characters of paths that are kept while sources are received."""
+"""The maximum size of the sources that are kept in memory while sources are received: bytes of contents plus characters
+of paths.
+"""
 LAUNCH_COMPANIONS = (".py", ".xml", ".yaml", ".yml", ".json", ".txt")
 """The extensions of files next to a launch file that the launch file may need."""
 _NOT_SOURCES = {"__pycache__", ".git", ".ipynb_checkpoints", ".pytest_cache", ".mypy_cache", ".ruff_cache"}

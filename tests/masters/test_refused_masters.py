@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 HERE = Path(__file__).parent
 # File: line, words of the problem, words of the remedy.
 REFUSED = {
-    "duplicate_grade_id": (19, "'double' is taken by the cell on line 9", "grade_id"),
+    "duplicate_grade_id": (19, "'double' is already used by the cell on line 9", "grade_id"),
     "an_exercise_checked_twice": (24, "'lab_9_1-double' is taken", "one cell only"),
     "no_markers": (12, "without '### BEGIN SOLUTION'", "Put what students"),
     "never_ended": (12, "without '### END SOLUTION'", "Put what students"),

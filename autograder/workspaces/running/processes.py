@@ -40,7 +40,7 @@ def _own_id(pid: int) -> int:
 
 
 def _parent_of(pid: int) -> int:
-    """Return the id of a process's current parent (another one if the first has ended); 0 if the process has ended."""
+    """Return the id of the process that is now the parent of a process; 0 if the process has ended."""
     return int((_status(pid, "PPid") or ["0"])[0])
 
 
