@@ -116,7 +116,7 @@ class HeldFolder:
     def __init__(self, prefix: str) -> None:
         sweep(prefix)
         while True:
-            # Until the folder is locked, another process may remove it as left behind, so this is repeated.
+            # Repeat this if another process has removed the new folder as left behind, before it was locked.
             try:
                 self.path = fresh_folder(prefix)
                 self._lock = os.open(self.path, os.O_RDONLY | os.O_DIRECTORY)
@@ -153,7 +153,7 @@ def _base() -> Path:
     """Return the folder for temporary files; if other users could replace files in it, a folder of this user alone.
 
     Raises:
-        UnsafeTemporaryFolder: There is no such folder.
+        UnsafeTemporaryFolder: No safe folder exists.
     """
     usual = Path(tempfile.gettempdir())
     if _is_safe(usual):

@@ -55,7 +55,7 @@ class Box:
         return self.supervision.end(self.name)
 
     def wait_end(self) -> int:
-        """Wait until the box ends by itself. Return the same as :meth:`end`.
+        """Wait until the box ends by itself. Return the exit code, as :meth:`end` does.
 
         Raises:
             ChannelClosed: The box did not end in time, or the supervisor has ended.

@@ -96,7 +96,7 @@ class ForkedProcess:
         return self._status is not None or self._lost
 
     def end_box(self) -> None:
-        """Kill every process in the box, and keep the exit status of this process."""
+        """Kill every process in the box. The exit status of this process can still be read."""
         if self._box is not None:
             with contextlib.suppress(OSError):
                 self._box.end()
@@ -185,7 +185,7 @@ class Running:
         return Finished(returncode, self.said, self._cut)
 
     def next_output(self, within: float) -> bytes | None:
-        """Return the output since the last call without keeping it: None if there is none yet, b"" at the end.
+        """Return the output since the last call, and do not keep it; None if there is none yet, b"" at the end.
 
         Args:
             within: The maximum number of seconds to wait for output.
@@ -195,7 +195,7 @@ class Running:
         return os.read(self._output, 1 << 16)
 
     def exit_code(self) -> int | None:
-        """Wait for the box to end, once there is no more output. Return the same as ``Finished.returncode``."""
+        """Wait for the box to end, once the output has ended. Return the exit code as in ``Finished.returncode``."""
         return self.wait(_ITS_TIME).returncode
 
     def interrupt(self) -> None:

@@ -45,7 +45,7 @@ class Group:
     """The cgroups of one submission. Each submission gets the same share of the processors.
 
     Args:
-        memory_bytes: The memory limit in bytes for all its processes together, including files in memory.
+        memory_bytes: The memory limit in bytes for all processes of the submission together, including files in memory.
         processes: The maximum number of processes and threads.
         controllers: The controllers for which groups can be made; None to detect them.
     """
@@ -151,7 +151,7 @@ def _settings(kind: str, version: int, memory_bytes: int, processes: int) -> Ite
         # Nothing to set: a new group has the same share as every other one (cpu.shares 1024, cpu.weight 100).
         return []
     if version == 1:
-        # Swap counts, too, if the kernel counts it at all. This limit must not be lower than the one on memory.
+        # Limit memory and swap together, if the kernel counts swap. This limit must not be lower than that on memory.
         return [
             ("memory.limit_in_bytes", str(memory_bytes)),
             ("memory.memsw.limit_in_bytes", str(memory_bytes)),

@@ -118,7 +118,7 @@ def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
             descriptors = descriptors[1:]
             filters = filter_for_boxes(hidden_memory=entrance.hidden_memory)
             give_up_rights(b"" if entrance.reader_seconds else filters)
-        # This comes after giving up rights, which clears the setting (prctl(2)). The parent is in another PID
+        # Call this only now, because giving up rights clears the setting (prctl(2)). The parent is in another PID
         # namespace.
         die_with_parent()
         signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -151,7 +151,7 @@ def _limit_processor_time(seconds: int) -> None:
     """Set the limit on processor time, at which SIGXCPU ends this process.
 
     The process cannot catch or block SIGXCPU, because the filters of readers and desks refuse the calls for it. SIGKILL
-    is set a second later: it would look as if the machine were out of memory.
+    would look as if the machine were out of memory, so it comes only a second later.
     """
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
 

@@ -264,9 +264,9 @@ class ForkServers:
             the judge.
         boxed: True to start the fork servers for supervisors and programs, too.
         log: The descriptor for their standard error.
-        environment: More variables for all of them except the supervisors'. Libraries read some variables when they
-            are loaded.
-        of_judges: More variables for the judges only, such as the folder of the course.
+        environment: More environment variables for all fork servers except that for supervisors. Libraries read some
+            variables when they are loaded.
+        of_judges: More environment variables for the judges only, such as the folder of the course.
         interfaces: The modules of the course's interfaces, so that a kernel finds them already imported. The kernel
             learns nothing else about the course.
     """

@@ -91,7 +91,7 @@ class BoxGuard:
         self._first = first
 
     def exceeded(self, *, at_once: bool = False) -> Ended | None:
-        """Return the limit that the last check found exceeded, or None. After a limit, the caller must end the box.
+        """Return the limit that the last check found exceeded, or None. The caller must end a box that exceeds a limit.
 
         Args:
             at_once: True to check again now, if only this watch enforces the limit on memory. Otherwise a check is

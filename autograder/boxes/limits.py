@@ -132,8 +132,8 @@ BUILD_LIMITS = Limits(
 
 
 _MOST_OPEN_FILES = 1 << 20
-"""The maximum limit on open files. Some systems allow a billion, and programs that loop over all possible descriptors
-would take too long.
+"""The highest limit on open files to set. Some systems allow a billion, and programs that loop over all possible
+descriptors would take too long.
 """
 
 

@@ -86,7 +86,8 @@ _READERS: Mapping[str, Mapping[str, int]] = {
         "mprotect": 226, "madvise": 233,
     },
 }  # fmt: skip
-"""The system calls that a reader may make. None of them opens, starts, sends or waits, and none sets a signal handler.
+"""The system calls that a reader may make. None of them opens a file, starts a process, sends a message, waits, or sets
+a signal handler.
 """
 _DESKS: Mapping[str, Mapping[str, int]] = {
     "x86_64": {
@@ -284,7 +285,7 @@ def _where(call: int, decide: Sequence[_Instruction]) -> list[_Instruction]:
 
 
 def _load(argument: int) -> _Instruction:
-    """Return an instruction that loads the low half of an argument; the kernel uses no more of a flag or a command."""
+    """Return an instruction that loads the low half of an argument. The kernel ignores the rest of a flag or command."""
     return (_LOAD, 0, 0, _ARGUMENTS + 8 * argument)
 
 

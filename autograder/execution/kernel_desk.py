@@ -54,7 +54,7 @@ def prepare() -> None:
 
 
 def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
-    """Obey the grader's orders until it hangs up.
+    """Carry out the grader's orders until the grader closes the connection.
 
     Args:
         call: The fields of :class:`Setting`.
@@ -135,8 +135,8 @@ class _Desk:
         return Said.DONE if reply.get("status") == "ok" else Said.RAISED
 
     def _settle(self) -> Said:
-        # An interrupt can hit the kernel's own code, such as its flush of printed text; then the cell's answer is
-        # lost. A request that is sent after it is still answered.
+        # An interrupt can hit the kernel's own code, such as its flush of printed text; then the cell's answer is lost.
+        # A request that is sent after the interrupt is still answered.
         self._probes.clear()
         self._probed = False
         self._ask_for_a_sign()

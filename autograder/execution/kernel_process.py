@@ -64,7 +64,7 @@ def prepare(*interfaces: str) -> None:
 
 
 def _rehearsed() -> list[str]:
-    """Return the modules that a kernel imports before its first cell has run, found by running one in a child."""
+    """Return the modules that a kernel imports before its first cell has run, found by running a kernel in a child."""
     before = set(sys.modules)
     reading, writing = os.pipe()
     pid = os.fork()
@@ -130,7 +130,7 @@ def _arguments() -> list[str]:
 
 
 def _forget_the_fork() -> None:
-    """Give this child its own random numbers. Otherwise numpy would draw the same ones in all forks of one process."""
+    """Give this child its own random numbers. Otherwise numpy would draw the same numbers in all forks."""
     random.seed()
     numpy_random = sys.modules.get("numpy.random")
     if numpy_random is not None:
@@ -167,15 +167,14 @@ class _GivenSockets(IPKernelApp):
             s.setsockopt(zmq.USE_FD, descriptor)
             s.bind(f"ipc://{self.address}-{port}")
             s.setsockopt(zmq.USE_FD, -1)
-        # An address inside the process, because the debugger's socket connects to the last address of the shell
-        # channel.
+        # Use an address inside the process, because the debugger's socket connects to the shell channel's last address.
         s.bind(f"inproc://channel-{port}")
         return port
 
 
 def _kernel_app(key: bytes, address: str, given: Mapping[int, int]) -> IPKernelApp:
     config = Config()
-    # No history file: writing it would be a waste, as no user will press the up key.
+    # Write no history file, because no user will press the up key.
     config.HistoryManager.hist_file = ":memory:"
     config.HistoryManager.enabled = False
     config.InteractiveShellApp.extensions = [_MAGIC]

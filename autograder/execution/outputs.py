@@ -15,8 +15,8 @@ from typing import Any
 IMAGES = ("image/png", "image/jpeg")
 TRACEBACK_LINES = 200
 OUTPUT_BYTES = 32
-"""The minimum number of bytes that an output, an update or a line of a traceback counts. Otherwise a million empty ones
-would stay below the limit, but fill the memory and take long to render.
+"""The minimum number of bytes that is counted for an output, an update or a line of a traceback. Otherwise a million
+empty ones would stay below the limit, but fill the memory and take long to render.
 """
 
 _CLOSING_LINE = 200

@@ -52,7 +52,7 @@ LIMITS = {
         "Look for a loop that prints without waiting, or print less.",
     ),
 }
-"""For each limit of a box, the message that the student gets, and the advice."""
+"""Maps each limit of a box to the message for the student, and the advice."""
 _SHORTAGES = {
     "OSError: [Errno 28]": (
         "disk_full",
@@ -68,8 +68,8 @@ _SHORTAGES = {
     "RuntimeError: can't start new thread": ("too_many_processes", *LIMITS[Ended.TOO_MANY_PROCESSES]),
     "MemoryError": ("out_of_memory", *LIMITS[Ended.OUT_OF_MEMORY]),
 }
-"""Limits that a program meets as an error. For the beginning of the error's text: the key of the diagnosis, the message
-that the student gets, and the advice.
+"""Limits that raise an error in the program. Maps the beginning of the error's text to the key of the diagnosis, the
+message for the student, and the advice.
 """
 
 
@@ -111,7 +111,8 @@ def without_verdict(
         run: The result of executing the check cell.
         before: The cells since the last check, in order, each with its title.
         limit: The time limit of the check cell in seconds of wall time.
-        hung: A name in the cell that hung before, and the title of the cell in which it hung; None if there is none.
+        hung: The name of a function or class in the cell that hung before, and the title of the cell in which it hung;
+            None if none hung.
     """
     match run.ended:
         case Ended.NOT_RUN | Ended.KERNEL_DIED:

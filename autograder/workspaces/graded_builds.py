@@ -34,8 +34,8 @@ ROOM = 32_000_000
 class GradedBuilds(Builds):
     """The builds for one execution of a submission.
 
-    Packages that only define interfaces often differ just in comments and spaces. For such a package, a build made in
-    advance is used even if its sources differ in comments and spaces.
+    A package that only defines interfaces uses a build made in advance even if the sources differ in comments and
+    spaces, as students' sources often do.
 
     Args:
         folder: The folder for the builds of this execution. Only the grader can write to it.

@@ -36,7 +36,7 @@ class Prepared:
     Attributes:
         command: The command.
         environment: All environment variables of the program. They make ROS find the builds.
-        builds: The builds that the program may read, by the names of their kinds of workspace.
+        builds: The builds that the program may read, by kind of workspace (:data:`WORKSPACE`, :data:`COURSE`).
     """
 
     command: Sequence[str]
@@ -80,7 +80,7 @@ class Preparation:
         return Prepared(command, self._with(self.builds.jobs.environment, WORKSPACE, made), {WORKSPACE: made})
 
     def launch(self, command: Sequence[str], file: Path | None, workspace: Path | None) -> Prepared | None:
-        """Prepare a launch with the student's packages and, after them, the course's own ``my_robot_pkg``.
+        """Prepare a launch in which ROS finds the student's packages first, then the course's own ``my_robot_pkg``.
 
         Args:
             command: The launch command.

@@ -39,7 +39,7 @@ class Plan:
     """The plan of an exercise about a workspace.
 
     Attributes:
-        targets: The names of the packages that the exercise needs; if empty, it needs all packages.
+        targets: Returns the names of the packages that the exercise needs; no names if it needs all packages.
         missing: Returns the name of a package, program or file that the exercise needs and the build lacks; empty if
             nothing is missing.
         command: Returns the command to run in the environment of the build. It is called only if nothing is missing.

@@ -264,7 +264,7 @@ def test_an_error_of_a_limit_has_its_own_word() -> None:
     verdict = without_verdict(CHECK.check, CellRun(Ended.RAISED), [("log(x)", full)], 10)
     assert verdict.diagnosis is not None
     assert verdict.diagnosis.key == "disk_full"
-    assert "room" in verdict.diagnosis.text
+    assert "space" in verdict.diagnosis.text
 
 
 def test_nothing_is_left(run: Run) -> None:

@@ -43,7 +43,7 @@ _OF_THIS_MACHINE = (
     errno.EIO,
     errno.EROFS,
 )
-"""Numbers of errors that are this machine's fault and not the archive's, such as a full disk."""
+"""Error numbers (errno) of faults of this machine, such as a full disk, for which the archive is not to blame."""
 
 
 class BadArtefacts(ValueError):

@@ -245,7 +245,7 @@ def toolchain() -> tuple[str, ...]:
 
 
 def _underlay() -> str:
-    """Return path, size and time of a file of the ROS that a build finds first; empty if there is none."""
+    """Return path, size and time of a file in the first ROS installation that a build finds; empty if there is none."""
     for prefix in filter(None, (*os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep), sys.prefix)):
         generators = str(Path(prefix, "share", "rosidl_default_generators", "package.xml"))
         if mark := state(generators):

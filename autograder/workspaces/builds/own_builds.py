@@ -86,7 +86,7 @@ def _ask(socket: str, found: Build, chosen: Iterable[Package], install: Path) ->
 
     Args:
         socket: The path of the grader's socket.
-        found: The workspace, after :func:`autograder.workspaces.builds.colcon.look`.
+        found: The workspace, as :func:`autograder.workspaces.builds.colcon.look` returns it.
         chosen: The packages.
         install: The folder to create for the build. It must not exist yet.
 

@@ -37,7 +37,7 @@ LOOK_EVERY = 0.5
 
 
 class BoxedJobs:
-    """Implements :class:`autograder.workspaces.running.jobs.Jobs`.
+    """Runs jobs in boxes; implements :class:`autograder.workspaces.running.jobs.Jobs`.
 
     Args:
         supervisors: The socket address of the fork server that starts the boxes' supervisors.
@@ -157,7 +157,7 @@ class BoxedJobs:
 
 
 class BoxedProgram:
-    """Implements :class:`autograder.workspaces.running.jobs.Program`."""
+    """A program in a box; implements :class:`autograder.workspaces.running.jobs.Program`."""
 
     def __init__(self, running: Running | WarmCommand) -> None:
         self._running = running

@@ -130,7 +130,7 @@ class Program(Protocol):
 def output_lines(
     program: Program, wanted: Callable[[], bool] = lambda: True, within: float = 0.1
 ) -> Iterator[str]:
-    """Yield the lines of a program's output until it ends or they are no longer needed. Long lines are cut.
+    """Yield the lines of a program's output until the output ends or is no longer needed. Long lines are cut.
 
     Args:
         program: The program.

@@ -27,7 +27,7 @@ OWN_BUILD_SECONDS = 300.0
 
 
 class PlainJobs:
-    """Implements :class:`autograder.workspaces.running.jobs.Jobs`.
+    """Runs jobs as this user's processes; implements :class:`autograder.workspaces.running.jobs.Jobs`.
 
     Args:
         environment: The environment of the jobs.
@@ -72,7 +72,7 @@ class PlainJobs:
 
 
 class PlainProgram(OwnSession):
-    """Implements :class:`autograder.workspaces.running.jobs.Program`, with separate home and temporary folders."""
+    """A program with its own home and temporary folders (:class:`autograder.workspaces.running.jobs.Program`)."""
 
     def __init__(
         self, command: Sequence[str], environment: Mapping[str, str], cwd: Path, holds: Sequence[int] = ()
