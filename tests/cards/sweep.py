@@ -21,7 +21,7 @@ _MEETS = re2.compile(r"^(?:Subscribes|Publishes) ")
 _SINGULAR = re2.compile(r"\b1 (?:\w+ )?(?:messages|calls|goals|times|numbers|runs)\b")
 _RAISED = re2.compile(r"\b([A-Z]\w*(?:Error|Exception)): ")
 _QUOTED = re2.compile(r"“([^”]*)”")
-_POINTS_AT = re2.compile(r"\b[Tt]hat line\b|line that is yours")
+_POINTS_AT = re2.compile(r"\b[Tt]hat line\b|line that is in your code")
 
 
 def objection(verdict: Verdict) -> str:

@@ -80,7 +80,7 @@ def test_of_two_tracebacks_that_two_threads_print_at_once_the_place_is_told_and_
     other = ["Traceback (most recent call last):", '  File "race.py", line 114, in work']
     advice = next(filter(None, (m.recognise(_shown(["    spin()", *other])) for m in OTHER_CRASHES)))
     assert advice.text.endswith(
-        "another of its threads ended it before it had said which (line 114, in work)"
+        "its traceback is incomplete, because another thread ended the program (line 114, in work)"
     )
 
 

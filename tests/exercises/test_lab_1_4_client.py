@@ -55,10 +55,10 @@ def returned(name: str, value: str, *events: Event) -> Part:
     ("value", "rejected", "words"),
     [
         (str(NUMBERS), "[]", ""),
-        (f"'{NUMBERS}'", "[]", "and not the sequence of its goal's result as a list"),
+        (f"'{NUMBERS}'", "[]", "but should return the sequence of its goal's result as a list"),
         ("3", "[]", "returns 3"),
-        (str(NUMBERS), "None", "returns None, and not an empty list, when its goal is rejected"),
-        (str(NUMBERS), "[0]", "returns [0], and not an empty list"),
+        (str(NUMBERS), "None", "returns None, but should return an empty list if its goal is rejected"),
+        (str(NUMBERS), "[0]", "returns [0], but should return an empty list"),
     ],
 )
 def test_a_function_that_returns_another_value_is_told_which(value: str, rejected: str, words: str) -> None:

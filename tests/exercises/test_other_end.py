@@ -39,7 +39,7 @@ def test_a_type_that_is_returned_in_place_of_the_response_is_named() -> None:
     parts = [Part(part.name, part.inputs, [raised]) for part in stored.parts]
     told, _ = trial.diagnose(exercises.get("lab_1_3.server"), Evidence(parts, stored))
     assert told.key == "callback_returned_none"
-    assert "a type without parentheses" in told.text
+    assert "the type without parentheses" in told.text
 
 
 def test_a_string_with_braces_left_in_it_lacks_its_f() -> None:

@@ -97,5 +97,5 @@ def test_of_a_built_program_nothing_is_said_of_the_last_lines_of_its_file() -> N
             None, (m.recognise(Evidence([Part("it", {}, [built, exited])], stored)) for m in NOTHING_THERE)
         )
     )
-    assert "its main() makes none" in advice.text
+    assert "its main() makes no node" in advice.text
     assert "__name__" not in advice.next_step

@@ -21,11 +21,15 @@ def seen(services: dict[str, str]) -> Evidence:
     ("services", "key", "word"),
     [
         (COUNT | RESET, "", ""),
-        (COUNT | {"/rest": "std_srvs/srv/Empty"}, "service_name", "/rest; the service is called /reset."),
+        (
+            COUNT | {"/rest": "std_srvs/srv/Empty"},
+            "service_name",
+            "/rest, but the task asks for the service /reset.",
+        ),
         (
             COUNT | {"/reset": "std_srvs/srv/Trigger"},
             "message_type",
-            "On /reset your node uses std_srvs/srv/Trigger",
+            "On /reset your node uses the type std_srvs/srv/Trigger",
         ),
         (RESET, "not_written", "serves /count"),
         (COUNT, "not_written", "serves /reset"),

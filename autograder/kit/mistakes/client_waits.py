@@ -1,6 +1,6 @@
-"""A client's wait for its server: the runs with and without a server, what the client says, and its mistakes.
+"""Decides how well a client waits for its server, and recognizes mistakes in that wait.
 
-The clients of services and of actions differ only in words: see :class:`Wait`.
+Clients of services and clients of actions differ only in some words, which :class:`Wait` contains.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Wait:
-    """The wait of one kind of client.
+    """The criterion and the mistakes of a client that waits for its server.
 
     Attributes:
         noun: The word for the server, as in ``wait_for_service``: ``"service"`` or ``"server"``.
         role: The role of the client's endpoint: ``"client"`` or ``"action_client"``.
         asks: The kind of event that is recorded when the client asks its server: ``"request"`` or ``"goal"``.
         absent: The name of the run without a server.
-        served: The names of the runs with a server. In the first of them the server comes late.
+        served: The names of the runs with a server. In the first of these runs the server comes late.
     """
 
     noun: str
@@ -40,14 +40,14 @@ class Wait:
         return [evidence.part(name) for name in self.served]
 
     def asked(self, part: Part) -> bool:
-        """Return True if the client asked its server for something in a run."""
+        """Return True if the client sent a request or a goal in a run."""
         return part.first(self.asks) is not None
 
     def had_server(self, evidence: Evidence) -> list[Part]:
-        """Return the runs in which the client had its server, so a report in them that a server is missing is wrong.
+        """Return the runs in which a report that the server is missing is wrong, because the client had its server.
 
-        In the first run the server comes late, so a client may report it missing there. That run is therefore left
-        out, unless the client never sends a request in it.
+        In the first run the server comes late, so the client may report a missing server there. That run is therefore
+        left out. It is included only if the client sent no request in it and looked for no other server.
         """
         late, *others = self.runs(evidence)
         found = [part for part in others if self.asked(part)]
@@ -57,7 +57,7 @@ class Wait:
         return [*found, late] if without else found
 
     def _looks_elsewhere(self, evidence: Evidence) -> bool:
-        """Return True if the client was seen to look for a server other than the one that the exercise asks for.
+        """Return True if the client looked for a server with another name or type than the exercise asks for.
 
         A wrong name always counts. A wrong type counts only if the client kept waiting in the run without a server.
         """
@@ -67,21 +67,23 @@ class Wait:
         return any(other != name or (waits_on and its_type != kind) for other, its_type in looked_for)
 
     def fault(self, evidence: Evidence) -> str:
-        """Return the fault in how the client gives up without a server, in words; empty if there is none."""
+        """Return in words what is wrong in the run without a server; empty if the client gives up as it should."""
         return giving_up.objection(evidence.part(self.absent), self.had_server(evidence), self.role)
 
     def gives_up(self, evidence: Evidence, wrong: str = "") -> Finding:
-        """Decide whether the client does one of two right things if there is no server.
+        """Decide whether the client handles a missing server well, in one of two ways.
 
-        It may report the missing server and end by itself, or keep waiting and say repeatedly that it waits.
+        Either the client reports that the server is missing and ends by itself, or it keeps waiting and repeatedly
+        reports that it waits.
 
         Args:
             evidence: All runs of the client.
-            wrong: Another fault that was seen in the run without a server, in words.
+            wrong: A fault in the run without a server that the caller has found, in words; empty if the caller has
+                found none.
         """
         waits_on = giving_up.goes_on_waiting(evidence.part(self.absent))
         wrong = wrong or self.fault(evidence)
-        seen = wrong or ("says again and again that it waits" if waits_on else "it did")
+        seen = wrong or ("reports repeatedly that it waits" if waits_on else "it did")
         return Finding(not wrong, f"says {NOT_AVAILABLE} and ends by itself", seen)
 
     # --- mistakes ------------------------------------------------------------------------------------------------
@@ -91,45 +93,49 @@ class Wait:
         return f"`if not your_{self.role}.wait_for_{self.noun}(timeout_sec=5.0):`"
 
     def for_nobody(self) -> Mistake:
-        """Return the mistake of a client that, without a server, waits in silence forever."""
+        """Return the mistake "waits forever": there is no server, and the client waits in silence."""
         return mistake(
             "waits_forever",
             lambda evidence: self.fault(evidence).startswith("still waiting"),
-            f"When there is no {self.noun}, your client is still waiting after {GIVE_UP_LIMIT:g} s.",
-            f"Give the wait a limit of a few seconds: write {self._with_a_limit}, and below it report that the "
-            f"{self.noun} is not available, and stop. A loop needs a count.",
+            f"If there is no {self.noun}, your client is still waiting after {GIVE_UP_LIMIT:g} s.",
+            f"Wait for a few seconds at most: write {self._with_a_limit}. Inside this `if`, report that the "
+            f"{self.noun} is not available, and end. If you wait in a loop, count the turns and leave the loop after "
+            "a few.",
             certain=True,
         )
 
     def for_ever(self) -> Mistake:
-        """Return the mistake of a client that, although there is a server, waits forever and asks for nothing."""
+        """Return the mistake "waits forever": there is a server, but the client waits and sends nothing to it."""
         return mistake(
             "waits_forever",
             lambda evidence: any(
                 part.endpoints(self.role) and part.ending is None and not self.asked(part)
                 for part in self.runs(evidence)
             ),
-            f"The {self.noun} was there, but no {self.asks} of your client reached it, and your client waits on. A "
-            f"{self.asks} that is sent before the {self.noun} is there is lost.",
-            f"Wait with a limit: write {self._with_a_limit}, and below it report that the {self.noun} is not "
-            f"available, and stop. wait_for_{self.noun} returns True as soon as the {self.noun} is there, so a loop "
+            f"The {self.noun} was available, but it received no {self.asks} from your client, and your client is "
+            f"still waiting. A {self.asks} that your client sends before the {self.noun} is available is lost.",
+            f"Wait with a time limit: write {self._with_a_limit}. Inside this `if`, report that the {self.noun} is "
+            f"not available, and end. wait_for_{self.noun} returns True once the {self.noun} is available, so a loop "
             "that waits begins with `while not`.",
         )
 
     def the_wrong_way_round(self) -> Mistake:
-        """Return the mistake of a client whose condition lacks a ``not``: it gives up only if its server exists."""
+        """Return the mistake of a missing ``not`` in the client's condition: it gives up only if its server exists."""
         return mistake(
             "not_forgotten",
             self._gives_up_where_served,
-            f"Your client says “{{}}” if the {self.noun} is there, and does not say it if there is none: the condition "
-            "is the wrong way round.",
-            f"wait_for_{self.noun} returns True when the {self.noun} is there. Write {self._with_a_limit} above the "
-            f"lines that your client has to run if there is no {self.noun}.",
+            f"Your client says “{{}}” if the {self.noun} is available, and does not say it if the {self.noun} is "
+            "missing: the condition of your `if` lacks a `not`, or has one too many.",
+            f"wait_for_{self.noun} returns True if the {self.noun} is available. So put {self._with_a_limit} above "
+            f"the lines that report a missing {self.noun}.",
             certain=True,
         )
 
     def _gives_up_where_served(self, evidence: Evidence) -> str:
-        """Return the line that reports an existing server as missing; empty if a missing one is reported, too."""
+        """Return the line that wrongly reports a missing server; empty if the client is not the wrong way round.
+
+        Such a client reports a missing server in each run with a server, but not in the run without one.
+        """
         absent, served = evidence.part(self.absent), self.runs(evidence)
         if not absent.events or NOT_AVAILABLE.lines(absent):
             return ""
@@ -139,19 +145,19 @@ class Wait:
         return told[0][-1] if all(told) else ""
 
     def too_short(self) -> Mistake:
-        """Return the mistake of a client that gives up before its server exists."""
+        """Return the mistake "gave up too early": the client gives up before its server exists."""
         return mistake(
             "gave_up_too_early",
             lambda evidence: giving_up.gave_up(self.runs(evidence), evidence.part(self.absent), self.asked),
-            f"The {self.noun} was there, or started a moment late, and your client had already given up, or it went on "
-            f"before it had discovered the {self.noun}.",
-            f"Wait for it, with a few seconds of patience, before the first {self.asks}: "
-            f"wait_for_{self.noun}(timeout_sec=5.0). Without the parentheses the method is not called, and "
-            "nothing waits.",
+            f"Your client gave up, or went on, before it had discovered the {self.noun}, which was available or "
+            "started a moment late.",
+            f"Wait a few seconds for the {self.noun} before you send the first {self.asks}: "
+            f"wait_for_{self.noun}(timeout_sec=5.0). Do not forget the parentheses: without them the method is not "
+            "called, and nothing waits.",
         )
 
     def patience_not_kept(self) -> Mistake:
-        """Return the mistake of a function that, without a server, does not wait as long as it was told to."""
+        """Return the mistake of a function that, without a server, waits shorter or longer than it was told."""
         return mistake(
             "patience_not_kept",
             lambda evidence: (
@@ -159,14 +165,19 @@ class Wait:
                 if giving_up.looked_for_nobody(evidence)
                 else giving_up.broken_patience(evidence.part(self.absent))
             ),
-            "When there is no server, your function {}.",
-            f"Use {PATIENCE} as the limit, once: `if not your_client.wait_for_{self.noun}(timeout_sec={PATIENCE}):`, "
-            "and below it say so and end: `raise TimeoutError(...)`. Without `raise` or `return` it goes on to its "
-            f"next wait. A loop has to end {PATIENCE} seconds after it began.",
+            "If there is no server, your function {}.",
+            f"Use {PATIENCE} once, as the time limit: `if "
+            f"not your_client.wait_for_{self.noun}(timeout_sec={PATIENCE}):`. Inside this `if`, report that the "
+            f"{self.noun} is not available, and end the function with `raise TimeoutError(...)`. Without `raise` or "
+            f"`return` the function goes on and waits again. If you wait in a loop, leave the loop {PATIENCE} "
+            "seconds after it began.",
         )
 
     def silent_end(self, *, certain: bool = False) -> Mistake:
-        """Return the mistake of a client that asks its server for something, but does not report a missing server."""
+        """Return the mistake of a client that ends without a report if its server is missing.
+
+        The client is known to send requests or goals, because it did so in the first run with a server.
+        """
 
         def recognise(evidence: Evidence) -> Advice | None:
             if not self.asked(evidence.part(self.served[0])):

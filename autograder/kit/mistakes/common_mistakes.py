@@ -1,4 +1,4 @@
-"""Mistakes that several exercises share, recognized from the graph."""
+"""Mistakes that can occur in several exercises, recognized from what the judge saw on the ROS graph."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ _KEY = {"topic": "topic_name", "service": "service_name", "action": "action_name
 
 
 def _wanted(evidence: Evidence, role: str) -> Mapping[str, str]:
-    """Return the names and types of the reference's endpoints of a role, of which there is at least one."""
+    """Return the types of the reference solution's endpoints of a role, by name. At least one must exist."""
     evidence.reference.only(role)
     return evidence.reference.interface[role]
 
 
 def endpoint_name(role: str) -> Mistake:
-    """An expected name is not on the graph, but another one of the same role is."""
+    """Return the mistake of an endpoint with a wrong name: the expected name is missing, and another one exists."""
     verb, noun = WORDS[role]
 
     def strange_and_missing(evidence: Evidence) -> tuple[str, str] | None:
@@ -53,15 +53,16 @@ def endpoint_name(role: str) -> Mistake:
     return mistake(
         _KEY[noun],
         strange_and_missing,
-        f"Your node {verb} {{0[0]}}; the {noun} is called {{0[1]}}.",
-        f"Compare the names in `ros2 {noun} list` letter by letter: two nodes are connected only if their names are "
-        "equal. A ~/ or a namespace before the name comes from your code or your launch file: remove it there.",
+        f"Your node {verb} {{0[0]}}, but the task asks for the {noun} {{0[1]}}.",
+        f"Compare the names in `ros2 {noun} list` letter by letter: two nodes are connected only if the names are "
+        "equal. If `~/` or a namespace stands before the name, your code or your launch file adds it: remove it "
+        "there.",
         certain=True,
     )
 
 
 def message_type(role: str) -> Mistake:
-    """The name is right, but the type is wrong."""
+    """Return the mistake "wrong type": an endpoint has the right name and the wrong type."""
 
     def mixed_up(evidence: Evidence) -> tuple[str, ...] | None:
         wanted, made = _wanted(evidence, role), evidence.main.endpoints(role)
@@ -71,7 +72,7 @@ def message_type(role: str) -> Mistake:
     return mistake(
         "message_type",
         mixed_up,
-        "On {0[0]} your node uses {0[1]}; the other side uses {0[2]}. With two types for one name, nothing is "
+        "On {0[0]} your node uses the type {0[1]}; the other side uses {0[2]}. Nodes whose types differ are not "
         "connected.",
         "Import and use {0[5]} from {0[3]}.{0[4]}.",
         certain=True,
@@ -79,7 +80,7 @@ def message_type(role: str) -> Mistake:
 
 
 def qos_mismatch(role: str) -> Mistake:
-    """The QoS settings of the two ends are not compatible."""
+    """Return the mistake "QoS mismatch": the QoS settings of the subject and of the judge are not compatible."""
 
     def mismatch(evidence: Evidence) -> Event | None:
         misfits = (e for name in sorted(_wanted(evidence, role)) for e in evidence.main.of("mismatch", name))
@@ -88,15 +89,16 @@ def qos_mismatch(role: str) -> Mistake:
     return mistake(
         "qos_mismatch",
         mismatch,
-        "Your node and the other side are both on {0.name}, but their {0.data[policy]} is not compatible, so no "
-        "message arrives.",
-        "Use the queue depth 10 in place of the QoS profile: that is reliable and volatile, as the other side is.",
+        "Your node and the other node both use {0.name}, but their QoS settings for {0.data[policy]} are not "
+        "compatible, so no message arrives.",
+        "Write the queue depth 10 instead of a QoS profile. The QoS is then reliable and volatile, like that of the "
+        "other node.",
         certain=True,
     )
 
 
 def servers(part: Part) -> int:
-    """Return the largest number of servers that existed at the same time."""
+    """Return the largest number of servers of the subject that existed at the same time."""
     return max((int(event.data["count"]) for event in part.of("servers")), default=0)
 
 
@@ -116,12 +118,12 @@ def misfit(evidence: Evidence, role: str) -> str:
 
 
 def two_servers(role: str, comes_of_it: str, next_step: str) -> Mistake:
-    """Two servers share the name.
+    """Return the mistake "two servers": the subject has two servers with the same name.
 
     Args:
         role: ``service`` or ``action_server``.
-        comes_of_it: The consequence for a call or a goal, as a sentence.
-        next_step: What to do.
+        comes_of_it: A sentence for the student that says what this means for a call or a goal.
+        next_step: What the student should do now.
     """
     return mistake(
         "two_servers",
@@ -133,7 +135,7 @@ def two_servers(role: str, comes_of_it: str, next_step: str) -> Mistake:
 
 
 def everything_twice(role: str) -> Mistake:
-    """Each message arrives twice, because two nodes do the same work."""
+    """Return the mistake "everything twice": two nodes or timers do the same work, so each message arrives twice."""
 
     def are_pairs(evidence: Evidence) -> bool:
         name, _ = evidence.reference.only(role)
@@ -143,8 +145,8 @@ def everything_twice(role: str) -> Mistake:
         pairs = [times[text] for text in heard[:-1]]
         if len(heard) < 4 or sum(count == 2 for count in pairs) < len(pairs) * 0.7:
             return False
-        # Each publisher numbers its own messages. If a single publisher repeats a text much later, it counts in a
-        # circle.
+        # Each publisher numbers its own messages, so equal numbers show that there are two publishers. A text that a
+        # single publisher repeats much later has another number: that publisher counts in a circle.
         numbers = [event.data.get("number") for event in messages]
         return len(set(numbers)) < len(numbers) or sum(a == b for a, b in pairwise(heard)) >= len(heard) // 3
 
@@ -152,58 +154,59 @@ def everything_twice(role: str) -> Mistake:
         "everything_twice",
         are_pairs,
         "Every message arrives twice: two of your nodes (or two timers) do the same work.",
-        "Make the node once. In a notebook, an earlier run of the cell may have left a node of its own.",
+        "Make the node only once. In a notebook, a node from an earlier run of the cell may still exist.",
         certain=True,
     )
 
 
 def never_spun(role: str) -> Mistake:
-    """The endpoint exists, but the node never did anything and does not answer."""
+    """Return the mistake "never spun": the endpoint exists, but its node never ran a callback and does not answer."""
     return mistake(
         "never_spun",
         lambda evidence: _silent_node(evidence, role) and not _was_spun(evidence.main, role),
         "The node is on the graph, but none of its callbacks is ever called: nothing spins it.",
-        "In a program, call rclpy.spin(your_node) at the end of main(). In a notebook, `with spinning(your_node):` "
-        "does it.",
+        "In a program, call rclpy.spin(your_node) at the end of main(). In a notebook, write "
+        "`with spinning(your_node):`, which spins the node.",
     )
 
 
 def went_deaf(role: str) -> Mistake:
-    """The node worked for a moment, then fell silent for good, although it still exists."""
+    """Return the mistake of a node that ran callbacks at first, then none any more, although it still exists."""
     return mistake(
         "node_taken_from_executor",
         lambda evidence: _silent_node(evidence, role) and _was_spun(evidence.main, role),
-        "Your node receives nothing any more: something took it away from its executor, it was never added to one, or "
-        "a callback that is an `async def` awaits what never comes.",
-        "Spin a node in one place only. rclpy.spin_once or spin_until_future_complete, called in a callback or beside "
-        "another executor, takes the node away from that one for good. In a callback, await nothing that needs another "
-        "callback of the same group.",
+        "Your node receives nothing any more. There are three possible causes: another spin took the node from its "
+        "executor, the node was never added to an executor, or a callback that is an `async def` awaits something "
+        "that never comes.",
+        "Spin a node in one place only. If you call rclpy.spin_once or spin_until_future_complete in a callback, or "
+        "while another executor spins the node, that executor loses the node for good. In a callback, do not await "
+        "anything that needs another callback of the same group.",
     )
 
 
 def connecting(role: str) -> tuple[Mistake, ...]:
-    """Return the mistakes that keep an endpoint of this role from meeting the other side, most specific first."""
+    """Return the mistakes because of which an endpoint of a role is not connected, most specific first."""
     qos = [qos_mismatch(role)] if role in ("publisher", "subscription") else []
     return *CRASHES, endpoint_name(role), message_type(role), *qos, *OTHER_CRASHES
 
 
 def spinning(role: str) -> tuple[Mistake, ...]:
-    """Return the mistakes of a node with such an endpoint that hangs, or is not spun, most specific first."""
+    """Return the mistakes of a node that has an endpoint of this role and hangs or is not spun, most specific first."""
     return *HANGS, never_spun(role), went_deaf(role)
 
 
 def _was_spun(part: Part, role: str) -> bool:
-    # The subject's first actions may come before the judge can see them, but a spinning node is always on the graph.
+    # The judge may have missed what the node did first. Therefore a stack in which a thread spins counts, too.
     return worked(part, role) or something_spins(part)
 
 
 def _awaits_in_vain(evidence: Evidence) -> bool:
-    """True if the subject spins but never used the last answer, in a run that did not end."""
+    """Return True if, in a run that did not end, the subject spins but never used the last answer that it got."""
     return any(part.ending is None and something_spins(part) and _left_an_answer(part) for part in evidence)
 
 
 def _left_an_answer(part: Part) -> bool:
-    # If a client only sends a goal, it is right to keep spinning after the answer, as long as its node responds.
+    # A client that only sends a goal may keep spinning after the goal was answered, as long as its node responds.
     answers = part.of("response") + (part.of("goal_answered") if part.of("unanswered") else [])
     if not answers:
         return False
@@ -216,15 +219,17 @@ def _left_an_answer(part: Part) -> bool:
 AWAITS_IN_VAIN = mistake(
     "await_in_same_group",
     _awaits_in_vain,
-    "An answer came, and your node spins, but the code that waits for the answer never goes on: it waits for "
-    "rclpy.spin(...), which does not come back, or it awaits inside a callback of the same callback group that the "
-    "answer needs.",
-    "Outside of callbacks, write rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0) in place of "
-    "rclpy.spin(your_node): it comes back with the answer. In a callback, give the client a callback group of its own "
-    "(ReentrantCallbackGroup or another MutuallyExclusive one), or go on in a function that you give to the "
-    "add_done_callback(...) of the future.",
+    "An answer came, and your node spins, but the code that waits for the answer never goes on. Either that code "
+    "waits for rclpy.spin(...), which does not return, or it awaits the answer inside a callback of the same "
+    "callback group that the answer needs.",
+    "Outside of callbacks, write rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0) instead "
+    "of rclpy.spin(your_node): it returns when the answer is there. In a callback, either give the client its own "
+    "callback group (a ReentrantCallbackGroup or a new MutuallyExclusiveCallbackGroup), or move the code that needs "
+    "the answer into a function and pass that function to the add_done_callback(...) of the future.",
 )
-"""This mistake is checked after the hangs, and before the mistakes of a node that is not spun."""
+"""The mistake of code that waits for an answer in a place where it can never go on. It is checked after the hangs, and
+before the mistakes of a node that is not spun.
+"""
 
 
 def _silent_node(evidence: Evidence, role: str) -> bool:
@@ -234,7 +239,7 @@ def _silent_node(evidence: Evidence, role: str) -> bool:
 
 
 def worked(part: Part, role: str) -> bool:
-    """Return True if the subject did something that only a spun node does."""
+    """Return True if the subject did something that a node can do only if it is spun."""
     if part.of("message") or part.of("answered") or part.of("goal_answer"):
         return True
     sent = part.first("sent")
@@ -247,7 +252,7 @@ _TWIN = re2.compile(
 
 
 def twin(part: Part) -> str:
-    """Return the name that two nodes of the subject share, as rcl or the notebook reports it; empty without one."""
+    """Return the name that two of the subject's nodes share, as rcl or the notebook reports it; empty if none."""
     made = part.first("subject", "constructed")
     found = (_TWIN.search(str(event.data["text"])) for event in part.of("output"))
     told = next((str(match[1]) for match in found if match), "")
@@ -255,7 +260,10 @@ def twin(part: Part) -> str:
 
 
 def only_if_ended(mistake: Mistake) -> Mistake:
-    """Return the same mistake, certain if each run of the subject ended by itself: then timing had no influence."""
+    """Return a mistake that is recognized only if the subject ended by itself in each run.
+
+    It counts as certain, because the judge stopped no run, so timing had no influence.
+    """
 
     def recognise(evidence: Evidence) -> Advice | None:
         return mistake.recognise(evidence) if all(part.ending for part in evidence) else None

@@ -1,4 +1,4 @@
-"""Mistakes recognized from a traceback: decides which traceback counts, which mistake it shows, and what to advise."""
+"""Mistakes recognized from a traceback: which traceback counts, which mistake it shows, and the advice."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ _NO_CRASH = re2.compile(
 
 
 def traceback_of(evidence: Evidence) -> str:
-    """Return the last traceback that shows a crash, of any part.
+    """Return the traceback of the subject's last crash in any part; empty if there is none.
 
-    Some tracebacks do not count: a TimeoutError, because a client is asked to raise it if there is no server; and an
-    error in a thread when the main program shuts ROS down while the thread still uses it. An exception raised on
-    purpose in one part, such as for a refused goal, does not hide an accidental error in another part. A traceback
-    that was cut off, because two threads printed at the same time, counts only if no complete one exists.
+    Two kinds of traceback are not crashes: a TimeoutError, because a client is asked to raise it if there is no server;
+    and an error in a thread that still uses ROS when the main program shuts ROS down. An accidental error comes before
+    an exception that was raised on purpose, such as for a refused goal. A traceback that was cut off, because two
+    threads printed at the same time, counts only if no complete one exists.
     """
     last_first = [part.traceback for part in reversed(list(evidence)) if part.traceback]
     shown = sorted(last_first, key=lambda text: is_cut_off(text.split("\n")))
@@ -58,20 +58,20 @@ def _recogniser(crash: Crash | Elsewhere) -> Mistake:
 
 
 def what_and_where(traceback: str) -> str:
-    """Return a text with the exception that was raised and the student's line that led to it."""
+    """Return a text for a card: the exception that was raised, and the student's line that led to it."""
     line = raised_line(traceback)
     frames = [found for found in _FRAME.finditer(traceback) if not is_a_library(found["file"])]
     where = f" (line {frames[-1]['line']}, in {frames[-1]['function']})" if frames else ""
     if not line or line.startswith("Traceback"):
-        return f"another of its threads ended it before it had said which{where}"
+        return f"its traceback is incomplete, because another thread ended the program{where}"
     return f"{line.strip()}{where}"
 
 
 def raised(how: str, traceback: str, next_step: str = "") -> Advice:
-    """Return the advice for an exception that is not a known mistake.
+    """Return the advice on an exception that is not a known mistake.
 
     Args:
-        how: The consequence of the exception; the sentence begins with it.
+        how: The beginning of the sentence for the student: what the exception ended or prevented.
         traceback: The traceback of the exception.
         next_step: What to do now; by default the advice that fits such an exception.
     """
@@ -80,9 +80,11 @@ def raised(how: str, traceback: str, next_step: str = "") -> Advice:
 
 
 _EXECUTOR = "rclpy/executors.py"
-"""The file of rclpy that calls callbacks. Student's code that a traceback shows below this file ran in a callback."""
+"""The file of rclpy that calls callbacks. In a traceback, the code below a line of this file ran in a callback."""
 _LOGGING = "/logging/__init__.py"
-"""The file of Python's ``logging``. A traceback that begins in it replaces a log line and ends nothing."""
+"""The file of Python's ``logging``. A traceback that begins in this file means that one log line could not be written;
+the program goes on.
+"""
 _FRAME = re2.compile(r'(?m)^ +File "(?P<file>[^"\n]*)", line (?P<line>\d+), in (?P<function>[^\n]*)$')
 
 
@@ -95,8 +97,8 @@ def _crashed(evidence: Evidence) -> Advice | None:
         return raised(
             "A line could not be logged",
             traceback,
-            "Python names the line of your code below the words `Call stack`. Give logging one argument for each "
-            "placeholder of its text, such as %s, or write an f-string.",
+            "Find the line of your code below the words `Call stack`. Give logging one argument for each placeholder "
+            "in its text, such as %s, or write an f-string.",
         )
     spun = _was_spun(evidence) or _EXECUTOR in traceback
     return raised(
@@ -111,13 +113,13 @@ def _exception_in_callback(evidence: Evidence) -> Advice | None:
     spins = next((place for place, file in enumerate(files) if file.endswith(_EXECUTOR)), len(files))
     called = files if _was_spun(evidence) else files[spins:]
     if all(map(is_a_library, called)) and ", in await_or_execute\n" not in traceback:
-        # ROS itself raised it, not a callback: for example, an object that is not a node was spun.
+        # ROS itself raised the exception, not a callback: for example, an object that is not a node was spun.
         return None
     return raised("A callback raised an exception, and that ended the spinning of the node", traceback)
 
 
 def _was_spun(evidence: Evidence) -> bool:
-    """Return True if a notebook's node was made before it raised its exception; no traceback shows this."""
+    """Return True if a notebook's node existed when the exception was raised; no traceback shows this."""
     return any(p.first("subject", "constructed") for p in evidence if p.ending and p.ending.name == "raised")
 
 
@@ -126,9 +128,9 @@ def _cut_off(evidence: Evidence) -> Advice | None:
     if gone is None:
         return None
     return Advice(
-        "The check was cut off: your notebook's kernel ended, or said what the judge cannot take "
-        f"({gone.data.get('why') or 'nothing more came'}).",
-        "Leave out what ends the kernel, such as os._exit or exit(), and what prints without an end.",
+        "The check was cut off, because your notebook's kernel ended or sent data that the judge cannot accept ( "
+        f"{gone.data.get('why') or 'nothing more came'}).",
+        "Remove code that ends the kernel, such as os._exit or exit(), and code that prints without end.",
     )
 
 
@@ -136,21 +138,21 @@ _NONE_FOR_AN_ANSWER = re2.compile(
     rf"\.sum\b.*{MARKS}AttributeError: 'NoneType' object has no attribute 'sum'"
 )
 LEFT_LYING = 0.3
-"""Seconds for which an answer must have been available before the advice says that the client did not take it."""
+"""The seconds for which an answer must have been available before the advice says that the client did not read it."""
 
 
 def _answer_not_taken(evidence: Evidence) -> Advice | None:
-    """Return advice if the client, in each run, goes on without an available answer, as after a call that timed out.
+    """Return advice if the client goes on in each run without an answer that was available.
 
-    If this happens in only one run, a busy machine may have delayed the answer. A client that reads a value from a
-    future may never have waited for it.
+    An example is a call that has timed out. If this happens in only one run, a busy machine may have delayed the
+    answer. A client whose code contains ``result()`` does not count, because it may never have waited for its future.
     """
     answered = [part for part in evidence if part.first("response") is not None]
     if not answered or not all(map(_went_on_without_it, answered)):
         return None
     return Advice(
-        "The service answered, and your client went on without the answer: it had None in its place. A "
-        "call(..., timeout_sec=...) gives None when its time is over and nothing has spun the node.",
+        "The service answered, but your client had None instead of the answer. A call(..., timeout_sec=...) returns "
+        "None if its time is up before a spin of the node has received the answer.",
         NOT_SPUN_WHILE_CALLING,
         answered[0].traceback,
     )
@@ -161,29 +163,29 @@ def _went_on_without_it(part: Part) -> bool:
     if given is None or found is None or "result()" in found[0] or part.ending is None:
         return False
     if "rclpy/executors.py" in part.traceback:
-        return False  # The client waited in a callback, so missing spinning was not the cause.
+        return False  # The client waited in a callback, so the node was spun.
     outputs = (e for e in part.of("output") if raised_line(part.traceback) in e.data["text"])
     return next(outputs, part.ending).t > given.t + LEFT_LYING
 
 
 _COROUTINE = re2.compile(
-    # The warning "was never awaited" is not matched for methods. A method may be a callback, and a program may end
-    # before rclpy has run that callback.
+    # Warnings about methods are not matched. A method may be a callback, and rclpy warns that it was never awaited if
+    # the program ends before rclpy has run it.
     r"^<coroutine object (?P<returned>\S+) at |RuntimeWarning: coroutine '(?P<warned>[a-z]\w*)' was never awaited"
 )
 
 
 def _never_awaited(evidence: Evidence) -> Advice | None:
-    """Return advice if a coroutine was never awaited; the returned value or Python's warning shows this."""
+    """Return advice if a coroutine was never awaited: it was printed or returned, or Python warned about it."""
     said = [line for part in evidence for line in part.said()]
     found = next(filter(None, map(_COROUTINE.search, said)), None)
     name = (found["returned"] or found["warned"]).rpartition(".")[2] if found else ""
     if name in ("", "await_or_execute"):
         return None
     return Advice(
-        f"{name} is an `async def`: calling it only makes a coroutine, and nothing inside it runs before something "
-        "awaits that.",
-        "Write def in place of async def. In place of an await, wait for the future: "
+        f"{name} is an `async def`: calling {name}() only makes a coroutine, and the code inside does not run until "
+        "the coroutine is awaited.",
+        "Write `def` instead of `async def`. Instead of each `await`, wait for the future: "
         "rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0).",
     )
 
@@ -192,12 +194,12 @@ _NO_FILE = re2.compile(r"^\S*python[\d.]*: can't (?:open file|find '__main__' mo
 
 
 def _file_not_found(evidence: Evidence) -> Advice | None:
-    """Return advice if Python could not open the file named in the command, so that no code of the student's ran."""
+    """Return advice if Python could not open the file in the command, so that no code of the student ran."""
     found = _said_without_a_node(evidence, _NO_FILE)
     if found is None:
         return None
     return Advice(
-        f"Python does not find the program {found['file']}, so nothing of yours has run.",
+        f"Python does not find the program {found['file']}, so none of your code has run.",
         "Write the path of your program after python3. `ls` lists the files in the terminal's current folder, and "
         "`cd FOLDER` changes to another folder.",
     )
@@ -207,15 +209,15 @@ _NO_PACKAGE = re2.compile(r"^Package (?:'(?P<name>[^']*)' )?not found")
 
 
 def _package_not_found(evidence: Evidence) -> Advice | None:
-    """Return advice if `ros2` did not know the package and ended, so that none of the student's code has run."""
+    """Return advice if `ros2` did not find the package and ended, so that no code of the student ran."""
     found = _said_without_a_node(evidence, _NO_PACKAGE)
     if found is None:
         return None
     return Advice(
-        f"ROS does not know the package{' ' + found['name'] if found['name'] else ''} in this terminal, so nothing of "
-        "yours has run.",
-        "In the folder of your workspace type `colcon build`, then `source install/setup.bash`, and check again in the "
-        "same terminal. Each new terminal needs the second line again.",
+        f"ROS does not find the package{' ' + found['name'] if found['name'] else ''} in this terminal, so none of "
+        "your code has run.",
+        "In the folder of your workspace, type `colcon build`, then `source install/setup.bash`, and check again in "
+        "the same terminal. Type `source install/setup.bash` again in each new terminal.",
     )
 
 
@@ -241,22 +243,26 @@ CRASHES: tuple[Mistake, ...] = (
     Mistake("module_not_found", _file_not_found, certain=True),
     Mistake("module_not_found", _package_not_found, certain=True),
 )
-"""Known tracebacks, most specific first; then a kernel that ended, and a package that ROS does not find."""
+"""The mistakes with a known traceback, most specific first; then a kernel that ended, and a file or package that was
+not found.
+"""
 OTHER_CRASHES = (
     Mistake("exception_in_callback", _exception_in_callback, certain=True),
     Mistake("crashed", _crashed, certain=True),
 )
-"""Any other traceback; checked after the mistakes that the ROS graph shows."""
+"""The mistakes for any other traceback. They are checked after the mistakes that the ROS graph shows."""
 OTHER_SLIPS = tuple(map(_only_slips, OTHER_CRASHES))
-"""Tracebacks of accidental errors. Exceptions raised on purpose are checked later, after all other mistakes."""
+"""Like :data:`OTHER_CRASHES`, but only for accidental errors. Exceptions raised on purpose are checked after all other
+mistakes.
+"""
 
 
 SLIPS = ("AttributeError", "TypeError", "NameError", "UnboundLocalError", "KeyError", "IndexError")
-"""The exceptions that count as accidental: programs do not raise them on purpose."""
+"""The types of exceptions that programs do not raise on purpose, so they count as accidental errors."""
 
 
 def raised_lines(traceback: str) -> list[str]:
-    """Return the last exception of a traceback as lines: its type, its message (one line or more) and its notes."""
+    """Return the lines of a traceback's last exception: its type, its message (one or more lines) and its notes."""
     lines = traceback.rstrip().splitlines()
     frames = [place for place, line in enumerate(lines) if _FRAME.match(line)]
     behind = lines[frames[-1] + 1 :] if frames else lines[-1:]
@@ -264,16 +270,16 @@ def raised_lines(traceback: str) -> list[str]:
 
 
 def raised_line(traceback: str) -> str:
-    """Return the line of a traceback with the exception's type and the first line of its message; empty if none."""
+    """Return the last exception's type and the first line of its message, as one line; empty if there is none."""
     return next(iter(raised_lines(traceback)), "")
 
 
 def on_purpose(traceback: str) -> bool:
-    """Return True if the program's own code raised the exception, or if its type is not in :data:`SLIPS`."""
+    """Return True if the student's code raised the exception itself, or if its type is not in :data:`SLIPS`."""
     line = raised_line(traceback)
     return bool(line) and (meant(traceback) or not line.startswith(SLIPS))
 
 
 def meant(traceback: str) -> bool:
-    """True if the innermost line of a traceback is the program's own ``raise`` or ``assert``."""
+    """Return True if the innermost line of a traceback is a ``raise`` or ``assert`` of the student."""
     return re2.search(r"(?:^|[:;] *)(?:raise|assert)\b", own_line(traceback)) is not None

@@ -44,8 +44,9 @@ def _order_never_filled(evidence: Evidence) -> bool:
 ORDER_NEVER_FILLED = mistake(
     "field_typo",
     _order_never_filled,
-    "The goal asks for order 0: its field was never filled.",
-    "Set the field order of your goal, as in Fibonacci.Goal(order=...). A misspelt keyword is ignored silently.",
+    "The goal asks for order 0: your code did not set the goal's field `order`.",
+    "Set the field `order` of your goal, as in Fibonacci.Goal(order=...). Check the spelling: a misspelled "
+    "keyword is ignored silently.",
     certain=True,
 )
 
@@ -58,16 +59,16 @@ def _wrong_order(evidence: Evidence) -> str:
 WRONG_ORDER = mistake(
     "wrong_order",
     _wrong_order,
-    "The judge got {}; the task asks for one goal of the given order.",
-    "Send one goal, once, with the order that your function or program was given (sys.argv[1] on a command line; 0 "
-    "is an order like any other). "
-    "If a timer sends the goal, switch the timer off after that, with its cancel(). Do not cancel the goal.",
+    "The judge received {}, but the task asks for one goal with the given order.",
+    "Send exactly one goal, with the order that your function or program was given. In a program, this is "
+    "sys.argv[1]. An order of 0 is valid, too. If a timer sends the goal, call cancel() on the timer after that. Do "
+    "not cancel the goal.",
     certain=True,
 )
 
 
 def _ended_before(evidence: Evidence) -> str:
-    """Return in words which answer the client did not wait for before it ended; empty if it waited for all answers."""
+    """Return in words which answer the client did not wait for; empty if it waited for all answers."""
     part = evidence.part(LATE)
     ending, answered, result = part.ending, part.first("goal_answered"), part.first("result")
     if not asked_for(part) or ending is None or (part.traceback and not meant(part.traceback)):
@@ -75,18 +76,19 @@ def _ended_before(evidence: Evidence) -> str:
     events = list(part.events)
     took = part.first("feedback") is not None and len(unshown_feedback(part)) < len(part.of("feedback"))
     if answered is None or (not took and left_at_once(part)):
-        return "it could make anything of the answer"
+        return "it could process the answer"
     if part.first("result_request") and (result is None or events.index(ending) < events.index(result)):
-        return "the result that it had asked for was there"
+        return "the result that it had requested arrived"
     return ""
 
 
 ENDED_TOO_EARLY = mistake(
     "ended_too_early",
     _ended_before,
-    "Your client sent its goal, and ended before {}. An answer may take half a second and more.",
-    "Spin until the answer is there: rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0), or "
-    "rclpy.spin(your_node) where callbacks take the answers. A single spin_once takes in one thing only.",
+    "Your client sent its goal and ended before {}. An answer may take half a second or more.",
+    "Spin until the answer has arrived: rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0), "
+    "or rclpy.spin(your_node) if callbacks process the answers. A single spin_once is not enough, because it handles "
+    "only one event.",
 )
 
 # --- a goal that is refused ---------------------------------------------------------------------------------------
@@ -94,25 +96,25 @@ ENDED_TOO_EARLY = mistake(
 RESULT_OF_REJECTED_GOAL = mistake(
     "result_of_rejected_goal",
     lambda evidence: evidence.part(REFUSED).first("result_request"),
-    "The goal was rejected, and your client asked for its result all the same: there is none, and the status that "
-    "comes back is 0, UNKNOWN.",
-    "Look at `accepted` of the goal handle first. If it is False, say so and stop.",
+    "The goal was rejected, but your client still requested its result. A rejected goal has no result, so the status "
+    "that comes back is 0, UNKNOWN.",
+    "First check `accepted` of the goal handle. If it is False, report that the goal was rejected, and end.",
 )
 
 
 def crashed_by_refusal(evidence: Evidence) -> Advice | None:
-    """Return advice if the client goes on with a refused goal until an exception stops it.
+    """Return advice if the client goes on after its goal was rejected, until an exception stops it.
 
-    All other parts must have ended without an exception.
+    In all other parts, the client must have had no such exception.
     """
     crashed = [part for part in evidence if part.traceback and not on_purpose(part.traceback)]
     if [part.name for part in crashed] != [REFUSED]:
         return None
     return Advice(
-        "The goal was rejected, and your client went on as if it had been accepted, until an exception stopped it: "
+        "The goal was rejected, but your client went on as if it had been accepted, until an exception stopped it: "
         f"{what_and_where(crashed[0].traceback)}",
-        "Look at `accepted` of the goal handle as soon as the answer to the goal is there. If it is False, say so, "
-        "as the task asks, and stop: there is no result to wait for.",
+        "Check `accepted` of the goal handle as soon as the answer to the goal has arrived. If it is False, report "
+        "what the task asks for, and end: there is no result to wait for.",
         crashed[0].traceback,
     )
 
@@ -121,9 +123,9 @@ CRASHED_BY_REFUSAL = Mistake("refused_goal_used", crashed_by_refusal)
 STAYS_AFTER_REFUSAL = mistake(
     "never_ended",
     lambda evidence: refused_as_seen(evidence) == NOT_ENDED,
-    "Your client says that the goal was rejected, and then waits for ever for a result that will not come.",
-    "End there, too. In a notebook, raise an error or return where `accepted` of the goal handle is False. In a "
-    "program, say so there, call rclpy.shutdown() and return.",
+    "Your client says that the goal was rejected, and then waits forever for a result that will not come.",
+    "End the client when the goal is rejected. In a notebook, raise an error or return where `accepted` of the goal "
+    "handle is False. In a program, report the rejection there, call rclpy.shutdown() and return.",
 )
 
 
@@ -135,8 +137,8 @@ def _refusal_not_reported(evidence: Evidence) -> Advice | None:
         part,
         others,
         "The goal was rejected",
-        "Look at `accepted` of the goal handle when the answer to the goal is there. If it is False, log an error "
-        "with the word `rejected`, and stop: there is no result to wait for.",
+        "Check `accepted` of the goal handle when the answer to the goal has arrived. If it is False, log an error "
+        "with the word `rejected`, and end: there is no result to wait for.",
     )
 
 
@@ -145,7 +147,7 @@ REFUSAL_NOT_REPORTED = Mistake("refusal_not_reported", _refusal_not_reported)
 
 
 def _feedback_not_shown(evidence: Evidence) -> tuple[int, int] | None:
-    """Return the number of feedback messages sent and the number that the client showed; None if it showed enough."""
+    """Return how many feedback messages were sent, and how many the client showed; None if it showed enough."""
     part = evidence.part(LATE)
     sent, missing = len(part.of("feedback")), len(unshown_feedback(part))
     return (sent, sent - missing) if missing and part.first("result_request") else None
@@ -154,15 +156,15 @@ def _feedback_not_shown(evidence: Evidence) -> tuple[int, int] | None:
 FEEDBACK_NOT_SHOWN = mistake(
     "feedback_not_shown",
     _feedback_not_shown,
-    "{0[0]} feedback messages were sent, and your client showed {0[1]} of them.",
-    "Give send_goal_async a feedback_callback, and log in it, each time, the feedback.partial_sequence of the message "
-    "that it is given.",
+    "{0[0]} feedback messages were sent, but your client showed only {0[1]} of them.",
+    "Pass a feedback_callback to send_goal_async. In this callback, log the feedback.partial_sequence of each "
+    "message that it receives.",
 )
 RESULT_NOT_REQUESTED = mistake(
     "result_not_reported",
     lambda evidence: asked_for(evidence.part(LATE)) and not evidence.part(LATE).first("result_request"),
-    "Your client sent its goal and never asked for the result.",
-    "Call get_result_async() of the goal handle once the goal is accepted, and wait for the future that it returns.",
+    "Your client sent its goal, but never requested the result.",
+    "Call get_result_async() of the goal handle after the goal was accepted, and wait for the future that it returns.",
 )
 
 
@@ -174,15 +176,15 @@ def _asks_again_and_again(evidence: Evidence) -> int:
 RESULT_REPEATED = mistake(
     "result_repeated",
     _asks_again_and_again,
-    "Your client asked for the result of one goal {} times.",
-    "Ask once, when the goal is accepted, and wait for the future that you get. If a timer checks whether the result "
-    "is there, switch the timer off when it is, with its cancel().",
+    "Your client requested the result of one goal {} times.",
+    "Request the result once, when the goal is accepted, and wait for the future that get_result_async() returns. If "
+    "a timer checks whether the result has arrived, call cancel() on the timer when it has.",
     certain=True,
 )
 
 
 def _result_not_reported(evidence: Evidence) -> Advice | None:
-    """Return advice if the result came and the client did not report it."""
+    """Return advice if the client received the result and did not report it."""
     part = evidence.part(LATE)
     result = part.first("result")
     if result is None or part.first("result_request") is None or reports_result(part):
@@ -193,16 +195,18 @@ def _result_not_reported(evidence: Evidence) -> Advice | None:
         seen = (
             f"{left_out[-1]} is missing"
             if left_out
-            else "not in their order, or one that is there twice only once"
+            else "they are not in order, or a number that occurs twice is shown only once"
         )
         return Advice(
-            f"The result has {len(numbers)} numbers. Your client said most of them, but not all as they came: {seen}.",
-            "Say the whole sequence, as the server sent it: list(...) of the result().result.sequence of the future.",
+            f"The result has {len(numbers)} numbers. Your client showed most of them, but not the sequence exactly "
+            f"as it came: {seen}.",
+            "Log the whole sequence in the order in which the server sent it: list(...) of the "
+            "result().result.sequence of the future.",
         )
     return Advice(
-        "The result came, but your client did not say its sequence.",
-        "When the future of get_result_async() is done, log its result().result.sequence. In a notebook, return it, "
-        "too.",
+        "The result arrived, but your client did not show its sequence.",
+        "When the future of get_result_async() is done, log its result().result.sequence. In a notebook, also return "
+        "it.",
     )
 
 
@@ -217,7 +221,7 @@ def _abort_not_reported(evidence: Evidence) -> Advice | None:
         part,
         others,
         "The goal was aborted (status 6)",
-        "Look at the status that comes with the result: log its name, or its number behind the word `status`.",
+        "Read the status that comes with the result: log its name, or its number after the word `status`.",
     )
 
 
@@ -225,19 +229,19 @@ ABORT_NOT_REPORTED = Mistake("abort_not_reported", _abort_not_reported)
 
 
 def _returns_another_value(evidence: Evidence) -> tuple[str, str] | None:
-    """Return the wrong value of a notebook's function, and what it should be, in words; None if there is none."""
+    """Return the wrong value of a notebook's function, and the expected value, in words; None if it is right."""
     late, refused = evidence.part(LATE), evidence.part(REFUSED)
     result = late.first("result")
     if result and (value := returned_instead(late, result.data["fields"]["sequence"])):
-        return value, "and not the sequence of its goal's result as a list"
+        return value, "but should return the sequence of its goal's result as a list"
     value = returned_instead(refused, []) if refused.first("goal") else ""
-    return (value, "and not an empty list, when its goal is rejected") if value else None
+    return (value, "but should return an empty list if its goal is rejected") if value else None
 
 
 NOT_RETURNED = mistake(
     "not_returned",
     _returns_another_value,
     "Your function returns {0[0]}, {0[1]}.",
-    "End with `return list(...)` of the sequence in the result, and with `return []` where `accepted` of the goal "
-    "handle is False. A string, a whole result or nothing is not a list.",
+    "End the function with `return list(...)` of the sequence in the result. Where `accepted` of the goal handle is "
+    "False, write `return []`. A string, the whole result message or None is not a list.",
 )

@@ -1,8 +1,8 @@
-"""Mistakes recognized from the stacks of a hung program: which thread waits, and for what.
+"""Mistakes recognized from the stacks of a hung program: they show what each thread waits for.
 
-The stacks come from Python's faulthandler (innermost call first). The judge requests them once a subject that should
-still be running has fallen silent. In rclpy 7.1, ``Client.call`` waits in ``client.py``, the action client's blocking
-calls in ``action/client.py``, and ``Rate.sleep`` in ``timer.py``; callbacks run below ``executors.py``.
+The stacks come from Python's faulthandler, with the innermost call first. The judge requests them if a subject that
+should still be running has fallen silent. In rclpy 7.1, ``Client.call`` waits in ``client.py``, the action client's
+blocking calls in ``action/client.py``, and ``Rate.sleep`` in ``timer.py``; callbacks run below ``executors.py``.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _BLOCKING = {
     "action/client.py": {"send_goal", "cancel_goal", "get_result", "_cancel_goal"},
 }
 _CALLS_BACK = {("executors.py", "await_or_execute"), ("task.py", "__call__")}
-"""The functions of rclpy that run the callbacks of entities and futures, as (file, function)."""
+"""The functions of rclpy that run the callbacks of nodes and of futures, as (file, function)."""
 _SPINS = {
     "spin",
     "spin_once",
@@ -37,7 +37,7 @@ _SPINS = {
 
 @dataclass(frozen=True)
 class Frame:
-    """One call in a stack. ``file`` is empty if it is not one of rclpy's."""
+    """One call in a stack. ``rclpy`` is the file in rclpy that contains the call; empty for other code."""
 
     rclpy: str
     function: str
@@ -48,7 +48,7 @@ Stack = Sequence[Frame]
 
 
 def stacks(part: Part) -> list[Stack]:
-    """Return the stacks of the subject's threads at the time it hung, innermost call first."""
+    """Return the stacks of the subject's threads at the time when it hung, innermost call first."""
     found: list[list[Frame]] = []
     for event in part.of("stack"):
         for line in str(event.data["text"]).splitlines():
@@ -69,12 +69,12 @@ def _blocks(stack: Stack) -> bool:
 
 
 def _in_callback(stack: Stack) -> bool:
-    """Return True if an executor called the innermost code of the student in this stack."""
+    """Return True if the innermost code of the student in this stack runs in a callback."""
     return any(frame.rclpy == "executors.py" for frame in stack[_innermost_own(stack) :])
 
 
 def _innermost_own(stack: Stack) -> int:
-    """Return the index of the innermost call in student's code; the length of the stack if there is none."""
+    """Return the index of the innermost call in the student's code; the length of the stack if there is none."""
     own = (i for i, frame in enumerate(stack) if not frame.rclpy and frame.function != "wait")
     return next(own, len(stack))
 
@@ -89,7 +89,7 @@ def something_spins(part: Part) -> bool:
 
 
 def _spins_in_callback(stack: Stack) -> bool:
-    """Return True if an executor called student's code, and that code called a spin."""
+    """Return True if an executor called the student's code, and that code called a spin."""
     spins = [i for i, frame in enumerate(stack) if frame.rclpy and frame.function in _SPINS]
     if not spins:
         return False
@@ -111,25 +111,25 @@ def _stuck_callback(found: list[Stack]) -> str:
 
 
 def _that(found: list[Stack], waits: Callable[[Stack], bool]) -> Stack:
-    """Return a stack for which ``waits`` is true, preferably one in a callback; empty if there is none."""
+    """Return a stack for which ``waits`` returns True, preferably of a callback; empty if there is none."""
     waiting = sorted(filter(waits, found), key=_in_callback, reverse=True)
     return waiting[0] if waiting else ()
 
 
 def _waiting(stack: Stack) -> str:
-    """Return the blocking rclpy call in which a thread waits, by the name students use; empty if there is none."""
+    """Return the name of the blocking rclpy method that the student called in this stack; empty if there is none."""
     calls = [frame.function for frame in stack if frame.function in _BLOCKING.get(frame.rclpy, ())]
     return calls[-1] if calls else ""
 
 
 def _place(stack: Stack) -> str:
-    """Return the student's line that led to the wait, in parentheses; empty if there is none."""
+    """Return the line of the student's code that waits, in parentheses; empty if there is none."""
     own = stack[_innermost_own(stack) :]
     return f" (line {own[0].line}, in {own[0].function})" if own else ""
 
 
 def _executes_a_goal(stack: Stack) -> bool:
-    """Return True if an action server called student's code to execute a goal."""
+    """Return True if an action server called the student's code to execute a goal."""
     return bool(_stuck_callback([stack])) and any(frame.rclpy == "action/server.py" for frame in stack)
 
 
@@ -139,67 +139,69 @@ _HANGS: tuple[tuple[str, Recognise, str, str], ...] = (
     (
         "nested_spin",
         lambda found: any(map(_spins_in_callback, found)),
-        "{who} spins, and waits inside that spin for ever: the executor that called it cannot go on.",
-        "Leave the spin out of the callback. If you wait for an answer there, go on in a function that you give to the "
-        "add_done_callback(...) of its future.",
+        "{who} spins, and this spin waits forever: the executor that called the callback cannot go on before the "
+        "callback returns.",
+        "Remove the spin from the callback. If the callback needs an answer, move the code that uses the answer into "
+        "another function, and pass that function to the add_done_callback(...) of the answer's future.",
     ),
     (
         "call_in_same_group",
         lambda found: any(_blocks(stack) and _in_callback(stack) for stack in found),
-        "{who} makes the blocking call {call}(){called} and waits for ever: the answer would have to come through the "
-        "same callback group, which is busy with this very callback.",
-        "Write {call}_async in place of {call}, and go on in a function that you give to the add_done_callback(...) of "
-        "the future that it returns.",
+        "{who} makes the blocking call {call}(){called} and waits forever: the answer would have to come through the "
+        "same callback group, which is busy with this callback.",
+        "Write {call}_async instead of {call}. Move the code that uses the answer into another function, and pass "
+        "that function to the add_done_callback(...) of the future that {call}_async returns.",
     ),
     (
         "rate_never_spun",
         lambda found: any(map(_sleeps_on_rate, found)),
-        "The sleep() of your rate{slept} waits for ever: a rate is a timer, and no thread is free to let it fire.",
+        "The sleep() of your rate{slept} waits forever: a rate is a timer, and no thread is free to run that timer.",
         "Use create_timer and rclpy.spin instead of the loop. If the loop has to stay, spin the node in a second "
         "thread; if the loop is inside a callback, use a MultiThreadedExecutor.",
     ),
     (
         "callback_never_returns",
         lambda found: any(map(_executes_a_goal, found)),
-        "Your execute callback {callback}() was given a goal and does not come to its end: it loops or waits for ever, "
-        "or each number takes it longer than the one before, as in a function that calls itself for each number.",
-        "Keep the numbers found so far in a list, let each turn of the loop add one, and end the loop when there are "
-        "enough. A pause in each turn, such as time.sleep(0.5), is right.",
+        "Your execute callback {callback}() was given a goal and never returns. It loops or waits forever, or takes "
+        "longer for each number than for the one before, as a function does that calls itself for each number.",
+        "Keep the numbers found so far in a list, add one number in each turn of the loop, and leave the loop when "
+        "there are enough. A pause in each turn, such as time.sleep(0.5), is right.",
     ),
     (
         "callback_never_returns",
         lambda found: bool(_stuck_callback(found)),
-        "Your callback {callback}() is called and does not come back: it loops, sleeps or waits, and meanwhile the "
-        "node does nothing else.",
-        "Let a callback do one short step and return. For what is to happen again and again, make a timer "
-        "(create_timer); leave `while True` and time.sleep out of callbacks.",
+        "Your callback {callback}() was called and never returned: it loops, sleeps or waits. Meanwhile the node "
+        "does nothing else.",
+        "Let a callback do one short step and return. For work that is repeated, make a timer (create_timer). Do not "
+        "use `while True` or time.sleep in callbacks.",
     ),
     (
         "node_taken_from_executor",
         lambda found: (
             any(map(_blocks, found)) and any(_spins(stack) and not _blocks(stack) for stack in found)
         ),
-        "The blocking call {call}(){called} waits for ever although a thread of yours spins: that executor no longer "
-        "has the node.",
-        "Spin a node in one place only. rclpy.spin_once or spin_until_future_complete, called beside another executor, "
-        "takes the node away from it.",
+        "The blocking call {call}(){called} waits forever although another thread spins, because that thread's "
+        "executor has lost the node.",
+        "Spin a node in one place only. If you call rclpy.spin_once or spin_until_future_complete while another "
+        "executor spins the node, that executor loses the node.",
     ),
     (
         "call_never_spun",
         lambda found: any(map(_blocks, found)),
-        "The blocking call {call}(){called} waits for ever: the answer has come, but nothing spins the node, so the "
-        "node does not take it.",
-        "Use the call whose name ends in _async (call_async, send_goal_async, get_result_async) and wait for the "
-        "future that it returns with rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0), or "
-        "spin the node in a background executor while you use call().",
+        "The blocking call {call}(){called} waits forever: the answer has come, but nothing spins the node, so the "
+        "node does not receive the answer.",
+        "Use the method whose name ends in _async (call_async, send_goal_async, get_result_async), and wait for the "
+        "future that it returns with rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0). Or "
+        "spin the node in a background thread while you use {call}().",
     ),
     (
         "never_spun",
         lambda found: bool(found) and not any(frame.rclpy for stack in found for frame in stack),
-        "Your program is busy with code of its own and nothing spins the node, so none of its callbacks is "
-        "ever called.",
-        "Write rclpy.spin(your_node) in place of the loop that waits (rclpy.spin_until_future_complete(your_node, "
-        "your_future) where you wait for an answer), or spin in a second thread beside your loop.",
+        "All threads of your program are busy with your own code, such as a loop. Nothing spins the node, so none of "
+        "its callbacks is ever called.",
+        "Write rclpy.spin(your_node) instead of the loop that waits; if you wait for an answer, write "
+        "rclpy.spin_until_future_complete(your_node, your_future). Or keep your loop, and spin the node in a second "
+        "thread.",
     ),
 )
 
@@ -224,4 +226,4 @@ def _mistake(key: str, fits: Recognise, text: str, next_step: str) -> Mistake:
 
 
 HANGS: tuple[Mistake, ...] = tuple(_mistake(*row) for row in _HANGS)
-"""The known hangs, most specific first."""
+"""The mistakes that a stack shows, most specific first."""

@@ -1,7 +1,7 @@
-"""The names that the student's code uses, as far as the quoted line of a traceback shows them.
+"""Finds the names that the student's code uses, in the line of code that a traceback quotes.
 
-Advice on a card says ``fut.result()`` if the program calls its future ``fut``. The last line of code in a traceback
-is enough for that. If it does not show the name, the advice uses a general term.
+Advice on a card can then use these names: ``fut.result()`` if the program calls its future ``fut``. If the quoted line
+does not show the name, the advice uses a general term.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import re2
 
 MARKS = r"\n(?:[ ~^]*\n)?"
-"""Matches what is between a quoted line of code and Python's message: a line break, and perhaps a line of ``^`` and
+"""Matches the text between a quoted line of code and Python's message: a line break, and possibly a line of ``^`` and
 ``~``.
 """
 _FRAME_WITH_CODE = re2.compile(r'(?m)^ {2}File "(?P<file>[^"]*)", line \d+.*\n {4,}(?P<code>\S.*)$')
@@ -18,16 +18,20 @@ _LIBRARY = re2.compile(r"/lib/python3(?:\.\d+)?/|/(?:site|dist)-packages/|^/opt/
 _BUILT = re2.compile(
     r"/install/(?:[^/.]+/)?(?:local/)?lib/python3[^/]*/(?:site|dist)-packages/(?P<package>\w+)"
 )
-"""Matches the path of a package installed by a colcon build: the student's own, or ROS if it was built from source."""
+"""Matches the path of a package that colcon has installed. It may be the student's package, or a package of ROS if ROS
+was built from source.
+"""
 _ROS = ("rclpy", "launch", "launch_ros", "ros2cli", "ros2run")
 _MISSED = re2.compile(r"AttributeError: .*(?:has no attribute|object attribute) '(?P<name>\w+)'")
 _OWNER = r"(?:^|[^\w.)\]])(?P<owner>[A-Za-z_][\w.]*(?:(?:\(\)|\[[^\[\]]*\])[\w.]*)*)\.{name}\b"
-"""Matches the expression before a dot and a given name: names and dots, calls without arguments, indexes."""
+"""Matches the expression before a dot and a given name. It may contain names, dots, calls without arguments and
+indexes.
+"""
 _RESULT = ".result()"
 
 
 class Name(str):
-    """A name for use in a template, with a general text if the name is unknown: ``{owner:your future}``."""
+    """A name for a template. In ``{owner:your future}``, the text after the colon is used if the name is empty."""
 
     __slots__ = ()
 
@@ -42,17 +46,17 @@ def is_a_library(file: str) -> bool:
 
 
 def own_line(traceback: str) -> str:
-    """Return the innermost line of code in a traceback if it is the student's; else an empty text."""
+    """Return the innermost line of code in a traceback if it is the student's; otherwise an empty text."""
     frames = list(_FRAME_WITH_CODE.finditer(traceback))
     return "" if not frames or is_a_library(frames[-1]["file"]) else str(frames[-1]["code"])
 
 
 def names(traceback: str) -> dict[str, Name]:
-    """Return the names that templates can use from a traceback: ``owner`` and ``future``; empty if unknown.
+    """Return the names from a traceback that templates can use: ``owner`` and ``future``; each is empty if unknown.
 
-    Suppose that ``fut.result().sum`` fails because ``sum`` does not exist. Then the owner is ``fut.result()``, and
-    the future is ``fut``. A call is never used as the name of a future, because each call would return a different
-    one.
+    Suppose that ``fut.result().sum`` fails because ``sum`` does not exist. Then the owner is ``fut.result()``, and the
+    future is ``fut``. If the future is itself a call, such as ``make().result()``, its name stays empty, because each
+    call would return a different future.
     """
     owner = _owner(traceback)
     future = owner.removesuffix(_RESULT) if owner.endswith(_RESULT) else ""
@@ -60,7 +64,7 @@ def names(traceback: str) -> dict[str, Name]:
 
 
 def _owner(traceback: str) -> str:
-    """Return the expression before the missing attribute in the student's line; empty if it is ambiguous."""
+    """Return the expression before the missing attribute in the student's line; empty if there are several."""
     missed = _MISSED.search(traceback)
     if missed is None:
         return ""

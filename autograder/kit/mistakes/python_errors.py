@@ -1,7 +1,7 @@
-"""Python's own errors in beginners' programs: for each wording of an error, its meaning and the next step.
+"""Explains Python's own errors in beginners' programs: the meaning of each message, and the next step.
 
-The rows match messages of Python 3.11 and 3.12 and of rclpy 7.1. The first match wins. Add a row only if two answers
-in the bank, or a question asked in public, need it: the card quotes Python's own message anyway.
+The rows match messages of Python 3.11 and 3.12 and of rclpy 7.1. The first row that matches decides. Add a row only if
+two answers in the bank, or a question asked in public, need it, because the card quotes Python's own message anyway.
 """
 
 from __future__ import annotations
@@ -17,14 +17,16 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 Row = tuple[str, str, str]
-"""A pattern to search for in a traceback, the meaning, and the next step. Both texts may use the pattern's groups."""
+"""A pattern to search for in a traceback, the meaning, and the next step. Both texts may use the pattern's named
+groups.
+"""
 
 
 class Meaning(NamedTuple):
-    """What an error means, and what to do about it.
+    """The meaning of an error and the next step, as texts for the student.
 
     Attributes:
-        why: A sentence that says what is wrong; it may be empty.
+        why: A sentence that says what is wrong; empty if Python's message already says it.
         next_step: What the student should do now.
     """
 
@@ -37,37 +39,39 @@ READING: Sequence[Row] = (
     (
         rf"{_READS}expected ':'",
         "A colon is missing.",
-        "Write a colon at the end of that line: class, def, if, else, for, while, try and with all end with one.",
+        "Write a colon at the end of that line. Lines that begin with class, def, if, else, for, while, try or with "
+        "end with a colon.",
     ),
     (
         rf"{_READS}(?:'.' was never closed|unmatched|incomplete input)",
         "",
-        "Count the brackets of that line: each one that is opened must be closed.",
+        "Count the brackets in that line: each opening bracket needs a closing one.",
     ),
     (
         rf"{_READS}(?:unterminated|EOL while scanning|f-string: expecting)",
         "A string does not end.",
-        "Close it with the quotation mark that it begins with, and each {{ in an f-string with a }}.",
+        "End the string with the same quotation mark that it begins with. In an f-string, close each {{ with a }}.",
     ),
     (
         rf"{_READS}invalid (?:non-printable )?character",
-        "That line has a character of a word processor or a web page in it.",
-        "Type the line yourself: quotation marks are ' or \" and a minus is -.",
+        "That line contains a character that is not Python. It may have been copied from a word processor or a web "
+        "page.",
+        "Type the line again by hand: quotation marks are ' or \", and a minus is -.",
     ),
     (
         r"^(?:IndentationError|TabError): |^SyntaxError: 'return' outside",
         "",
-        "Indent by four spaces, without tabs, the lines that belong to a line with a colon at its end. All lines of "
-        "one block begin in the same column.",
+        "After a line that ends with a colon, indent the lines that belong to it by four spaces. Do not use tabs. "
+        "All lines of one block begin in the same column.",
     ),
     (
         _READS,
         "",
-        "Go to the line that the message names; a bracket, a quote, a colon or the indentation is off there or just "
-        "before it.",
+        "Go to the line that the message names. In this line or just before it, a bracket, a quotation mark, a colon "
+        "or the indentation is wrong.",
     ),
 )
-"""Messages with which Python reports that it cannot parse a program."""
+"""The rows for messages with which Python reports that it cannot parse a program."""
 
 _IMPORTED_FROM = {
     "action_msgs.msg": "GoalStatus",
@@ -79,7 +83,7 @@ _IMPORTED_FROM = {
     "rclpy.qos": "DurabilityPolicy|QoSProfile|ReliabilityPolicy",
     "std_msgs.msg": "String",
 }
-"""Names that beginners often import from the wrong module, or forget to import, by the right module."""
+"""Names that beginners often forget to import, or import from the wrong module; the key is the right module."""
 _NOT_STUDENTS = (
     r"list|dict|tuple|set|str|bytes|bool|int|float|\w+GoalHandle|Publisher|Subscription|Timer|Client|Service"
     r"|ActionClient|ActionServer|RcutilsLogger"
@@ -92,206 +96,214 @@ RUNNING: Sequence[Row] = (
             rf"^(?:NameError: name|ImportError: cannot import name|AttributeError: module 'rclpy' has no attribute) "
             rf"'(?P<name>{names})'",
             f"{{name}} comes from the module {module}.",
-            f"Write `from {module} import {{name}}` at the top of the program, and take {{name}} out of any other "
+            f"Write `from {module} import {{name}}` at the top of the program, and delete {{name}} from any other "
             "import. In a notebook, run the cell with the imports.",
         )
         for module, names in _IMPORTED_FROM.items()
     ),
     (
         r"^NameError: name '(?P<name>\w+_(?:msgs|srvs|interfaces)|math|random|rclpy|sys|threading|time)'",
-        "{name} is a module, and it is not imported.",
-        "Write import {name} at the top of the program. In a notebook, write it in the cell with the imports, and run "
-        "that cell. A type that has an import of its own is written alone: String in place of std_msgs.msg.String.",
+        "{name} is a module that your code does not import.",
+        "Write import {name} at the top of the program. In a notebook, write the import in the cell with the "
+        "imports, and run that cell. If your code imports a type with `from`, write only the name of the type: "
+        "String instead of std_msgs.msg.String.",
     ),
     (
         r"^NameError: name 'self'",
-        "Python knows self only inside a method whose first argument is self.",
-        "In a method write self first between its parentheses, as in def say_hello(self), and indent its lines by "
-        "eight spaces. In a function there is no self: write the name that the node has there, such as node or client.",
+        "Python knows self only inside a method whose first parameter is self.",
+        "In a method, write self as the first parameter, as in def say_hello(self), and indent the method's lines by "
+        "eight spaces. A function has no self: write the name that the node has there, such as node or client.",
     ),
     (
         r"^NameError: name '(?P<name>\w+)' is not defined\. Did you mean: '(?P<meant>[\w.]+)'",
-        "Python does not know {name}, and knows {meant}.",
-        "If that is what you mean, write {meant}. If {name} belongs to your node, write self.{name}. In a notebook, "
-        "run the cell that defines it, if there is one. In a program, write or copy its definition into this file.",
+        "Python does not know the name {name}, but it knows {meant}.",
+        "If you mean {meant}, write {meant}. If {name} belongs to your node, write self.{name}. In a notebook, run "
+        "the cell that defines {name}. In a program, define {name} in this file.",
     ),
     (
         r"^NameError: name '(?P<name>\w+)'",
-        "Python does not know {name}.",
-        "If it belongs to your node, as a value or a method, write self.{name}, also in the line that sets it. If it "
-        "is part of a message or a goal, write that before it, with a dot. In a notebook, run the cell that defines "
-        "it, if there is one. In a program, write, copy or import it in this file. Otherwise compare the spelling.",
+        "Python does not know the name {name}.",
+        "Check the spelling of {name} first. If it is a value or method of your node, write self.{name}, also in the "
+        "line that sets it. If it is a field of a message or goal, write the message and a dot before it. In a "
+        "notebook, run the cell that defines {name}. In a program, define or import {name} in this file.",
     ),
     (
         r"^(?:UnboundLocalError: )(?:cannot access local variable|local variable) '(?P<name>\w+)'",
-        "Without self. before it, {name} is a variable of this method alone, and has no value yet.",
-        "If it is a value of the node, write self.{name}, here and in all other lines that use it.",
+        "Without self. before it, {name} is a variable that exists only in this method, and it has no value yet.",
+        "If {name} is a value of the node, write self.{name} here and in every other line that uses it.",
     ),
     (
         r"^ImportError: cannot import name",
         "",
-        "Compare the import with the lab's text, letter by letter: is it .msg, .srv or .action, are the capitals the "
-        "same, and is no letter missing?",
+        "Compare the import with the lab's text, letter by letter: .msg, .srv or .action, capital letters, and "
+        "missing letters.",
     ),
     (
         r"'NoneType' object (?:has no attribute '\w+'|is not (?:iterable|subscriptable))",
-        "{owner:A value of this line} is None: it was not set yet, or it is what a function without a return gives, as "
-        "append of a list does.",
-        "Look where it gets its value, and whether that line has run before this one.",
+        "{owner:A value in this line} is None. Either it was not set yet, or it was set to what a function returned "
+        "that returns nothing, such as the append of a list.",
+        "Find the line that sets this value, and check whether it has run before this line.",
     ),
     (
         r"'(?:builtin_function_or_method|function|method)' object (?:has no attribute|is not)",
-        "{owner:A value of this line} is a method that was not called, and not what it returns.",
-        "Write parentheses after the method's name, in this line or in the line that sets the value, as in "
-        "self.get_logger().info(...).",
+        "{owner:A value in this line} is a method that your code did not call, and not the value that the method "
+        "returns.",
+        "Write parentheses after the method's name, as in self.get_logger().info(...). The name may be in this line "
+        "or in the line that sets the value.",
     ),
     (
         rf"AttributeError: '(?P<class>{_NOT_STUDENTS})' object has no attribute '(?P<name>\w+)'",
-        "{owner:The value before .{name}} is of the type {class} here, which has nothing called {name}.",
-        "Look at the line that sets it: the value may not be the one that you mean. If it is the right one, compare "
-        "the name, letter by letter. If {name} is a function of the notebook or program, write it alone: {name}(...).",
+        "{owner:The value before .{name}} has the type {class}, and this type has no {name}.",
+        "Look at the line that sets this value: it may not be the value that you expect. If it is, compare the "
+        "spelling of {name}, letter by letter. If {name} is a function of the notebook or program, write {name}(...) "
+        "without anything before it.",
     ),
     (
         r"^AttributeError: '(?P<class>\w+)' object has no attribute '(?P<name>\w+)'\. Did you mean: '(?P<meant>\w+)'",
-        "{class} has nothing called {name}, and has {meant}.",
-        "If that is what you mean, write {meant}. If {name} is something else, write it in the class: a value as "
-        "self.{name} = ... in __init__, a method as def {name}(self, ...).",
+        "{class} has no {name}, but it has {meant}.",
+        "If you mean {meant}, write {meant}. Otherwise define {name} in the class: a value as self.{name} = ... in "
+        "__init__, a method as def {name}(self, ...).",
     ),
     (
         r"^AttributeError: '(?P<class>\w+)' object has no attribute '(?P<name>\w+)'",
-        "{class} has nothing called {name} so far.",
-        "If it is a value, set it in __init__, above the line that needs it, with self. before it there, too: without "
-        "self. it is forgotten at the end of the method. If it is a method, compare its name and its indentation, "
-        "which is that of def __init__. If it is a variable or a function outside of the class, leave out what is "
-        "before the dot.",
+        "{class} has no {name} at this point of the program.",
+        "If {name} is a value, set it in __init__, above the line that needs it. Write self.{name} = ... there, "
+        "because Python forgets a variable without self. at the end of the method. If {name} is a method, check the "
+        "spelling, and indent its def line like def __init__. If {name} is a variable or function outside of the "
+        "class, delete the part before {name}, with the dot.",
     ),
     (
         r"^AttributeError: property '(?P<name>\w+)' of '(?P<class>\w+)' object has no setter",
-        "{name} of {class} can only be read.",
-        "If you want to store a value of your own, give it a name other than {name}.",
+        "The value {name} of {class} can be read but not set.",
+        "To store your own value, choose another name than {name}.",
     ),
     (
         r"AttributeError: partially initialized module '(?P<name>[\w.]+)'",
-        "A file of yours is called like the module {name}, and Python imports that instead.",
-        "Give your file another name.",
+        "One of your files has the same name as the module {name}, and Python imports your file instead of the module.",
+        "Rename your file.",
     ),
     (
         r"^AttributeError: ",
-        "There is nothing of this name there.",
-        "Compare the name with the lab's text, letter by letter: constants have capitals only, such as "
+        "The value before the dot has nothing with this name.",
+        "Compare the name with the lab's text, letter by letter. Constants are written in capital letters, such as "
         "GoalResponse.ACCEPT.",
     ),
     (
         r"^TypeError: (?:can only concatenate str|unsupported operand type\(s\) for \+=?: '(?:int|float|str)' and "
         r"'(?:int|float|str)')",
-        "A string and another value are joined with +, which joins strings only.",
-        "Put the value into an f-string, in braces, as in f'... {{number}}'; of a message take the field, as in "
-        "{{message.data}}. To add numbers, turn the string into a number first: int(...).",
+        "Your code joins a string and another value with +, but + joins a string only with a string.",
+        "Put the value into an f-string, inside braces, as in f'... {{number}}'. If the value is a message, use its "
+        "field, as in {{message.data}}. To add numbers, first convert the string to a number with int(...).",
     ),
     (
-        # The executor keeps its nodes in a set, which needs a hash. A notebook's traceback omits rclpy's own lines.
+        # The executor stores its nodes in a set, so each node needs a hash. A notebook's traceback omits rclpy's own
+        # lines.
         r"(?:\A|rclpy/executors\.py\".*\n(?: .*\n){1,2})TypeError: unhashable type: '(?P<class>\w+)'",
-        "ROS cannot keep your node: its class {class} has no hash, which @dataclass, or a method __eq__ of the class, "
-        "takes away.",
-        "A node cannot be a `@dataclass`: delete that word, and write def __init__(self): with "
-        "super().__init__('your_node_name') as its first line. Set the fields below that, as in self.count = 0.",
+        "ROS cannot store your node, because the class {class} has no hash. A class loses its hash if it has "
+        "@dataclass or a method __eq__.",
+        "A node cannot be a `@dataclass`: delete `@dataclass`. Then write def __init__(self): with "
+        "super().__init__('your_node_name') as its first line, and set the fields below that, as in self.count = 0. "
+        "If your class has a method __eq__, delete it.",
     ),
     (
-        # A notebook's traceback omits rclpy's own line, in which node.subscriptions is read.
+        # In a program, the traceback shows the line of rclpy that reads node.subscriptions. A notebook's traceback
+        # omits it.
         rf"(?:\bspin\w*\((?P<class>[A-Za-z_]\w*)[,)].*\n(?:.*\n)*?|node\.subscriptions.*{MARKS})"
         r"TypeError: 'property' object is not iterable",
-        "A spin takes a node, and got the class of one.",
-        "Write parentheses after the class, which makes a node of it: rclpy.spin({class:YourNode}()).",
+        "spin needs a node, but your code passed the class.",
+        "Write parentheses after the name of the class, to make a node of it: rclpy.spin({class:YourNode}()).",
     ),
     (
         r"^TypeError: (?P<class>\w+) is not a Node: write class",
         "",
-        "A check spins your class, so the class is the node: write class {class}(Node):, "
-        "super().__init__('your_node_name') as the first line of its __init__, and self.create_... below that.",
+        "The check makes a node from your class, so the class must be a Node. Write class {class}(Node):. Make "
+        "super().__init__('your_node_name') the first line of its __init__, and write self.create_... below that.",
     ),
     (
         r"^TypeError: '(?P<kind>\w+)' object is not (?:subscriptable|iterable)",
-        "A value of the type {kind} is neither a list nor a dictionary.",
-        "Of a message take the field, with a dot, as in message.data or answer.result.sequence. If a list is "
-        "needed, give the whole list. Two numbers are added with +, and not with sum.",
+        "Your code uses a value of the type {kind} like a list or a dictionary, but it is neither.",
+        "If the value is a message, use its field, as in message.data or answer.result.sequence. If a list is "
+        "needed, pass the whole list. Add two numbers with +, not with sum.",
     ),
     (
-        # The error is raised where rclpy calls the callback; a notebook's traceback omits rclpy's own lines.
+        # rclpy raises this error when it calls the callback. A notebook's traceback omits rclpy's own lines.
         r"(?:\A|rclpy/(?:executors|task)\.py\".*\n(?: .*\n){1,2})TypeError: '(?P<kind>\w+)' object is not callable",
-        "ROS was to call a method of yours, and was given a value of the type {kind} in its place.",
-        "Look at what create_timer(...), or whatever takes a callback, has in this place: the name of the method, with "
-        "self. before it, and without quotation marks or parentheses, as in create_timer(0.5, self.say_hello).",
+        "ROS needs a method as the callback, but got a value of the type {kind}.",
+        "Look at the line that passes the callback, such as create_timer(...). Pass the method's name with self. "
+        "before it, without quotation marks and without parentheses, as in create_timer(0.5, self.say_hello).",
     ),
     (
         r"^TypeError: '(?P<kind>\w+)' object is not callable",
-        "A value of the type {kind} is called as if it were a method.",
-        "To read the value, leave out the parentheses; to set it, write = after its name. A list or a dictionary takes "
-        "square brackets: names[key]. If you mean a method of this name, give the value another name.",
+        "Your code calls a value of the type {kind} as if it were a method.",
+        "To read the value, delete the parentheses. To set it, write = after its name. A list or a dictionary needs "
+        "square brackets: names[key]. If a method has the same name, rename the value.",
     ),
     (
         r"^TypeError: rclpy_logging_rcutils_log\(\): incompatible function arguments",
-        "A log line is a string, and the logger got something else, such as a number or a whole message.",
-        "Put the value into an f-string, in braces, as in info(f'{{response.sum}}'). Of a message take the field, as "
-        "in info(f'{{message.data}}').",
+        "The logger needs a string, but got something else, such as a number or a whole message.",
+        "Put the value into an f-string, inside braces, as in info(f'{{response.sum}}'). If the value is a message, "
+        "use its field, as in info(f'{{message.data}}').",
     ),
     (
         r"^TypeError: (?:\w+\.)*?(?P<what>\w+)(?:\.__init__)?\(\) (?:takes|missing|got an unexpected)",
         "",
-        "Compare your call with the first line of {what}, def ..., or with the lab's text. The call needs as many "
-        "values in the same order, and the same name left of each =. In a method, self counts as one of the values. "
-        "If ROS is to call {what} later, write its name alone, without parentheses.",
+        "Compare your call of {what} with its definition, the line that begins with def, or with the lab's text. The "
+        "call needs the same number of values in the same order, and the same names before each =. In a method, self "
+        "is the first parameter; Python passes it for you. If ROS should call {what} later, pass only its name, "
+        "without parentheses.",
     ),
     (
         r"Invalid(?:Topic|Service|Node|Namespace)\w*NameException|InvalidNamespaceException|due to invalid topic name",
-        "A name in ROS has letters, digits and underscores only, no digit at its beginning, and no slash at its end.",
-        "Change the name: my_name instead of `my name` or `my-name`.",
+        "A name in ROS consists of letters, digits and underscores. It does not begin with a digit or end with a "
+        "slash.",
+        "Change the name, for example `my name` or `my-name` to my_name.",
     ),
     (
         r"^IndexError: (?P<kind>list|string|tuple|array) (?:assignment )?index out of range",
-        "The {kind} has fewer elements than the index asks for: the first element has the index 0, the last one "
-        "len(...) - 1.",
-        "Ask for an index from 0 to len(...) - 1. In a callback, which is called again and again, a number that grows "
-        "with each call becomes too large: stop it with an `if`.",
+        "The {kind} has no element with this index: the first element has the index 0, the last one len(...) - 1.",
+        "Use an index from 0 to len(...) - 1. If a callback increases the index each time it is called, the index "
+        "becomes too large: check it with an `if`.",
     ),
     (
         r"^(?:IndexError: pop from (?:an )?empty|(?:RuntimeError: (?:coroutine|generator) raised )?StopIteration)",
-        "There is no element left to take.",
-        "A callback is called again and again: what it takes one by one is used up. Let it count, or do something else "
-        "when nothing is left.",
+        "Your code takes an element, but none is left.",
+        "A callback is called many times. If it takes one element each time, none is left in the end. Check with an "
+        "`if` whether an element is left, or count instead.",
     ),
     (
         r"^ValueError: generator already executing",
-        "Two threads spin at once by the same executor. rclpy.spin(node) uses one executor for the whole program.",
-        "Spin in one place only, by one executor that has all your nodes: executor = MultiThreadedExecutor(), "
-        "executor.add_node(...) for each of them, executor.spin(). Or give each thread an executor of its own: "
+        "Two threads spin the same executor at the same time. rclpy.spin(node) uses one executor for the whole "
+        "program.",
+        "Call spin in one place only, on one executor with all your nodes: executor = MultiThreadedExecutor(), "
+        "executor.add_node(...) for each node, executor.spin(). Or give each thread its own executor: "
         "rclpy.spin(node, executor).",
     ),
     (
         r"^ValueError: (?:invalid literal for int\(\) with base \d+|could not convert string to float): (?P<text>.+)",
         "{text} is not a number.",
-        "Look where it comes from. On a command line the arguments begin with sys.argv[1]; sys.argv[0] is the program "
-        "itself.",
+        "Find the line that sets this value. On a command line, the arguments begin with sys.argv[1]; sys.argv[0] is "
+        "the name of the program.",
     ),
     (
         r"attempted invalid transition from state",
-        "A goal ends once, and as canceled only if a client has asked for that.",
-        "End each goal once: below the loop, call canceled() if is_cancel_requested of the goal handle is True, and "
-        "succeed() if it is not.",
+        "Your code ended a goal twice, or ended it as canceled although no client had asked for that.",
+        "End each goal exactly once, below the loop: call canceled() if is_cancel_requested of the goal handle is "
+        "True; otherwise call succeed().",
     ),
     (
         r"^ +File ",
         "",
-        "Read the traceback from the bottom: the last line says what, the lines above it where. Correct the line "
-        "that is yours.",
+        "Read the traceback from the bottom. The last line says what went wrong; the lines above it say where. "
+        "Correct the line that is in your code.",
     ),
     (
         r"",
         "",
-        "ROS raised this in code of its own. Compare what your code gives to ROS, between the parentheses of each "
-        "create_... and of what spins, with the lab's text: types, names, methods and their order.",
+        "This error was raised inside ROS. Look at what your code passes to ROS: at each create_... and each spin, "
+        "compare the types, names and methods, and their order, with the lab's text.",
     ),
 )
-"""Messages with which Python reports an error in a running program."""
+"""The rows for errors in a running program. The last row matches every traceback."""
 
 
 def meaning(traceback: str) -> Meaning:
@@ -301,7 +313,7 @@ def meaning(traceback: str) -> Meaning:
         if found is not None:
             words = names(traceback) | {name: Name(said or "") for name, said in found.groupdict().items()}
             return Meaning(why.format(**words), next_step.format(**words))
-    raise AssertionError("the last row fits everything")
+    raise AssertionError("the last row matches every traceback")
 
 
 @cache

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 def _does_not_wait_for_answers(evidence: Evidence) -> bool:
     served, calls = Client(evidence).served, Client(evidence.reference).calls
-    # If a client made all its calls even though another answer came just as late, it does wait for answers.
+    # A client that made all its calls although one answer came late does wait for answers.
     waits = any(len(requests(part)) >= calls for part in served if part.of("response"))
     return any(
         ended_before_its_answer(part)
@@ -39,11 +39,10 @@ def _does_not_wait_for_answers(evidence: Evidence) -> bool:
 
 
 def _gave_up_on_its_answer(part: Part, served: Sequence[Part]) -> bool:
-    """Return True if the client printed, before its answer came, a line that it prints in no run with a quick answer.
+    """Return True if the client printed something unusual before its answer came, such as a line about a timeout.
 
-    In the runs with a quick answer it must have reported the answer.
-
-    A process takes time to end, so the answer may be sent while the client is already ending.
+    A line is unusual if the client prints it in no run in which it reports the answer. The answer may be sent while the
+    client is already ending, because a process takes time to end.
     """
     asked, given = part.first("request"), part.first("response")
     quick = [other for other in served if other is not part and reports(other)]
@@ -55,11 +54,11 @@ def _gave_up_on_its_answer(part: Part, served: Sequence[Part]) -> bool:
 
 
 def _made_nothing_of_its_answer(part: Part) -> bool:
-    """Return True if the subject ended at its first answer, without a further call or a number derived from the answer.
+    """Return True if the subject ended at its first answer and did nothing that shows that it used the answer.
 
-    A process takes time to end, so the answer may be sent while a client that did not wait for it is already ending.
-    If a client makes only one call, only an exception proves that it did not wait; otherwise it may just not have
-    reported the sum.
+    A use of the answer is another call, or a number that is derived from the answer. The answer may be sent while a
+    client that did not wait for it is already ending, because a process takes time to end. The caller does not use this
+    function for a client of one call without an exception, which may just not have reported the sum.
     """
     if part.ending is None or len(requests(part)) != 1 or len(part.of("response")) != 1:
         return False
@@ -71,14 +70,14 @@ def _made_nothing_of_its_answer(part: Part) -> bool:
 ANSWER_NOT_AWAITED = mistake(
     "result_read_too_early",
     _does_not_wait_for_answers,
-    "Your client called the service and did not wait for the answer, which may take a second.",
+    "Your client called the service, but did not wait for the answer, which may take a second.",
     "Wait for the future that call_async returned, with rclpy.spin_until_future_complete(your_node, your_future, "
-    "timeout_sec=5.0), and look at its done() before you read its result().",
+    "timeout_sec=5.0). Check its done() before you read its result().",
 )
 
 
 def _dislikes_zero(evidence: Evidence) -> bool:
-    """Return True if the client is wrong only in runs in which the service's last answer is 0."""
+    """Return True if the client fails to report the answer only in runs in which the last answer is 0."""
     served = Client(evidence).served
     wrong = [part for part in served if part.ending and not reports(part)]
     zero = all(answers(part)[-1:] == [0] and not ended_before_its_answer(part) for part in wrong)
@@ -88,9 +87,9 @@ def _dislikes_zero(evidence: Evidence) -> bool:
 ZERO_TAKEN_FOR_FAILURE = mistake(
     "zero_taken_for_failure",
     _dislikes_zero,
-    "The service answered 0, and your client took that for no answer. 0 is a sum like any other.",
-    "An `if` with nothing but the sum is False for 0, too. Ask the future that call_async returned, whose done() says "
-    "whether there is an answer, or compare with `is not None`.",
+    "The service answered 0, but your client treated 0 as a missing answer. 0 is a valid sum.",
+    "An `if` that tests only the sum is False for 0, too. Test done() of the future that call_async returned, or "
+    "compare the answer with `is not None`.",
     certain=True,
 )
 
@@ -108,8 +107,8 @@ def _says_the_answer(part: Part) -> bool:
 NOT_RETURNED = mistake(
     "not_returned",
     _returns_another_each_time,
-    "Your function says the sum, but what it returns is {}: code that calls it cannot go on with the sum.",
-    "End your function with `return` and the sum itself, a number: what is in the field sum of the answer.",
+    "Your function prints the sum, but returns {}, so the code that calls your function cannot use the sum.",
+    "End your function with `return` and the sum as a number: the field `sum` of the answer.",
     certain=True,
 )
 
@@ -122,7 +121,8 @@ def _asks_for_nothing(evidence: Evidence) -> bool:
 FIELDS_NEVER_FILLED = mistake(
     "field_typo",
     _asks_for_nothing,
-    "Every call asks for 0 + 0: the fields of the request were never filled.",
-    "A request has the fields a and b. A misspelt keyword in AddTwoInts.Request(...) is ignored silently.",
+    "Every call asks for 0 + 0: your code did not set the fields of the request.",
+    "Set the fields a and b of the request. Check their spelling: AddTwoInts.Request(...) ignores a misspelled "
+    "keyword silently.",
     certain=True,
 )

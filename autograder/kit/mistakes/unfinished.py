@@ -1,4 +1,4 @@
-"""Mistakes of a subject that is not written yet, did not begin, or ended before its work was finished."""
+"""Mistakes of a subject that is not written yet, has no node, or ended before its work was finished."""
 
 from __future__ import annotations
 
@@ -16,19 +16,20 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
 
 STEP_MISSING = (
-    "Find the TODO in your code and write that step. In a notebook, hints below the cell open one at a time."
+    "Find the TODO in your code and write that step. In a notebook, the hints are below the cell; each opens "
+    "separately."
 )
 """The advice if a step of the task is not written yet."""
-_SPINS = "In main(), call rclpy.init(), make your node and spin it: rclpy.spin(your_node)."
+_SPINS = "In main(), call rclpy.init(), make your node, and spin it with rclpy.spin(your_node)."
 _CALLS = (
-    "In main() of a client, call rclpy.init(), then your function that sends the request or the goal and waits for the "
-    "answer."
+    "In main() of a client, call rclpy.init(), and then the function that sends the request or the goal and waits "
+    "for the answer."
 )
-_BEGIN_AT_TODO = "If your code still has its TODO, begin there."
+_BEGIN_AT_TODO = "If your code still has a TODO, write that step first."
 
 
 def _what_main_does(evidence: Evidence) -> str:
-    """Return in words what main() has to do for the task: for a server, a client or both."""
+    """Return in words what main() must do in this exercise: spin a node, make a request, or both."""
     roles = evidence.reference.interface.keys()
     clients = roles & {"client", "action_client"}
     return " ".join([_SPINS] * (roles != clients or not roles) + [_CALLS] * bool(clients))
@@ -40,15 +41,14 @@ def _main_guard(evidence: Evidence) -> Advice | None:
         return None
     if evidence.main.had_node:
         return None
-    at_once = "The program ended at once, without a word and without a node:"
-    if report_of(evidence.main) is not None:  # the program starts by its entry point, which calls main()
-        return Advice(f"{at_once} its main() makes none.", f"{_what_main_does(evidence)} {_BEGIN_AT_TODO}")
+    at_once = "The program ended at once, without any output and without a node:"
+    if report_of(evidence.main) is not None:  # The program is started by its entry point, which calls main().
+        return Advice(f"{at_once} its main() makes no node.", f"{_what_main_does(evidence)} {_BEGIN_AT_TODO}")
     return Advice(
-        f"{at_once} main() makes none, or nothing calls main().",
-        f"{_what_main_does(evidence)} Python calls main() only if the file ends with "
-        "`if __name__ == '__main__':` (two underscores on each side) and, indented below it, `main()`; `ros2 run` "
-        "calls it in any case. "
-        f"{_BEGIN_AT_TODO}",
+        f"{at_once} main() makes no node, or nothing calls main().",
+        f"{_what_main_does(evidence)} Python calls main() only if the last lines of the file are "
+        "`if __name__ == '__main__':` (two underscores on each side) and, indented below it, `main()`. (`ros2 run` "
+        f"calls main() even without these lines.) {_BEGIN_AT_TODO}",
     )
 
 
@@ -56,7 +56,7 @@ _USAGE = re2.compile(r"(?i)\b(?:usage|uso|utilisation|aufruf|benutzung|verwendun
 
 
 def _usage_message(evidence: Evidence) -> str:
-    """Return the line in which a program explains its arguments, if it made no request; else empty."""
+    """Return the line in which a program printed how to use it; empty if there is none, or if it sent a request."""
     if evidence.in_a_notebook:
         return ""
     told = [line for part in evidence for line in part.said() if _USAGE.search(line)]
@@ -67,9 +67,9 @@ def _usage_message(evidence: Evidence) -> str:
 USAGE_MESSAGE = mistake(
     "usage_message",
     _usage_message,
-    "Your program did not accept the arguments that it was called with: “{}”.",
-    "Count them: sys.argv[0] is the program itself, so one argument makes len(sys.argv) 2, two make 3, and three make "
-    "4. A negative number is a number, too.",
+    "Your program did not accept the arguments that the check gave it: “{}”.",
+    "Check how your program counts its arguments. sys.argv[0] is the program's name, so len(sys.argv) is 2 for one "
+    "argument, 3 for two and 4 for three. Negative numbers are valid, too.",
     certain=True,
 )
 
@@ -79,7 +79,7 @@ _WORK = ("message", "request", "answered", "goal", "goal_answer", "matched")
 
 
 def ended_too_early(evidence: Evidence) -> Advice | None:
-    """The subject ended by itself before its work was finished, after it had said or done something."""
+    """Return advice if the subject ended by itself before its work was finished."""
     ending = evidence.main.ending
     if ending is None or traceback_of(evidence) or _main_guard(evidence):
         return None
@@ -87,27 +87,29 @@ def ended_too_early(evidence: Evidence) -> Advice | None:
     exited = f"ended by itself, with exit code {code}," if code else "ended by itself"
     how = {"exited": exited, "returned": "returned"}.get(ending.name, "ended")
     keep = (
-        "Keep it alive while it has work to do, for example with rclpy.spin(your_node), above anything that ends it; "
-        "exit() in a callback does, too."
+        "Keep the program running while it has work to do, for example with rclpy.spin(your_node). Put code that "
+        "ends the program below the spin. Do not call exit() in a callback."
     )
     if not any(part.said() or any(map(part.of, _WORK)) for part in evidence):
         return Advice(
-            f"The program {how} and did nothing that the judge could see.", f"{_BEGIN_AT_TODO} {keep}"
+            f"The program {how} and did nothing that the judge could observe.", f"{_BEGIN_AT_TODO} {keep}"
         )
     roles = evidence.reference.interface.keys()
     if roles and roles <= {"client", "action_client"}:
-        return None  # a client that did something may end when it likes: the criteria say what is missing
+        return None  # A client that did something may end. The criteria say what is missing.
     asked = evidence.main.of("asked")
     is_open = len(asked) > len(evidence.main.of("answered"))
-    when = f"when {asked[-1].name} was called, and no answer came" if is_open else "before its work was done"
+    when = (
+        f"when {asked[-1].name} was called, and no answer came" if is_open else "before its work was finished"
+    )
     return Advice(f"The program {how} {when}.", keep)
 
 
 def _not_written(evidence: Evidence) -> str:
-    """Return in words what no node does yet, although the code runs; empty if each expected endpoint exists."""
+    """Return an endpoint that is missing although the code runs, such as "publishes on /chatter"; empty if none."""
     part = evidence.main
     if part.ending is not None and part.ending.name == "exited" and part.had_node:
-        return ""  # a program may end before the graph shows its endpoints
+        return ""  # A program may end before the ROS graph shows its endpoints.
     nodes = any(survey.data.get("nodes") for survey in part.of("interface"))
     returned_silently = part.returned is not None and not part.said()
     wanted = evidence.reference.interface
@@ -120,7 +122,7 @@ def _not_written(evidence: Evidence) -> str:
 
 
 def _returned_silently(evidence: Evidence) -> bool:
-    """A function returned nothing, said nothing and requested nothing, in each run."""
+    """Return True if a function did nothing in any run: it returned, but printed, requested and published nothing."""
     asks = ("request", "goal", "message")
     return bool(evidence.main.events) and all(
         part.returned is not None and not part.said() and not any(map(part.of, asks)) for part in evidence
@@ -128,16 +130,13 @@ def _returned_silently(evidence: Evidence) -> bool:
 
 
 def _returned_at_once(evidence: Evidence) -> bool:
-    """A function returned silently, as above, and did not wait either, although it was told how long to wait.
-
-    So most of the function is missing.
-    """
+    """Return True if a function did nothing in any run and returned at once, although it was told how long to wait."""
     asked = any(part.of("called") or part.of("looked") for part in evidence)
     return not asked and all(map(ended_at_once, evidence)) and _returned_silently(evidence)
 
 
 def _without_node(evidence: Evidence) -> str:
-    """Return how a sentence to the student begins if the subject never had a node; empty if it had one."""
+    """Return the first words of "... node of yours appeared on the graph"; empty if the subject had a node."""
     if any(part.had_node or any(map(part.of, ("log", "request", "goal", "message"))) for part in evidence):
         return ""
     ending = evidence.main.ending
@@ -146,15 +145,15 @@ def _without_node(evidence: Evidence) -> str:
 
 
 def _surely_without_node(evidence: Evidence) -> str:
-    """Return the same as :func:`_without_node`, but an empty text for a function that returned.
+    """Return the text of :func:`_without_node`, but an empty text for a function that returned.
 
-    The node of such a function may have ended before the graph showed it.
+    The node of a function that returned may have ended before the graph showed it.
     """
     return "" if evidence.main.returned is not None else _without_node(evidence)
 
 
 def _never_constructed(part: Part) -> bool:
-    """True if the constructor of a notebook's class never finished."""
+    """Return True if the constructor of a notebook's class never returned."""
     return part.first("subject", "never_constructed") is not None
 
 
@@ -165,19 +164,20 @@ def _works(part: Part) -> bool:
 NEVER_CONSTRUCTED = mistake(
     "never_ended",
     lambda evidence: any(_never_constructed(part) and not _works(part) for part in evidence),
-    "Your node is never finished: its __init__ has a loop without an end, or waits for something.",
-    "Let __init__ only make what the node needs, and leave the work to callbacks: no loop and no wait in it.",
+    "The __init__ of your node never returns: it has a loop without end, or waits for something.",
+    "In __init__, only make what the node needs, such as publishers and timers. Let callbacks do the work. Do not "
+    "loop or wait in __init__.",
     certain=True,
 )
 
 
 def constructor_remark(evidence: Evidence) -> str:
-    """Return a remark on a class that works in its constructor, which is right only in a program; else empty."""
+    """Return a remark on a class that does its work in its constructor; empty for any other class."""
     if not any(_never_constructed(part) and _works(part) for part in evidence):
         return ""
     return (
-        "Your node works inside its __init__, which never comes to its end: the line that makes the node never comes "
-        "to its end either. Let __init__ only make what the node needs, and leave the work to callbacks."
+        "Your node does its work inside its __init__, which never returns, so the line that makes the node never "
+        "ends. In __init__, only make what the node needs, such as publishers and timers. Let callbacks do the work."
     )
 
 
@@ -185,13 +185,15 @@ NOT_BEGUN, _RETURNED_SILENTLY = (
     mistake(
         "not_written",
         found,
-        "Your function returns nothing, at once, and calls no server: a step is not written yet.",
+        "Your function returns at once without a value and calls no server: a step is not written yet.",
         STEP_MISSING,
         certain=True,
     )
     for found in (_returned_at_once, _returned_silently)
 )
-"""A function that is still as it was handed out. This is checked before mistakes in how it calls, waits or gives up."""
+"""The mistakes of a function that is not written yet. NOT_BEGUN is checked before mistakes in how the function calls,
+waits or gives up.
+"""
 NOTHING_THERE = (
     _RETURNED_SILENTLY,
     Mistake("main_guard", _main_guard, certain=True),
@@ -200,15 +202,15 @@ NOTHING_THERE = (
             "nothing_on_the_graph",
             found,
             "{} node of yours appeared on the graph.",
-            "In a program, call rclpy.init() in main(), then make your node (of your class, or with create_node) and "
-            "spin it, which keeps the program running. In a notebook, make the node in your function (start_ros() has "
-            "started ROS) and do all of the work before the function returns. If your code does that already, leave "
-            "out domain_id and ROS_DOMAIN_ID: the judge looks for your node in the domain in which it was started.",
+            "In a program, call rclpy.init() in main(), make your node and spin it, which keeps the program running. "
+            "In a notebook, make the node in your function (start_ros() has started ROS), and do all the work before "
+            "the function returns. If your code does that already, do not set domain_id or ROS_DOMAIN_ID: the judge "
+            "looks for your node only in the domain in which the judge started it.",
             certain=found is _surely_without_node,
         )
         for found in (_surely_without_node, _without_node)
     ),
-    mistake("not_written", _not_written, "Your code runs, but nothing of it {} yet.", STEP_MISSING),
+    mistake("not_written", _not_written, "Your code runs, but no node of yours {} yet.", STEP_MISSING),
     Mistake("ended_too_early", ended_too_early),
 )
-"""The mistakes that are checked last, if nothing more exact fits."""
+"""The mistakes that are checked last, if no more specific mistake is recognized."""

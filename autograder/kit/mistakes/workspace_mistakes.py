@@ -1,4 +1,4 @@
-"""Mistakes in a workspace, recognized from the report of the build and from messages of ``ros2``."""
+"""Mistakes in a workspace, recognized from the report of its build."""
 
 from __future__ import annotations
 
@@ -14,30 +14,30 @@ if TYPE_CHECKING:
 
 
 def build_report(part: Part) -> WorkspaceReport | None:
-    """Return the report made after the build; if there is none, the one made before the build."""
+    """Return the report made after the build; if there is none, the report made before the build."""
     return report_of(part) or report_of(part, "found")
 
 
 def seen_of_build(report: WorkspaceReport) -> str:
-    """Return the outcome of a build, in a few words for the card."""
+    """Return the outcome of a build in a few words for the card."""
     if report.trouble in ("build", "entry_point"):
         return f"colcon could not build {report.package or 'it'}: {report.line}"
     return report.line or report.trouble.replace("_", " ")
 
 
 def changed_since_build(evidence: Evidence) -> str:
-    """Return the card's remark if the student has changed sources since the last `colcon build`; else an empty text."""
+    """Return a remark for the card if sources have changed since the student's last `colcon build`; else empty."""
     report = build_report(evidence.main)
     if report is None or not report.changed:
         return ""
     return (
-        f"Changed since the last `colcon build`: {report.changed}. This check has built the sources as they are now; "
-        "`ros2 run` starts the older build until you run `colcon build` again."
+        f"Changed since the last `colcon build`: {report.changed}. This check has built the sources as they are now, "
+        "but `ros2 run` starts the older build until you run `colcon build` again."
     )
 
 
 def _trouble(evidence: Evidence, *kinds: str) -> WorkspaceReport | None:
-    """Return the report of the build if its trouble is one of these kinds; else None."""
+    """Return the report of the build if its trouble is one of the given kinds; otherwise None."""
     report = build_report(evidence.main)
     return report if report is not None and report.trouble in kinds else None
 
@@ -48,20 +48,23 @@ def _build_failed(evidence: Evidence) -> Advice | None:
         return None
     if re2.search(r"rosidl_generate_interfaces\(\) the passed file '[^']*' doesn't exist", report.line):
         next_step = (
-            "Write the path as it is seen from the folder of the package, with the folder that the file is in, such as "
-            '"srv/Name.srv"; capitals count.'
+            'Write the path relative to the folder of the package, such as "srv/Name.srv". Check capital letters, '
+            "too."
         )
     elif re2.search(r":\d+: ", report.line):
         next_step = (
-            "Go to the place that the line names. `colcon build` in the workspace shows the whole log."
+            "Go to the file and line in this message. `colcon build` in the workspace shows the whole log."
         )
     else:
-        next_step = "`colcon build` in the workspace shows the whole log: look for the first line with the word error."
+        next_step = (
+            "Run `colcon build` in the workspace to see the whole log, and look for the first line with the word "
+            "error."
+        )
     return Advice(f"colcon build fails in {report.package or 'the workspace'}: {report.line}", next_step)
 
 
 def _unreadable(evidence: Evidence) -> tuple[str, WorkspaceReport] | None:
-    """Return the file that Python could not parse during the build, with the report; None if there is none."""
+    """Return the file that Python could not parse during the build, and the report; None if there is no such file."""
     report = _trouble(evidence, "build")
     if report is None or not re2.search(r"(?:Syntax|Indentation|Tab)Error", report.line):
         return None
@@ -73,22 +76,22 @@ BUILD = (
         "no_workspace",
         lambda evidence: _trouble(evidence, "no_workspace", "no_package"),
         "There is nothing to build: {0.line}.",
-        "A workspace is a folder with src in it, and each package is a folder in src, made there with "
-        "`ros2 pkg create`.",
+        "A workspace is a folder that contains a folder `src`. Make each package inside `src`, with `ros2 pkg create`.",
         certain=True,
     ),
     mistake(
         "bad_package",
         lambda evidence: _trouble(evidence, "bad_package"),
-        "A package cannot be used: {0.line}.",
-        "Correct package.xml. colcon does not say that it is not valid, and treats the package as another kind.",
+        "A package cannot be built: {0.line}.",
+        "Correct package.xml. colcon does not report that this file is not valid, and builds the package as another "
+        "type.",
         certain=True,
     ),
     mistake(
         "syntax_error",
         _unreadable,
-        "Python could not read {0[0]} when {0[1].package} was built: {0[1].line}",
-        "A bracket, a quote, a colon or the indentation is off there or just before it.",
+        "Python could not read {0[0]} when it built {0[1].package}: {0[1].line}",
+        "In this line or just before it, a bracket, a quotation mark, a colon or the indentation is wrong.",
         certain=True,
     ),
     mistake(
@@ -101,4 +104,3 @@ BUILD = (
     Mistake("build_failed", _build_failed, certain=True),
 )
 """Mistakes that keep a workspace from being built."""
-"""The mistake that ROS, in a command's environment, does not know the package."""

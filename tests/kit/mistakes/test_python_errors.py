@@ -21,58 +21,58 @@ SAID = {
     "SyntaxError: invalid syntax": "just before it",
     "SyntaxError: invalid character '“' (U+201C)": "quotation marks are",
     "IndentationError: expected an indented block after 'if' statement on line 4": "begin in the same column",
-    "SyntaxError: 'return' outside function": "Indent by four spaces",
-    "ImportError: cannot import name 'Strng' from 'std_msgs.msg' (/opt/ros/x/__init__.py)": "nothing called Strng",
+    "SyntaxError: 'return' outside function": "indent the lines that belong to it",
+    "ImportError: cannot import name 'Strng' from 'std_msgs.msg' (/opt/ros/x/__init__.py)": "does not contain Strng",
     "AttributeError: module 'rclpy' has no attribute 'Node'": "`from rclpy.node import Node`",
     "NameError: name 'time' is not defined": "Write import time",
-    "NameError: name 'std_msgs' is not defined": "String in place of std_msgs.msg.String",
+    "NameError: name 'std_msgs' is not defined": "String instead of std_msgs.msg.String",
     "NameError: name 'self' is not defined": "such as node or client",
     "NameError: name 'count' is not defined. Did you mean: 'self.count'?": "write self.count",
-    "NameError: name 'comand' is not defined. Did you mean: 'command'?": "and knows command",
+    "NameError: name 'comand' is not defined. Did you mean: 'command'?": "it knows command",
     "NameError: name 'publisher' is not defined": "also in the line that sets it",
     "NameError: name 'linear' is not defined": "A Twist has two parts",
     "UnboundLocalError: local variable 'i' referenced before assignment": "write self.i",
     "AttributeError: 'Talker' object has no attribute 'cuont'. Did you mean: 'count'?": "write count.",
-    "AttributeError: 'Talker' object has no attribute 'Counter'": "Talker has nothing called Counter so far",
-    "AttributeError: 'Timer' object has no attribute 'publish'": "of the type Timer here",
-    "AttributeError: 'NoneType' object has no attribute 'order'": "has run before this one",
-    "TypeError: 'NoneType' object is not iterable": "as append of a list does",
-    "AttributeError: 'function' object has no attribute 'add_done_callback'": "a method that was not called",
+    "AttributeError: 'Talker' object has no attribute 'Counter'": "Talker has no Counter at this point",
+    "AttributeError: 'Timer' object has no attribute 'publish'": "has the type Timer",
+    "AttributeError: 'NoneType' object has no attribute 'order'": "has run before this line",
+    "TypeError: 'NoneType' object is not iterable": "such as the append of a list",
+    "AttributeError: 'function' object has no attribute 'add_done_callback'": "a method that your code did not call",
     "TypeError: 'method' object is not iterable": "Write parentheses after the method's name",
-    "AttributeError: type object 'GoalResponse' has no attribute 'Accept'": "constants have capitals only",
-    "AttributeError: property 'speed' of 'Robot' object has no setter": "speed of Robot can only be read",
-    "AttributeError: partially initialized module 'random' has no attribute 'x'": "Give your file another name",
+    "AttributeError: type object 'GoalResponse' has no attribute 'Accept'": "written in capital letters",
+    "AttributeError: property 'speed' of 'Robot' object has no setter": "speed of Robot can be read but not set",
+    "AttributeError: partially initialized module 'random' has no attribute 'x'": "Rename your file",
     'TypeError: can only concatenate str (not "NoneType") to str': "Put the value into an f-string",
-    "TypeError: unsupported operand type(s) for +: 'int' and 'str'": "turn the string into a number",
+    "TypeError: unsupported operand type(s) for +: 'int' and 'str'": "convert the string to a number",
     "TypeError: 'Fibonacci_Result' object is not iterable": "answer.result.sequence",
     "TypeError: 'dict' object is not callable": "names[key]",
-    "TypeError: Talker is not a Node: write class Talker(Node)": "so the class is the node: write class Talker(Node):",
+    "TypeError: Talker is not a Node: write class Talker(Node)": "Write class Talker(Node):",
     "TypeError: rclpy_logging_rcutils_log(): incompatible function arguments. The": "info(f'{message.data}')",
-    "TypeError: ask() missing 3 required positional arguments: 'a', 'b', and 'patience_sec'": "first line of ask",
-    "TypeError: ActionServer.__init__() takes 5 positional arguments but 7 were given": "first line of ActionServer",
-    "TypeError: spin() got an unexpected keyword argument 'nod'": "the same name left of each =",
-    "rclpy.exceptions.InvalidTopicNameException: Invalid topic name": "no slash at its end",
+    "TypeError: ask() missing 3 required positional arguments: 'a', 'b', and 'patience_sec'": "call of ask with its",
+    "TypeError: ActionServer.__init__() takes 5 positional arguments but 7 were given": "call of ActionServer with its",
+    "TypeError: spin() got an unexpected keyword argument 'nod'": "the same names before each =",
+    "rclpy.exceptions.InvalidTopicNameException: Invalid topic name": "or end with a slash",
     "ValueError: Failed to create action client due to invalid topic name 'fibonacci/' : topic name must not contain "
-    "repeated '/'": "no slash at its end",
-    "IndexError: pop from empty list": "no element left",
-    "StopIteration": "no element left",
+    "repeated '/'": "or end with a slash",
+    "IndexError: pop from empty list": "none is left",
+    "StopIteration": "none is left",
     "ValueError: invalid literal for int() with base 10: '{five}'": "'{five}' is not a number",
     "ValueError: could not convert string to float: 'five'": "'five' is not a number",
-    f"{TRANSITION} CANCELED with event SUCCEED, at goal_handle.c:100": "End each goal once",
+    f"{TRANSITION} CANCELED with event SUCCEED, at goal_handle.c:100": "End each goal exactly once",
     "LookupError: nothing": "Read the traceback from the bottom",
     "TypeError: Node.__init__() missing 1 required positional argument: 'node_name'": "Write def __init__(self):",
-    "TypeError: descriptor '__init__' requires a 'super' object": "super().__init__('your_node_name') its first line",
-    "TypeError: Expected QoSProfile or int, but received <class 'str'>: 10": "the 10 without quotation marks",
+    "TypeError: descriptor '__init__' requires a 'super' object": "super().__init__('your_node_name') the first line",
+    "TypeError: Expected QoSProfile or int, but received <class 'str'>: 10": "do not put the 10 in quotation marks",
     "TypeError: Expected <class 'std_msgs.msg._string.String'>, got <class 'std_msgs.msg._string.Metaclass_String'>": (
-        "instead of a String"
+        "not an object of the type String"
     ),
     "AttributeError: type object 'type' has no attribute '_TYPE_SUPPORT'": "Python's own str is not String",
-    "AssertionError: The 'linear' field must be a sub message of type 'Vector3'": "one by one: command.linear.x = 0.5",
+    "AssertionError: The 'linear' field must be a sub message of type 'Vector3'": "separately: command.linear.x = 0.5",
     "AssertionError: The 'data' field must be of type 'str'": "str(...)",
     "SystemError: <built-in method publish of x> returned a result with an exception set": "or a number that is too",
     "AttributeError: 'Fibonacci_Feedback' object attribute 'partial_sequence' is read-only": "Run All Cells",
-    "AttributeError: 'String' object has no attribute 'date'": "single field, data",
-    "AttributeError: 'AddTwoInts_Response' object has no attribute 'a'": "the request first, then the response",
+    "AttributeError: 'String' object has no attribute 'date'": "single field, `data`",
+    "AttributeError: 'AddTwoInts_Response' object has no attribute 'a'": "the request first and then the response",
     "AttributeError: 'Fibonacci_Feedback' object has no attribute 'sequence'": "Fibonacci_Feedback has no field called",
     "AttributeError: 'Fibonacci_FeedbackMessage' object has no attribute 'goal_handle'": "as in self.goal_handle",
 }
@@ -92,7 +92,7 @@ def test_the_card_names_what_to_mend(last: str) -> None:
         (
             "execute_callback=compute(),",
             "TypeError: compute() missing 1 required positional argument: 'goal_handle'",
-            "write its name alone, without parentheses",
+            "pass only its name, without parentheses",
         ),
         (
             "if not client.goal_handle.accepted:",
@@ -102,32 +102,32 @@ def test_the_card_names_what_to_mend(last: str) -> None:
         (
             "cancel_future = self.goal_handle.cancel_goal_async()",
             "AttributeError: 'NoneType' object has no attribute 'cancel_goal_async'",
-            "keep its result in self.goal_handle",
+            "store its result in self.goal_handle",
         ),
         (
             "future = client.actions.send_goal_async(goal, feedback_callback=client.on_feedback())",
             "TypeError: FibonacciClient.on_feedback() missing 1 required positional argument: 'message'",
-            "Write only its name, client.on_feedback, without",
+            "Pass only the method's name, client.on_feedback, without",
         ),
         (
             "self.create_subscription(String, 'chatter', self.hear(), 10)",
             "TypeError: Listener.hear() missing 1 required positional argument: 'message'",
-            "The parentheses after hear call it at once",
+            "The parentheses after hear call the method at once",
         ),
         (
             "self.create_subscription(String, 'chatter', None, 10)",
             "RuntimeError: Subscription.__init__(): callback should be either be callable with one argument",
-            "Besides self, a timer's callback takes nothing and a subscription's takes the message",
+            "Apart from self, a timer's callback has no parameter, and a subscription's callback has one, the message",
         ),
         (
             "total = fut.result().sum",
             "AttributeError: 'NoneType' object has no attribute 'sum'",
-            "Wait first: rclpy.spin_until_future_complete(your_node, fut)",
+            "Wait before you read the answer: rclpy.spin_until_future_complete(your_node, fut)",
         ),
         (
             "print(goal.get_result_async().result().status)",
             "AttributeError: 'NoneType' object has no attribute 'status'",
-            "Look at your_future.done()",
+            "your_future.done() tells you",
         ),
         (
             "return first.sum + second.sum",
@@ -137,12 +137,12 @@ def test_the_card_names_what_to_mend(last: str) -> None:
         (
             "print(replies[0].sum)",
             "AttributeError: 'Future' object has no attribute 'sum'",
-            "Read replies[0].result().sum",
+            "read replies[0].result().sum",
         ),
         (
             "print(cli.call_async(request).sum)",
             "AttributeError: 'Future' object has no attribute 'sum'",
-            "sum is read from a future, which",
+            "Your code reads sum from a future.",
         ),
         ("cmd.x = 0.5", "AttributeError: 'Twist' object has no attribute 'x'", "cmd.linear.x = 0.5 drives"),
         ("m.data = 'hi'", "AttributeError: 'String' object attribute 'data' is read-only", "m = String()"),
@@ -159,7 +159,7 @@ def test_the_card_names_what_to_mend(last: str) -> None:
         (
             "print(log.info)",
             "AttributeError: 'Timer' object has no attribute 'info'",
-            "log is of the type Timer here",
+            "log has the type Timer",
         ),
         ("feedback.publish_feedback(1)", "TypeError: ", "feedback = Fibonacci.Feedback()"),
     ],
@@ -182,7 +182,7 @@ def test_the_line_that_raised_tells_what_to_write(code: str, last: str, advice: 
 def test_only_a_line_of_the_students_own_tells_a_name(file: str, future: str) -> None:
     lines = f'  File "{file}", line 3, in f\n    print(fut.sum)\n'
     last = "AttributeError: 'Future' object has no attribute 'sum'"
-    assert f"Read {future}.result().sum" in told(f"Traceback (most recent call last):\n{lines}{last}")
+    assert f"read {future}.result().sum" in told(f"Traceback (most recent call last):\n{lines}{last}")
 
 
 IN_THE_EXECUTOR = (
@@ -219,7 +219,7 @@ def test_a_spin_inside_a_callback_is_told_only_where_a_callback_spins() -> None:
     )
     assert diagnosed(f"{nested}{GENERATOR}") == "nested_spin"
     assert diagnosed(f"{in_a_thread}{GENERATOR}") == "crashed"
-    assert "Two threads spin at once by the same executor" in told(f"{in_a_thread}{GENERATOR}")
+    assert "Two threads spin the same executor at the same time" in told(f"{in_a_thread}{GENERATOR}")
 
 
 def test_what_ros_raised_of_a_notebooks_node_names_the_node_and_no_traceback_that_is_not_there() -> None:
@@ -228,7 +228,7 @@ def test_what_ros_raised_of_a_notebooks_node_names_the_node_and_no_traceback_tha
     assert diagnosed(no_hash, made) == "crashed"
     assert "A node cannot be a `@dataclass`" in told(no_hash, made)
     for words in (told("RuntimeError: nothing known", made), told("ValueError: neither")):
-        assert "Compare what your code gives to ROS" in words
+        assert "Look at what your code passes to ROS" in words
         assert "Read the traceback" not in words
 
 
@@ -246,11 +246,15 @@ def test_a_program_s_traceback_has_lines_of_the_generated_module_in_it() -> None
 @pytest.mark.parametrize(
     ("code", "last", "says"),
     [
-        ("self.get_logger()", "'Twist' object has no attribute 'get_logger'", "Write self first"),
+        (
+            "self.get_logger()",
+            "'Twist' object has no attribute 'get_logger'",
+            "Make self the first parameter",
+        ),
         (
             "self.create_action_server(f)",
             "'Talker' object has no attribute 'create_action_server'",
-            "Talker has nothing",
+            "Talker has no create_action_server",
         ),
         ("msg.get_logger()", "'String' object has no attribute 'get_logger'", "no field called get_logger"),
         ("self.msg.publisher_count", "'String' object has no attribute 'publisher_count'", "no field called"),

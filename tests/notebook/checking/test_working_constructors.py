@@ -75,7 +75,7 @@ def test_what_works_in_its_constructor_passes_with_a_word_on_it(exercise: str, n
     with a_judge() as checked:
         verdict = checked(exercise, node)
     assert verdict.passed, [f"{c.name}: {c.seen}" for c in verdict.criteria if not c.passed]
-    assert any("works inside its __init__" in remark for remark in verdict.remarks)
+    assert any("does its work inside its __init__" in remark for remark in verdict.remarks)
 
 
 @pytest.mark.parametrize(
