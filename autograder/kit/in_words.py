@@ -1,13 +1,13 @@
-"""Small texts: counts, lists, the difference of two texts, and sentences only for notebooks or only for programs."""
+"""Makes small texts for cards: counts, lists, the first difference of two texts, and advice for one kind of answer."""
 
 from __future__ import annotations
 
 import re2
 
 SHOWN = 16
-"""The maximum number of characters to quote from the position at which two texts differ."""
+"""The maximum number of characters to quote from the place where two texts differ."""
 _LONG_LIST = re2.compile(r"\[(-?\d+(?:, -?\d+){4}), (?:-?\d+, ){6,}(-?\d+, -?\d+)\]")
-"""Matches a list of more than a dozen numbers; the groups keep the first five and the last two."""
+"""Matches a list of more than a dozen numbers. The groups contain the first five and the last two numbers."""
 _OF_ITS_KIND = {
     kind: re2.compile(rf"(^|[.?!] )(?:In a {kind}, .*?[.?!](?: |$))+") for kind in ("notebook", "program")
 }
@@ -35,12 +35,12 @@ def _next(text: str, same: str) -> str:
 
 
 def shortened(text: str) -> str:
-    """Return the text without the middle of each long list of numbers."""
+    """Return the text with ``…`` instead of the middle of each long list of numbers."""
     return str(_LONG_LIST.sub(lambda found: f"[{found[1]}, …, {found[2]}]", text))
 
 
 def visible(text: str) -> str:
-    """Return the text with Python escapes instead of whitespace that looks like another kind, such as a line end."""
+    """Return the text with each whitespace character, except a space, written as a Python escape."""
     return "".join(
         character.encode("unicode_escape").decode() if character.isspace() and character != " " else character
         for character in text
@@ -48,11 +48,11 @@ def visible(text: str) -> str:
 
 
 def of_its_kind(text: str, in_a_notebook: bool) -> str:
-    """Return the text without the sentences that are meant for the other kind of answer.
+    """Return the advice without sentences for the other kind of answer: notebook or program.
 
     Args:
-        text: The text. A sentence in it that begins with ``In a notebook,`` is only for answers in a notebook; one
-            that begins with ``In a program,`` only for programs.
+        text: The advice. A sentence that begins with ``In a notebook,`` is only for answers in a notebook; a sentence
+            that begins with ``In a program,`` is only for programs.
         in_a_notebook: True if the answer is a class or a function of a notebook.
     """
     other = _OF_ITS_KIND["program" if in_a_notebook else "notebook"]

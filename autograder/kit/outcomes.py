@@ -1,11 +1,12 @@
-"""Outcomes that a program has to report. The task names a word for each, and a line with this word reports it.
+"""Outcomes that a program must report, such as a rejected goal, in a line with a word that the task names.
 
 An exercise declares its outcomes, such as ``REJECTED = Outcome("rejected")``, and its task names the same words. One
 rule holds for all of them. An outcome is reported if, in its run, the program logs, prints, raises or returns a line
 with the word, and if this line, apart from numbers, does not also appear in runs with other outcomes.
 
-A program passes if it says all words in each run, in a line with a word that it draws. One run of each outcome cannot
-tell such a line from ``canceled: True`` beside ``canceled: False``, which is a report.
+This rule has a known gap: a program also passes if, in each run, it prints a line with all words and a random word. The
+judge cannot tell this from ``canceled: True`` in one run and ``canceled: False`` in the others, which is a right
+report.
 """
 
 from __future__ import annotations
@@ -26,18 +27,22 @@ if TYPE_CHECKING:
 
 _STATUS = re2.compile(r"(?i)status")
 _STATUS_NUMBER = re2.compile(r"(^\D*|[:=]\s*|\bis )([0-6])\b")
-"""Matches a status number after the word ``status``: the first number, or one after a colon, an equals sign or ``is``.
+"""Matches a status number in the text after the word ``status``: the first number in it, or one after a colon, an
+equals sign or ``is``.
 """
 _NUMBERS = re2.compile(r"[\pL\pN_.+-]*\pN[\pL\pN_.+-]*|[\[\](){},;\s]+")
-"""Matches numbers, words that contain a digit (such as a goal's id), and the separators between numbers of a list."""
+"""Matches text that :func:`shape` removes: numbers, words that contain a digit (such as a goal's id), and separators in
+a list of numbers.
+"""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """An outcome, and the word from the task that reports it.
+    """An outcome, and the word with which the task asks the program to report it.
 
     Attributes:
-        word: The word, in upper or lower case. A goal's status number after the word ``status`` also counts.
+        word: The word, in lower case; a line may contain it in any case. If the word is the name of a goal's status,
+            its number after the word ``status`` also counts.
         other: A second spelling of the word, or a second word that the task allows.
     """
 
@@ -45,7 +50,10 @@ class Outcome:
     other: str = ""
 
     def is_said_in(self, line: str) -> bool:
-        """Return True if a line contains the word. Any whitespace in the line counts as one space."""
+        """Return True if a line contains the word, or the status number that stands for it.
+
+        Line breaks and other whitespace in the line count as spaces.
+        """
         named = " ".join(_with_status_names(line).lower().split())
         return self.word in named or bool(self.other and self.other in named)
 
@@ -54,7 +62,7 @@ class Outcome:
         return list(filter(self.is_said_in, all_lines(part)))
 
     def reported(self, part: Part, others: Iterable[Part]) -> str:
-        """Return the line that reports the outcome in the outcome's run; empty if there is none.
+        """Return the line in the given run that reports the outcome; empty if there is none.
 
         Args:
             part: The run that ended with this outcome.
@@ -64,15 +72,15 @@ class Outcome:
         return next((line for line in self.lines(part) if shape(line) not in usual), "")
 
     def missing(self, part: Part, others: Sequence[Part]) -> str:
-        """Return in words, for the card, what was said instead of a report; empty if the outcome is reported."""
+        """Return in words for the card what the program reported instead; empty if it reported the outcome."""
         if self.reported(part, others):
             return ""
         if told := self.lines(part):
-            return f"“{told[-1]}”, which is also said when it is not so"
-        return f"“{said}”" if (said := _most_telling(part, others)) else "nothing was said of it"
+            return f"“{told[-1]}”, which your program also says in runs with another outcome"
+        return f"“{said}”" if (said := _most_telling(part, others)) else "it was not reported"
 
     def advice(self, part: Part, others: Sequence[Part], what: str, next_step: str) -> Advice:
-        """Return the advice for an outcome that is not reported. It quotes the program's own line.
+        """Return the advice for a program that does not report the outcome. It quotes one of the program's lines.
 
         Args:
             part: The run that ended with this outcome.
@@ -82,31 +90,31 @@ class Outcome:
         """
         asked = f"the task asks for a line with {self}"
         if told := self.lines(part):
-            says = f"your program said “{told[-1]}”. It says that also when it is not so"
+            says = f"your program said “{told[-1]}”. But it says the same in runs with another outcome"
         elif said := _most_telling(part, others):
             says = f"your program said “{said}”; {asked}"
         else:
-            says = f"your program did not say so; {asked}"
+            says = f"your program did not report this; {asked}"
         return Advice(f"{what}, and {says}.", next_step)
 
     def __str__(self) -> str:
-        """Return the word as the card shows it."""
+        """Return the word as the card shows it, such as "the word `rejected`"."""
         return f"the word{'s' * (' ' in self.word)} `{self.word}`"
 
 
 def all_lines(part: Part) -> list[str]:
-    """Return everything that a program said in a run: logged, printed, returned, or raised on purpose."""
+    """Return all lines of a program in a run: logged, printed, returned, or raised on purpose."""
     raised = raised_lines(part.traceback) if on_purpose(part.traceback) else []
     return [line for line in (*part.said(), *raised) if line.strip()]
 
 
 def shape(line: str) -> str:
-    """Return a line without its numbers, so that lines about two different goals can be compared."""
+    """Return a line without its numbers, in lower case, so that lines about two different goals can be compared."""
     return " ".join(_NUMBERS.sub(" ", _with_status_names(line).lower()).split())
 
 
 def shapes(parts: Iterable[Part]) -> set[str]:
-    """Return the shapes of all lines of these runs, as a set."""
+    """Return the :func:`shape` of each line in the given runs."""
     return {shape(line) for part in parts for line in all_lines(part)}
 
 
@@ -119,7 +127,7 @@ def _with_status_names(line: str) -> str:
 
 
 def _most_telling(part: Part, others: Sequence[Part]) -> str:
-    """Return the last line with words that other runs do not contain; failing that, the last line with any words."""
+    """Return the last line whose words occur in no other run; if there is none, the last line with words."""
     lines = [line for line in all_lines(part) if re2.search(r"\pL", line) and line != "None"]
     usual = shapes(others)
     new = [line for line in lines if shape(line) not in usual]

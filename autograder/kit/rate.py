@@ -1,8 +1,8 @@
-"""The rate of a talker, by simulated time if the talker follows it, else by the talker's own clock.
+"""Measures the rate of a talker: in simulated time if the talker follows it, otherwise in real time.
 
-In simulated time intervals are exact, so all of them count. In real time a busy machine may delay a message. So the
-judge waits until several successive messages keep the rate, and one of these may be late. The times are the
-publisher's own, unless they contradict the times of arrival.
+In simulated time, intervals are exact, so all of them count. In real time, a busy machine may delay a message. So it is
+enough if several successive messages have the right rate, and one of them may be late. The times are those at which the
+publisher says it sent the messages, unless the times of arrival contradict them.
 """
 
 from __future__ import annotations
@@ -21,27 +21,29 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part
 
 ROW = 7
-"""The minimum number of successive messages that show a rate in real time."""
+"""The number of successive messages that must have the right rate in real time."""
 LATE = 6
-"""Out of this many messages, one may be late."""
+"""In real time, one message out of this many may be late."""
 SIMULATED_TOLERANCE = 0.05
 """The tolerance for the mean interval in simulated time, as a fraction of the reference's interval."""
 SIMULATED_JITTER = 0.1
-"""The tolerance for a single interval, in simulated seconds: two steps of the judge's clock, or one long step."""
+"""The tolerance for a single interval, in simulated seconds. The judge moves its clock in steps: this is two steps, or
+one long step.
+"""
 SLOWER, FASTER = 0.18, 0.1
-"""The tolerances for the median interval in real time, as fractions of the reference's interval. Being slower is
-tolerated more, because load only makes a talker slower.
+"""The tolerances for the median interval in real time, as fractions of the reference's interval. The tolerance for
+slower talkers is larger, because load only makes a talker slower.
 """
 AT_ONCE = 0.1
-"""Two messages form a burst if the time between them is less than this fraction of the period."""
+"""Two messages form a burst if the time between them is less than this fraction of the right interval."""
 UNEVEN = 0.3
-"""The tolerance for a single interval in real time, as a fraction of the period."""
+"""The tolerance for a single interval in real time, as a fraction of the right interval."""
 ON_THE_WAY = 0.3
-"""The maximum number of seconds between the sending and the arrival of a message. If the difference is larger, or
-negative, the time of sending is ignored.
+"""The maximum delay in seconds from sending to arrival. If the delay of a message is longer, or negative, its time of
+sending is ignored.
 """
 ROUNDING = 0.005
-"""Seconds by which a later reading of the same clock may seem to be earlier, because of rounding."""
+"""The number of seconds by which a message may seem to arrive before it was sent, because times are rounded."""
 
 
 @dataclass(frozen=True)
@@ -51,8 +53,8 @@ class Rate:
     Attributes:
         period: The mean time between two messages, in seconds.
         intervals: The time between each two successive messages, in seconds.
-        even: True if all intervals are equal, within the tolerance.
-        kept: True if the measured rate is the required one.
+        even: True if all intervals are equal, within the tolerance; in real time, almost all.
+        kept: True if the measured rate is the right one, within the tolerance.
     """
 
     period: float
@@ -62,21 +64,22 @@ class Rate:
 
 
 def simulated(messages: Sequence[Event]) -> list[float]:
-    """Return the messages' simulated times; empty if they do not follow the simulated clock to the end.
+    """Return the simulated time of each message; empty if the publisher did not follow the simulated clock to the end.
 
-    The first message is left out, because the jump to simulated time distorts its time.
+    The first message is left out, because the jump to simulated time distorts the message's time.
     """
     follows = bool(messages) and messages[-1].sim is not None
     return [event.sim for event in messages if event.sim is not None][1:] if follows else []
 
 
 def rate_of(messages: Sequence[Event], wanted: float, row: int = ROW) -> Rate | None:
-    """Return the rate of messages; None if there are too few.
+    """Return the rate of a publisher's messages; None if there are too few messages.
 
     Args:
         messages: The messages that the judge received.
-        wanted: The reference's period, in seconds.
-        row: In real time, the number of successive messages that must keep the rate. The first such group decides.
+        wanted: The reference's interval, in seconds.
+        row: In real time, the number of successive messages that must have the right rate. The first such group
+            decides.
     """
     if times := simulated(messages):
         return _exact(times, wanted) if len(times) > 1 else None
@@ -89,8 +92,9 @@ def rate_of(messages: Sequence[Event], wanted: float, row: int = ROW) -> Rate | 
 def sent_times(messages: Sequence[Event]) -> list[float]:
     """Return the time at which each message was sent: the publisher's own time if that is plausible.
 
-    A busy judge receives messages late and close together, so the publisher's times are better. But a publisher that
-    falsifies its clock could report any time, so they are checked. Both processes read the same machine's clock.
+    The publisher's times are better, because a busy judge receives messages late and close together. But a publisher
+    could report a false time, so each time is compared with the time of arrival. Both processes read the same machine's
+    clock.
     """
     return [_sent(event) for event in messages]
 
@@ -104,19 +108,23 @@ def _sent(event: Event) -> float:
 def burst_at_the_start(messages: Sequence[Event], unheard: int, wanted: float) -> str:
     """Return in words what shows that a publisher began with a burst of messages; empty if nothing does.
 
-    messages: The messages that the judge received, from the first one that counts. unheard: The number of earlier
-    messages, which the judge could not receive. At the right rate each takes one period, so together they cannot take
-    longer than the time since the program began. wanted: The reference's period, in seconds.
+    Two facts show a burst: the first three messages came almost at once, or the judge missed more messages than a
+    talker with the right rate can have sent since the program began.
+
+    Args:
+        messages: The messages that the judge received, from the first one that counts.
+        unheard: The number of earlier messages, which the judge could not receive.
+        wanted: The reference's interval, in seconds.
     """
     if not messages:
         return ""
     first = messages[0]
     arrived = float(first.data.get("arrived", first.t))
-    # Only the publisher's clock is used, because messages that were held up during discovery arrive all at once.
+    # The times of arrival are not used, because messages that were held up during discovery arrive all at once.
     in_real_time = (one for one in messages if one.sim is None or one is first)
     sent = [float(one.data.get("sent", one.data.get("arrived", one.t))) for one in in_real_time]
     since = sent[0] - (arrived - first.t)
-    # The jump to simulated time may have brought the first received message forward.
+    # The jump to simulated time may have made the first received message come earlier.
     if (unheard - (first.sim is not None)) * wanted * (1 - FASTER) > since:
         return f"{counted(unheard + 1, 'message')} in the first {since:.1f} s"
     gaps = [after - before for before, after in pairwise(sent)]
@@ -135,7 +143,7 @@ def _exact(times: Sequence[float], wanted: float) -> Rate:
 def _at_a_glance(times: Sequence[float], wanted: float) -> Rate:
     gaps = [later - earlier for earlier, later in pairwise(times)]
     period, most = median(gaps), UNEVEN * wanted
-    # A late message makes one interval longer. The next one is shorter if the timer keeps its schedule.
+    # A late message makes one interval longer, and the next one shorter if the timer keeps its schedule.
     even = all(
         sum(off > most for off in offs) <= len(gaps) // LATE
         for offs in ([gap - period for gap in gaps], [period - gap for gap in gaps])
@@ -145,19 +153,19 @@ def _at_a_glance(times: Sequence[float], wanted: float) -> Rate:
 
 
 def confirmed(rate: Rate, before: Rate, wanted: float) -> bool:
-    """Return True if a rate in real time shows the same wrong period as an earlier rate in simulated time.
+    """Return True if a rate in real time confirms the wrong rate that was measured in simulated time.
 
-    A thread that sleeps in real time may seem slow, but only when measured in simulated time.
+    A thread that sleeps in real time may seem slow in simulated time, although its real rate is right.
     """
     wrong = abs(before.period - wanted) > SIMULATED_TOLERANCE * wanted
     return wrong and abs(rate.period - before.period) < abs(rate.period - wanted)
 
 
 def keeps_rate(seen: Part, expected: Part) -> Finding:
-    """Judge, for a single topic, whether messages come as often as the reference's.
+    """Decide whether the messages on a single topic come as often as the reference's.
 
     Raises:
-        ValueError: The reference has too few messages for a rate.
+        ValueError: The reference has too few messages to measure a rate.
     """
     messages, wanted = seen.of("message"), _period(expected)
     rate = rate_of(messages, wanted)
@@ -167,7 +175,7 @@ def keeps_rate(seen: Part, expected: Part) -> Finding:
 
 
 def another_rate(seen: Part, expected: Part) -> str:
-    """Return in words how often the subject publishes on a topic if not at the reference's rate; else an empty text."""
+    """Return the subject's rate in words if it is wrong; empty if it is right, or if there are too few messages."""
     rate = rate_of(seen.of("message"), _period(expected))
     return keeps_rate(seen, expected).seen if rate is not None and not rate.kept else ""
 
@@ -175,5 +183,7 @@ def another_rate(seen: Part, expected: Part) -> str:
 def _period(expected: Part) -> float:
     times = simulated(expected.of("message"))
     if len(times) < 2:
-        raise ValueError("the reference has fewer than three messages in simulated time: let more time run")
+        raise ValueError(
+            "the reference has fewer than three messages in simulated time: let the scenario run longer"
+        )
     return (times[-1] - times[0]) / (len(times) - 1)

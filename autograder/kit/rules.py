@@ -1,6 +1,6 @@
-"""Comparison of message contents, and rules for a subject that reports a state from time to time.
+"""Rules for a subject that reports a state from time to time, and functions that compare message contents.
 
-What such a subject must report depends on what it was given. For a subject that answers each input, see
+The state depends on the inputs that the subject was given. For a subject that answers each input, see
 ``recipes/relay.py`` and ``recipes/machine.py``.
 """
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class _SomeText:
-    """Equal to every text that is not blank."""
+    """A value that :func:`same` treats as equal to every text that is not blank."""
 
     def __str__(self) -> str:
         return "a text"
@@ -39,7 +39,10 @@ def value(event: Event) -> Any:
 
 
 def values(kind: str, name: str | None = None) -> Callable[[Part], list[Any]]:
-    """Return a function for the contents of all events of a kind, in order; with ``name``, only of events with it."""
+    """Return a function that lists the contents of a part's events of a kind, in order of time.
+
+    If ``name`` is given, the function lists only events with this name.
+    """
     return lambda seen: [value(event) for event in seen.of(kind, name)]
 
 
@@ -48,18 +51,23 @@ SENT = values("sent")
 
 
 def got_through(seen: Part, expected: Part, *kinds: str) -> bool:
-    """True if the subject was given as much as the reference solution: otherwise it ended or hung on its way.
+    """Return True if the subject was given as many inputs as the reference solution.
+
+    If not, the subject ended or hung before it had been given all inputs.
 
     Args:
         seen: The record of the subject.
         expected: The record of the reference solution.
-        kinds: The kinds of events in which it is given something, such as ``"sent"`` and ``"asked"``.
+        kinds: The kinds of events that record an input, such as ``"sent"`` and ``"asked"``.
     """
     return all(len(seen.of(kind)) >= len(expected.of(kind)) for kind in kinds)
 
 
 class Given(NamedTuple):
-    """An input of the subject: its age in seconds of the subject's time, its :func:`value`, and its name."""
+    """An input of the subject.
+
+    Its fields are its age in seconds of the subject's time, its :func:`value`, and the name of its topic or service.
+    """
 
     age: float
     value: Any
@@ -67,19 +75,19 @@ class Given(NamedTuple):
 
 
 State = Callable[[Sequence[Given]], Any]
-"""A function of everything that a subject was given up to a moment, in order. It returns what the subject must report,
-or whether a condition holds, at that moment.
+"""A function that is given all inputs of the subject up to a moment, in order. It returns what the subject must report
+at that moment, or whether a condition holds.
 """
 
 
 @dataclass(frozen=True)
 class StateRule:
-    """A rule for a subject that reports a state from time to time. The state depends on what it was given, and when.
+    """A rule for a subject that reports a state from time to time, which depends on its inputs and on time.
 
     Attributes:
         rule: Returns what the subject must report.
-        slack: Tolerance in seconds: a report also counts as right if it was right this long before, or will be this
-            long after.
+        slack: Tolerance in seconds. A report also counts as right if it was right at most this long before, or will be
+            right at most this long after.
         given: The kind of event that records an input of the subject.
     """
 
@@ -88,10 +96,10 @@ class StateRule:
     given: str = "sent"
 
     def when(self, holds: State) -> Judge[Part]:
-        """Return a criterion: at all times at which a condition holds, the subject's reports are right.
+        """Return a criterion that the subject's reports are right at all times at which a condition holds.
 
-        The subject must report at least a quarter as often as the reference solution; another criterion judges the
-        rate.
+        The subject must also report at least a quarter as often as the reference solution. Another criterion judges the
+        exact rate.
         """
 
         def judge(seen: Part, expected: Part) -> Finding:
@@ -107,7 +115,7 @@ class StateRule:
         return judge
 
     def taken_for(self, *wrong: State) -> Callable[[Part, Part], bool]:
-        """Return a mistake: all reports follow one of these wrong rules, and not the right one."""
+        """Return a function that recognizes a mistake: all reports follow one of the given wrong rules."""
 
         def recognise(seen: Part, _: Part) -> bool:
             said = list(self._said(seen))
@@ -120,14 +128,14 @@ class StateRule:
         return recognise
 
     def only_in_answer(self, seen: Part, _: Part) -> bool:
-        """Return True if the subject reports once for each input that it is given, and never by itself."""
+        """Return True if the subject makes at most one report for each input, and never reports without one."""
         given = [len(later) for _, (*_, later) in self._said(seen)]
         return bool(given) and all(number <= so_far for number, so_far in enumerate(given, 1))
 
     def _decided(self, part: Part, holds: State) -> Iterator[tuple[Any, Any]]:
-        """Yield the required and the actual report for each time at which only one report is right.
+        """Yield pairs of the required and the actual report, for each report at whose time only one content is right.
 
-        Times at which the condition may not hold are left out.
+        Reports are left out if the condition may not hold at their time.
         """
         for what, views in self._said(part):
             due, *others = map(self.rule, views)
@@ -135,7 +143,7 @@ class StateRule:
                 yield due, what
 
     def _said(self, part: Part) -> Iterator[tuple[Any, list[list[Given]]]]:
-        """Yield each report with what the subject had been given shortly before, at that time, and shortly after."""
+        """Yield each report with the inputs given until shortly before, at, and shortly after its time."""
         given: list[Event] = []
         for event in part.events:
             if event.kind == self.given:
@@ -152,7 +160,7 @@ class StateRule:
 
 
 def reported_at(event: Event) -> float:
-    """Return the time of a report; in real time, the time at which it was sent."""
+    """Return the time at which a report was sent; in simulated time, the time at which it was recorded."""
     on_its_way = float(event.data.get("arrived", event.t)) - sent_times([event])[0]
     return event.moment - (on_its_way if event.sim is None else 0.0)
 
@@ -176,5 +184,5 @@ def same(one: Any, other: Any, tolerance: float = 1e-6) -> bool:
 
 
 def in_words(made: Sequence[object]) -> str:
-    """Return a list of contents as the card shows it."""
+    """Return a list of contents as one text for the card."""
     return ", ".join(f"{one:.10g}" if isinstance(one, float) else str(one) for one in made) or "nothing"

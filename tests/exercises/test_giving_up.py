@@ -166,9 +166,9 @@ AT_ONCE = tuple((0.1 + t / 1000, "waiting") for t in range(200))
     ("part", "expected"),
     [
         pytest.param(_waits((5.0, "not available"), ends=5.0), "", id="ends and says why"),
-        pytest.param(_waits(ends=5.0), "nothing was said of it", id="ends silently"),
+        pytest.param(_waits(ends=5.0), "it was not reported", id="ends silently"),
         pytest.param(
-            _waits(*ABORTED, ends=5.0), "nothing was said of it", id="is aborted while a thread of it spins"
+            _waits(*ABORTED, ends=5.0), "it was not reported", id="is aborted while a thread of it spins"
         ),
         pytest.param(
             _waits(*SHUT_DOWN, ends=5.0),
@@ -268,7 +268,7 @@ NAMELESS = (
         pytest.param(_waits(GREETING, (5.0, "denied"), ends=5.0), "“denied”", id="another word"),
         pytest.param(
             _waits((0.1, "Not available?"), ends=5.0),
-            "“Not available?”, which is also said when it is not so",
+            "“Not available?”, which your program also says in runs with another outcome",
             id="says so in each run",
         ),
         pytest.param(
@@ -276,9 +276,9 @@ NAMELESS = (
             "",
             id="says it again and again",
         ),
-        pytest.param(_waits((5.0, "None"), ends=5.0), "nothing was said of it", id="None"),
-        pytest.param(_waits((5.0, "0"), ends=5.0), "nothing was said of it", id="a bare number"),
-        pytest.param(_waits(*NAMELESS, ends=5.0), "nothing was said of it", id="a slip"),
+        pytest.param(_waits((5.0, "None"), ends=5.0), "it was not reported", id="None"),
+        pytest.param(_waits((5.0, "0"), ends=5.0), "it was not reported", id="a bare number"),
+        pytest.param(_waits(*NAMELESS, ends=5.0), "it was not reported", id="a slip"),
     ],
 )
 def test_what_a_client_says_where_its_server_is_there_too_tells_of_no_trouble(
@@ -322,4 +322,4 @@ def test_a_wait_without_a_limit_is_worth_a_remark() -> None:
 
 def test_what_ros2_run_says_of_an_exit_code_is_no_word_of_the_program() -> None:
     assert objection(run("not available", [1, 2])) == ""
-    assert objection(run("[ros2run]: Process exited with failure 3", [1, 2])) == "nothing was said of it"
+    assert objection(run("[ros2run]: Process exited with failure 3", [1, 2])) == "it was not reported"

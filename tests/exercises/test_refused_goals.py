@@ -48,10 +48,10 @@ def evidence(
         ([raised(MEANT)], ""),
         ([say("rejected"), Event(0.5, "subject", "returned")], ""),
         ([ASKED, say("ended with 0"), Event(0.5, "subject", "returned")], "“ended with 0”"),
-        ([ASKED, raised(SLIP)], "nothing was said of it"),
-        ([Event(0.5, "subject", "returned")], "nothing was said of it"),
-        ([], "nothing was said of it"),
-        ([say("rejected")], "said so, and did not end"),
+        ([ASKED, raised(SLIP)], "it was not reported"),
+        ([Event(0.5, "subject", "returned")], "it was not reported"),
+        ([], "it was not reported"),
+        ([say("rejected")], "reported it, but did not end"),
     ],
 )
 def test_a_refusal_is_told_in_words_of_no_other_run(refused: list[Event], wrong: str) -> None:

@@ -320,7 +320,7 @@ def test_braces_that_were_not_filled_in_are_told_as_a_missing_f(line: str, told:
 def test_a_client_that_hangs_after_its_call_is_not_said_to_have_made_none() -> None:
     asked = Event(0.1, "request", "/add_two_ints", {"fields": {"a": 19201, "b": 0}})
     hung = Evidence([Part(LATE, {"numbers": [19201, 0]}, [asked])], Reference("lab_1_3.client", {}))
-    words = "one call (the service comes late), then it hung; the other runs were left out"
+    words = "one call (the service comes late), then it hung, so the other runs were left out"
     assert cut_short(Client(hung)) == words
     ended = Evidence([Part(LATE, {}, [asked, RETURNED])], Reference("lab_1_3.client", {}))
     assert cut_short(Client(ended)) == ""

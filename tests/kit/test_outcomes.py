@@ -67,7 +67,7 @@ def test_each_line_of_an_exception_is_said_whether_of_its_message_or_of_its_note
 
 @pytest.mark.parametrize("value", ["None", "[]", "0", "''"])
 def test_a_value_without_the_word_says_nothing(value: str) -> None:
-    assert REJECTED.missing(run(returned=value), []) == "nothing was said of it"
+    assert REJECTED.missing(run(returned=value), []) == "it was not reported"
 
 
 def test_the_diagnosis_quotes_what_was_said_and_the_word() -> None:
@@ -77,9 +77,9 @@ def test_the_diagnosis_quotes_what_was_said_and_the_word() -> None:
         "The goal was rejected, and your program said “denied”; the task asks for a line with the word `rejected`."
     )
     silent = REJECTED.advice(run(), [usual], "The goal was rejected", "Say so.")
-    assert "did not say so; the task asks" in silent.text
+    assert "did not report this; the task asks" in silent.text
     always = REJECTED.advice(run("rejected?"), [run("rejected?")], "The goal was rejected", "Say so.")
-    assert "also when it is not so" in always.text
+    assert "in runs with another outcome" in always.text
 
 
 def test_a_number_behind_the_word_status_is_its_name() -> None:

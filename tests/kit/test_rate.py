@@ -30,5 +30,5 @@ def test_the_references_rate_is_expected(seen: Part, passes: bool, says: str, mi
 
 
 def test_an_author_is_told_that_the_reference_is_too_short_for_a_rate() -> None:
-    with pytest.raises(ValueError, match="let more time run"):
+    with pytest.raises(ValueError, match="let the scenario run longer"):
         keeps_rate(heard(0.5), heard(0.5, number=2))

@@ -1,4 +1,4 @@
-"""How an action client reports the judge's goals, and what can be wrong with those reports."""
+"""Criteria for action clients: how a client reports the goals that it sends, and what is wrong with a report."""
 
 from __future__ import annotations
 
@@ -23,56 +23,62 @@ LATE = "the server comes late"
 REFUSED = "the goal is refused"
 ABORTED = "the goal is aborted"
 ABSENT = "there is no server"
-"""The name of the part without a server. In the first part of every exercise a goal is accepted."""
+"""The name of the part in which no server exists. In the first part of every exercise, LATE, a goal is accepted."""
 SERVED = (LATE, REFUSED, ABORTED)
 """The names of the parts in which the client should send a goal."""
 
 WAIT = Wait("server", "action_client", "goal", ABSENT, SERVED)
-"""The wait of a client that sends goals."""
+"""The criterion and the mistakes of a client that waits for an action server."""
 FEEDBACKS = 14
-"""The number of feedback messages for the goal that succeeds: enough to detect a client that stops receiving them."""
+"""The number of feedback messages that the judge sends for the goal that succeeds. So many are needed to notice a
+client that stops receiving them.
+"""
 SUCCEEDED, CANCELED, WAS_ABORTED = Outcome("succeeded"), Outcome("canceled", "cancelled"), Outcome("aborted")
-"""The three ways in which an accepted goal can end; a client reports each by this word or by the status number."""
+"""The three ways in which an accepted goal can end. A client reports an end by this word or by the number of the
+status.
+"""
 REJECTED = Outcome("rejected")
-NOT_ENDED = "said so, and did not end"
+NOT_ENDED = "reported it, but did not end"
 NO_GOAL = "no goal"
 UNASKED = "a request to cancel the goal"
-NOT_AWAITED = "it ended without taking in the answer to its goal"
+NOT_AWAITED = "it ended without processing the answer to its goal"
 MANY_REQUESTS = 3
-"""The maximum number of times that a client may have a reason to request one result. A client that requests it more
-often repeats without end.
+"""The maximum number of requests for one result that a client may need. A client that makes more requests repeats them
+without end.
 """
 
 AT_ONCE = 3.6
-"""Seconds: a client that ends sooner than this after an answer was sent never meant to use the answer.
+"""A limit in seconds. A client that ends sooner than this after an answer was sent did not wait for the answer.
 
-A process takes a tenth of a second to end, and more than one second on a busy machine. A client that spins for 5
-seconds, as many do, ends at least half a second later than this limit, even if its answer was held back; a client
-that spins for 3 seconds ends a second earlier.
+A process takes a tenth of a second to end, and more than one second on a busy machine. Many clients spin for 5 seconds;
+they end at least half a second later than this limit, even if the judge held their answer back. A client that spins for
+3 seconds ends one second earlier.
 """
 STAYED = 1.5
-"""Seconds: if the client still exists this long after a request, the request was not lost by the process ending."""
+"""A limit in seconds. If the client lives longer than this after it sent a request, its end cannot have lost the
+request.
+"""
 _WAYS = ("log", "output", "subject")
-"""The kinds of events that contain words of the subject: logged to /rosout, printed, or returned."""
+"""The kinds of events that contain texts from the subject: logged to /rosout, printed, or returned."""
 _TRACEBACK = "Traceback (most recent call last)"
 
 
 def asked_for(part: Part) -> list[int]:
-    """Return the ``order`` fields of the goals that the client sent, in order of time."""
+    """Return the ``order`` field of each goal that the client sent, in order of time."""
     return [int(event.data["fields"]["order"]) for event in part.of("goal")]
 
 
 def left_at_once(part: Part, answer: str = "goal_answered") -> bool:
     """Return True if the subject was already ending when the judge sent an answer that it had held back.
 
-    The last requests of an ending process may or may not arrive, so no decision may depend on them. A printed
-    traceback shows that a process is ending; a process that ends silently may take a while.
+    The last requests of an ending process may be lost, so no decision may depend on them. A printed traceback shows
+    that a process is ending; a process that ends without a traceback may take a while to end.
     """
     if part.ending is None:
         return False
     for event in part.events:
         if event.kind == answer:
-            # A subject that fails only now has received something: the answer, or feedback sent after the answer.
+            # A subject that prints something or fails only now has received the answer, or feedback sent after it.
             went_on = part.traceback or part.said(after=event) or _stayed_for_more(part, event)
             return not went_on and part.ending.t - event.t < AT_ONCE
         if event is part.ending or (event.kind == "output" and event.data["text"].startswith(_TRACEBACK)):
@@ -81,7 +87,10 @@ def left_at_once(part: Part, answer: str = "goal_answered") -> bool:
 
 
 def _stayed_for_more(part: Part, answer: Event) -> bool:
-    """Return True if the client still existed when its result was sent, or well after its request for the result."""
+    """Return True if the client lived until its result was sent, or for a while after a request.
+
+    A request is one for the result, or one to cancel the goal.
+    """
     assert part.ending is not None
     end, later = part.ending.t, part.events[part.events.index(answer) :]
     stayed = {"result": 0.0, "result_request": STAYED, "cancel": STAYED}
@@ -89,7 +98,7 @@ def _stayed_for_more(part: Part, answer: Event) -> bool:
 
 
 def goals_as_seen(evidence: Evidence) -> str:
-    """Return in words what is wrong with the goals that the client sent."""
+    """Return in words what is wrong with the goals that the client sent; empty if nothing is wrong."""
     if asked_for(evidence.part(LATE)) and left_at_once(evidence.part(LATE)):
         return NOT_AWAITED
     wanted = len(asked_for(evidence.reference.part(LATE)))
@@ -99,7 +108,7 @@ def goals_as_seen(evidence: Evidence) -> str:
         if len(orders) > wanted:
             return f"{len(orders)} goals"
         if orders and orders[0] != part.inputs["order"]:
-            return f"order {orders[0]} where {part.inputs['order']} was given"
+            return f"order {orders[0]} although {part.inputs['order']} was given"
         if part.name != REFUSED and cancels_unasked(part):
             return UNASKED
     missing = [part for part in parts if not asked_for(part)]
@@ -109,12 +118,12 @@ def goals_as_seen(evidence: Evidence) -> str:
     return (
         f"{NO_GOAL} where {tried[0].name}"
         if tried
-        else f"{NO_GOAL} but the first: the other runs were left out"
+        else f"{NO_GOAL} after the first one: the other runs were left out"
     )
 
 
 def cancels_unasked(part: Part) -> bool:
-    """Return True if the client requests to cancel a running goal. After an interruption this is allowed."""
+    """Return True if the client requests to cancel a running goal before the judge pressed Ctrl-C."""
     for event in part.events:
         if event.kind == "result" or event.name == INTERRUPTED:
             return False
@@ -139,18 +148,18 @@ def _sequence(event: Event) -> list[int]:
 
 
 def said_of_result(part: Part) -> list[str]:
-    """Return what the client said after the result was sent, without late copies of earlier lines."""
+    """Return the lines that the client printed, logged or returned after the result was sent, without late copies."""
     return said_first_after(part.first("result"), part)
 
 
 def reports_result(part: Part) -> bool:
-    """Return True if the client said every number of the result, in the right order, after the result was sent."""
+    """Return True if the client reported every number of the result in the right order, after the result was sent."""
     result = part.first("result")
     if result is None or part.first("result_request") is None:
         return False
     numbers = [str(number) for number in _sequence(result)]
-    # A log line is recorded twice: as output and on /rosout. One copy must not fill gaps of the other, so each kind
-    # is searched alone.
+    # A log line is recorded twice: as output and on /rosout. Each kind is searched alone, so that one copy cannot
+    # complete the other.
     ways = ([event for event in part.events if event is result or event.kind == way] for way in _WAYS)
     return any(_are_in_order(numbers, replace(part, events=events).said(after=result)) for events in ways)
 
@@ -172,10 +181,9 @@ _SEQUENCE = re2.compile(r"[\[(]|[a-z.]+\((?:'\w', )?[\[(]|[a-z.]+\((?:'\w')?\)")
 
 
 def returned_instead(part: Part, wanted: Sequence[int]) -> str:
-    """Return a function's wrong return value in words; empty if the value is right, or if no function returned.
+    """Return the wrong value that a function returned, as its repr; empty if the value is right or nothing returned.
 
-    Any sequence type counts as a list, for example a tuple or an array. A message object that contains a sequence
-    does not.
+    A tuple, an array or any other sequence counts as a list. A message object that contains a sequence does not.
     """
     if part.returned is None:
         return ""
@@ -187,12 +195,12 @@ def returned_instead(part: Part, wanted: Sequence[int]) -> str:
 
 
 def _waits(late: Part) -> bool:
-    """Return True if the client waits for a late server and a late answer. If not, timing decides how far it gets."""
+    """Return True if the client waits for a late server and a late answer, so timing does not stop it halfway."""
     return bool(asked_for(late)) and not left_at_once(late)
 
 
 def refused_as_seen(evidence: Evidence) -> str:
-    """Return in words what is wrong with the client's report of a refused goal; empty if nothing is."""
+    """Return in words what is wrong with the client's report of a refused goal; empty if nothing is wrong."""
     part = evidence.part(REFUSED)
     goal = part.first("goal")
     if not part.events:
@@ -206,14 +214,14 @@ def refused_as_seen(evidence: Evidence) -> str:
 
 
 def all_but(evidence: Evidence, name: str) -> list[Part]:
-    """Return the other runs that have a goal; in each of them the goal ended differently."""
+    """Return the runs with a goal, except the named one. In each of them the goal ended in another way."""
     return [part for part in evidence if part.name != name and part.first("goal")]
 
 
 def aborted_as_seen(evidence: Evidence) -> str:
-    """Return in words what is wrong with the client's report of an aborted goal.
+    """Return in words what is wrong with the client's report of an aborted goal; empty if nothing is wrong.
 
-    The status is also published on a topic, so a client may take it from there.
+    The client may read the status from the topic of statuses and not from the result.
     """
     part = evidence.part(ABORTED)
     if not part.events:
@@ -239,9 +247,8 @@ def shows_feedback(evidence: Evidence) -> Finding:
     sent, missing = part.of("feedback"), unshown_feedback(part)
     shown = len(sent) - len(missing)
     if sent and left_at_once(part, "result"):
-        # How many messages arrive before the client ends depends on the machine's load, so the card gives no
-        # number.
-        return Finding(False, f"all {FEEDBACKS} feedback messages", "it ended before its goal did")
+        # The card gives no number, because the machine's load decides how many messages arrive before the client ends.
+        return Finding(False, f"all {FEEDBACKS} feedback messages", "it ended before its goal ended")
     return Finding(
         bool(sent) and not missing,
         f"all {FEEDBACKS} feedback messages",
@@ -255,19 +262,19 @@ def reports_the_result(evidence: Evidence) -> Finding:
     result = part.first("result")
     expected = f"{result.data['fields']['sequence']} said at the end" if result else "the result's sequence"
     if result is None:
-        return Finding(False, expected, "no goal to give a result for")
+        return Finding(False, expected, "it sent no goal, so there was no result")
     asked = len(part.of("result_request"))
     if asked == 0:
-        return Finding(False, expected, "never asked for the result")
+        return Finding(False, expected, "it never requested the result")
     if asked > MANY_REQUESTS:
-        return Finding(False, expected, f"asked for the result {asked} times")
+        return Finding(False, expected, f"it requested the result {asked} times")
     said = part.said(after=result)
     if returned := returned_instead(part, result.data["fields"]["sequence"]):
         return Finding(False, f"{result.data['fields']['sequence']} returned", f"returned {returned}")
     if not said and part.ending is not None and part.ending.t <= result.t:
         return Finding(False, expected, "it ended before the result came")
     return Finding(
-        reports_result(part), expected, f"“{said[-1]}”" if said else "nothing was said after the result"
+        reports_result(part), expected, f"“{said[-1]}”" if said else "it reported nothing after the result"
     )
 
 
@@ -302,6 +309,8 @@ def waits_for_the_server(evidence: Evidence) -> Finding:
 
 
 ends_without_a_server = WAIT.gives_up
-"""Decide whether, without a server, the client reports that and ends, or repeatedly says that it waits."""
+"""Decides whether the client handles a missing server well: it reports this and ends, or repeatedly reports that it
+waits.
+"""
 may_wait_on = remark(ABSENT)
-"""Returns, for a client that keeps waiting without a server, the card's remark that a robot also needs a limit."""
+"""Returns a remark for the card if the client keeps waiting without a server: a robot also needs a time limit."""

@@ -1,4 +1,4 @@
-"""The goals that the judge's action client sent to an action server of any type, and everything that came back."""
+"""Reads from the evidence what happened to each goal that the judge's action client sent to the subject's server."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Part
 
 ERROR_GOAL_TERMINATED = 3
-"""A return code defined in action_msgs/srv/CancelGoal."""
+"""The return code of action_msgs/srv/CancelGoal for a goal that has already ended."""
 SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
-"""Status numbers defined in action_msgs/msg/GoalStatus."""
+"""The numbers of three statuses, as defined in action_msgs/msg/GoalStatus."""
 STATUS = {
     0: "UNKNOWN",
     1: "ACCEPTED",
@@ -29,14 +29,15 @@ STATUS = {
 
 @dataclass(frozen=True)
 class Goal:
-    """Everything known about one goal.
+    """A goal that the judge sent, with everything that the subject's server answered.
 
     Attributes:
         request: The fields of the goal; None if the goal was not sent.
         accepted: True if the server accepted the goal, False if it refused; None if it did not answer.
         feedback: The fields of each feedback message, in order. Messages sent after the result was received are left
             out.
-        sent: The time at which each of these messages was sent, by the publisher's clock, in seconds since the epoch.
+        sent: For each message in ``feedback``, the time at which it was sent, by the publisher's clock, in seconds
+            since the epoch.
         answered_at: The time at which the server's answer to the goal arrived, by the judge's clock; None if unknown.
         cancel_answered_at: The time at which the answer to the cancel request arrived, by the judge's clock; None if
             unknown.
@@ -71,7 +72,7 @@ class Goal:
 
     @property
     def pauses(self) -> tuple[float, ...]:
-        """The pauses between successive feedback messages, in seconds."""
+        """The times between successive feedback messages, in seconds."""
         return tuple(after - before for before, after in pairwise(self.sent))
 
     def sent_after(self, moment: float | None) -> int:
@@ -80,7 +81,7 @@ class Goal:
 
 
 def goal(part: Part, number: int) -> Goal:
-    """Return the goal with this number."""
+    """Return the goal with a given number; the judge numbers its goals from 0."""
     events = [event for event in part.events if event.data.get("goal") == number]
     first = {event.kind: place for place, event in reversed(list(enumerate(events)))}
     by_kind = {kind: events[place] for kind, place in first.items()}
@@ -116,5 +117,5 @@ def all_goals(part: Part) -> list[Goal]:
 
 
 def status_text(number: int | None) -> str:
-    """Return a goal's status as name and number."""
+    """Return a goal's status as text, such as ``SUCCEEDED (4)``."""
     return "none" if number is None else f"{STATUS.get(number, '?')} ({number})"

@@ -1,4 +1,4 @@
-"""A publisher as the judge heard it, with questions about the texts that it published."""
+"""Reads from the evidence which texts a publisher published, and how it counted in them."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part
 
 SURE = 2
-"""The minimum number of messages that prove that a publisher existed. A single message may be missed: it can come
-before the judge can receive it.
+"""The minimum number of messages that the judge surely notices. A single message may come before the judge can receive
+it.
 """
 SLOWLY = 1.5
-"""A publisher is slow if its intervals are longer than the reference's by this factor. At the end, its silence may
-also last this many of its own intervals.
+"""A publisher is slow if its intervals are at least this many times as long as the reference's. It may also be silent
+for this many of its own intervals at the end of the run.
 """
 BURST = 0.3
-"""Seconds: if a program that has ended published for less than this, it may have published everything at once, given a
-busy machine.
+"""A limit in seconds. A program that published for a shorter time and ended may have published everything at once, if
+the machine was busy.
 """
 _NUMBER, _WHOLE = re2.compile(r"-?\d+(?:[.,]\d+|e[+-]?\d+)*"), re2.compile(r"0|-?[1-9]\d{0,17}")
 _DIGITS = re2.compile(r"\d{1,18}")
@@ -35,7 +35,7 @@ _DIGITS = re2.compile(r"\d{1,18}")
 
 @dataclass(frozen=True)
 class Publisher:
-    """A publisher as the judge heard it.
+    """What the judge received from a publisher in one run.
 
     Attributes:
         topic: The topic on which the task says to publish.
@@ -59,7 +59,7 @@ class Publisher:
 
     @cached_property
     def counters(self) -> list[int]:
-        """The last number of each text, if that is a whole number. Greetings are left out."""
+        """The last number of each text, if it is a whole number; texts before the count began are left out."""
         return counters(self.texts[self.greetings :])
 
     @cached_property
@@ -69,14 +69,14 @@ class Publisher:
 
     @cached_property
     def greetings(self) -> int:
-        """The number of messages before the publisher begins to count. They have other texts and no counting numbers.
+        """The number of messages before the publisher began to count. They have other words than the later ones.
 
-        Whether such a message is heard depends on chance if it is published as soon as the publisher exists, so it
-        must not change the result.
+        The judge receives such a message only by chance if it is published as soon as the publisher exists, so it must
+        not change the verdict.
         """
         begins = self.templates.index(Counter(self.templates).most_common(1)[0][0]) if self.texts else 0
         around = last_numbers(self.texts[begins - 1 : begins + 1]) if begins else []
-        # A number written in another form also continues the count: 10 follows 09.
+        # A number in another form may continue the count: 10 follows 09.
         leads_on = (
             len(around) > 1 and all(map(_DIGITS.fullmatch, around)) and int(around[1]) == int(around[0]) + 1
         )
@@ -86,14 +86,14 @@ class Publisher:
     def number_of_first(self) -> int:
         """The DDS sequence number of the first message that counts. DDS numbers each publisher's messages from 1.
 
-        Greetings that were heard are subtracted, so the number tells how many earlier messages were not heard.
+        The greetings that the judge received are subtracted, so the number tells how many earlier messages were missed.
         """
         counting = self.messages[self.greetings :]
         return max(1, int(counting[0].data.get("number", 1)) - self.greetings) if counting else 1
 
     @property
     def step(self) -> int:
-        """The difference between its first two numbers; 0 if it does not count. Meant for the reference."""
+        """The difference between the first two numbers; 0 if the publisher does not count. Use it for the reference."""
         first = self.counters[:2]
         return first[-1] - first[0] if first else 0
 
@@ -103,16 +103,16 @@ class Publisher:
 
     @property
     def has_numbers_alone(self) -> bool:
-        """True if the texts of its messages are whole numbers and nothing else."""
+        """True if the texts of the messages are whole numbers and nothing else."""
         return self.templates[:1] == ["#"]
 
     @property
     def went_on(self) -> bool:
-        """True if it published long enough that hearing it does not depend on chance."""
+        """True if the publisher published for so long that the judge cannot have missed it by chance."""
         if not self.messages:
             return False
         first, last = self.messages[0], self.messages[-1]
-        # By the publisher's clock, because messages sent at the same time may arrive one after the other.
+        # Messages sent at the same time may arrive one after the other, so the publisher's clock is used.
         seconds = float(last.data.get("sent", last.t)) - float(first.data.get("sent", first.t))
         if self.part.ending is not None and last.sim is None and seconds < BURST:
             return False
@@ -120,12 +120,12 @@ class Publisher:
 
     @property
     def pauses(self) -> list[float]:
-        """The pauses between its messages, in seconds of the subject's time."""
+        """The times between successive messages, in seconds of the subject's time."""
         times = simulated(self.messages) or sent_times(self.messages)
         return [after - before for before, after in pairwise(times)]
 
     def goes_on_slowly(self, expected: Publisher) -> bool:
-        """Return True if its intervals are longer than the reference's, and it published until the end of the run."""
+        """Return True if the publisher is slower than the reference's, and published until the end of the run."""
         if self.part.ending is not None or len(self.pauses) < SURE:
             return False
         silent = self.part.events[-1].moment - self.messages[-1].moment
@@ -135,8 +135,10 @@ class Publisher:
     def endpoints(self) -> dict[str, str]:
         """The subject's publishers as topic -> type; empty for a program that ended at once.
 
-        Whether the graph shows such short-lived publishers depends on chance. A notebook's class is held until its
-        publishers are known, and a publisher with incompatible QoS is known from the mismatch that was recorded.
+        Chance decides whether the graph shows the publishers of such a program.
+
+        A notebook's class stays until its publishers are known, so they always count. A publisher with an incompatible
+        QoS counts if the mismatch was recorded well before the end.
         """
         ending, misfit = self.part.ending, self.part.first("mismatch", self.topic)
         met = (
@@ -148,11 +150,10 @@ class Publisher:
         return self.part.endpoints("publisher") if met else {}
 
     def at_once(self, expected: Publisher) -> bool:
-        """Return True if it published everything within a moment, or at four times the right pace.
+        """Return True if the publisher published everything within a moment, or at more than four times the right rate.
 
-        On a busy machine a program may need longer than a moment for this. Besides, its first messages may come
-        before the judge can receive them, and its last ones may be lost when it ends. Its own log lines, and the time
-        of discovery, show that such messages existed.
+        The rate decides if a busy machine makes a burst last longer than a moment. The program's log lines and the time
+        at which the judge discovered the publisher count, too, because the first and last messages may have been lost.
         """
         said = [e.t for e in self.part.of("output") if expected.templates[0] in template(str(e.data["text"]))]
         met = [event.t for event in self.part.of("matched", self.topic)[:1]]
@@ -162,7 +163,7 @@ class Publisher:
         return True
 
     def claims(self, expected: Publisher) -> list[str]:
-        """Return the lines in which it says that it published the first of the expected texts."""
+        """Return the lines in which the program says that it published the first of the expected texts."""
         return [line for line in self.part.said() if expected.templates[0] in template(line)]
 
 
@@ -172,7 +173,7 @@ def template(text: str) -> str:
 
 
 def counters(texts: Sequence[str]) -> list[int]:
-    """Return the last number of each text, if that is a whole number."""
+    """Return the last number of each text, if it is a whole number."""
     return [int(number) for number in last_numbers(texts) if _WHOLE.fullmatch(number)]
 
 

@@ -27,14 +27,13 @@ CALLED = (LATE, BIASED, EXTREME)
 """The names of the parts in which the service answers."""
 
 HANGS_AFTER = 8.0
-"""Seconds without any event after which a client is taken to hang.
+"""The number of seconds without any event after which a client counts as hung.
 
-A program that calls before the service exists waits this long twice, in the fast look and in real time: 21 seconds in
-all on a quiet machine. No event can decide the matter earlier. A request without a service reaches no reader. ROS lets
-the judge read requests only as a server, which the client would see: the topic `rq/add_two_intsRequest` belongs to
-services, and a subscription, even one with `avoid_ros_namespace_conventions`, reads `/rq/add_two_intsRequest`. The
-stack of a client whose call was lost looks like that of a right client, whose timer waits for the service. So a second
-run has to confirm that nothing happens.
+A program that calls before the service exists is watched for this time twice, in the fast look and in real time: 21
+seconds in all on a quiet machine. No event can decide earlier whether its call was lost. The judge could see the
+request only as a server, and the client would then find that server; no subscription of ROS can read the topic of
+requests, because ROS puts a slash before its name. The stack of a client that waits for the service with a timer, which
+is right, looks the same. So a second run has to confirm that nothing happens.
 """
 
 
@@ -69,7 +68,7 @@ class Client:
         return isinstance(self.evidence, Evidence) and self.evidence.ever_had("client")
 
     def called_each_time(self) -> bool:
-        """True if the client made a call in each run with a service, so its calls did not depend on timing."""
+        """True if the client made at least one call in each run with a service, so it was not too early for any."""
         return all(map(requests, self.served))
 
     def called(self, wanted: int) -> bool:
@@ -78,23 +77,23 @@ class Client:
 
 
 def requests(part: Part) -> list[Event]:
-    """Return the calls of a part, in order of time."""
+    """Return the requests that the service received in a part, in order of time."""
     return part.of("request")
 
 
 def answers(part: Part) -> list[int]:
-    """Return the answers of a part, in order of time."""
+    """Return the sums that the service answered in a part, in order of time."""
     return [int(event.data["fields"]["sum"]) for event in part.of("response")]
 
 
 def pair(event: Event) -> list[int]:
-    """Return the two numbers of a call, the smaller first."""
+    """Return the two numbers of a request, the smaller first."""
     # A sum does not depend on which number is a and which is b.
     return sorted((int(event.data["fields"]["a"]), int(event.data["fields"]["b"])))
 
 
 def reports(part: Part) -> bool:
-    """Return True if the client reports the last answer that it got, and a function that returns a value returns it."""
+    """Return True if the client reports the last answer, and its function, if any, returns the same number."""
     given = part.of("response")
     said = bool(given) and mentions(part.said(after=given[-1]), answers(part)[-1])
     return said and not says_otherwise(part)
@@ -107,10 +106,10 @@ def returns_another(part: Part) -> bool:
 
 
 def says_otherwise(part: Part) -> bool:
-    """Return True if one of the client's reports of the last answer is wrong, even if another report is right.
+    """Return True if the client returns or prints something that contradicts the last answer.
 
-    A notebook's function that raised an exception counts as wrong, because it has returned no answer. A line that
-    contains the answer with the wrong sign counts as wrong, too.
+    A right report elsewhere does not help. A notebook's function that raised an exception counts as a contradiction,
+    because it returned no answer; so does a line with the answer and the wrong sign.
     """
     if returns_another(part) or (part.ending is not None and part.ending.name == "raised"):
         return True
@@ -123,10 +122,10 @@ def says_otherwise(part: Part) -> bool:
 
 
 def has_reported(part: Part, calls: int) -> bool:
-    """Return True if the client reported the answer to its call with this number (from 1), or to a later call.
+    """Return True if the client reported its answer number ``calls`` (from 1), or any later answer.
 
-    Any of these answers counts, because a client that goes on calling is stopped at some moment, and the result must
-    not depend on which.
+    Any of these answers counts, because the judge stops a client that goes on calling at some moment, and the verdict
+    must not depend on that moment.
     """
     return any(
         mentions(part.said(after=given), int(given.data["fields"]["sum"]))
@@ -135,13 +134,13 @@ def has_reported(part: Part, calls: int) -> bool:
 
 
 def new_words(part: Part, given: Event | None = None) -> list[str]:
-    """Return what the client said after an answer (by default the last one), without late copies of earlier lines."""
+    """Return the client's lines after an answer (by default the last one), without late copies of earlier lines."""
     given = given or next(reversed(part.of("response")), None)
     return list(filter(str.strip, said_first_after(given, part)))
 
 
 def braces_left(part: Part) -> Advice | None:
-    """Return advice if the client printed a variable's name in braces, which only an f-string fills in."""
+    """Return advice if the client printed a variable's name in braces, because the f before its string is missing."""
     return not_filled_in(new_words(part))
 
 
@@ -164,26 +163,29 @@ def reports_the_sum(evidence: Evidence) -> Finding:
     # The answer to an earlier call is not the final sum.
     wanted = f"{given[-1]} said at the end" if len(given) >= calls else "the final sum, in each run"
     lines = silent.said(after=silent.of("response")[-1]) if given else silent.said()
-    # The last line of a Python message may consist only of marks below the line before it, so it is skipped.
+    # The last line of a Python message may consist of marks such as ^^^ only, so such lines are skipped.
     lines = [line for line in lines if re2.search(r"[\pL\pN]", line)]
     wrong = [line for line in lines if given and not mentions([line], given[-1])] or lines
     return Finding(False, wanted, f"“{wrong[-1]}”" if wrong else "nothing was said")
 
 
 WAIT = Wait("service", "client", "request", ABSENT, CALLED)
-"""The wait of a client that calls a service."""
+"""The criterion and the mistakes of a client that waits for a service."""
 
 
 def gives_up_in_time(evidence: Evidence) -> Finding:
-    """Decide whether the client, without a service, gives up or keeps waiting as the rule for all clients requires."""
+    """Decide whether the client handles a missing service well.
+
+    The client may report this and end, or repeatedly report that it waits.
+    """
     alone = own_sum(evidence.part(ABSENT)) is not None
-    return WAIT.gives_up(evidence, "named a sum that no service gave" if alone else "")
+    return WAIT.gives_up(evidence, "reported a sum although no service answered" if alone else "")
 
 
 def own_sum(part: Part) -> int | None:
-    """Return the sum if the client reported it in the run without a service, that is, added the numbers itself.
+    """Return the sum that the client reported although no service existed, so that it added the numbers itself.
 
-    A sum that equals one of the inputs proves nothing.
+    Return None if there is no such sum. A sum that equals one of the inputs does not count, because it proves nothing.
     """
     numbers = part.inputs.get("numbers", ())
     total = sum(numbers)
@@ -194,23 +196,23 @@ no_limit = giving_up.remark(ABSENT)
 
 
 def how_it_went(part: Part) -> str:
-    """Return in words how the client ended a part."""
+    """Return in words how the client ended in a part, such as "it exited after 2 calls"."""
     if not part.events:
         return "not reached"
     ending = part.ending
     if ending is None:
-        return "it made no call, and did not end"
+        return "it made no call and did not end"
     return f"it {ending.name} after {counted(len(requests(part)), 'call')}"
 
 
 def cut_short(client: Client) -> str:
-    """Return why the judge left out later runs, namely a client that hung; empty if all runs were made."""
+    """Return in words why the judge left out later runs: the client hung. Empty if all runs were made."""
     hung = next((part for part in client.served if part.events and part.ending is None), None)
     if hung is None or all(part.events for part in client.served):
         return ""
     count = len(requests(hung))
     made = "no call" if not count else "one call" if count == 1 else f"{count} calls"
-    return f"{made} ({hung.name}), then it hung; the other runs were left out"
+    return f"{made} ({hung.name}), then it hung, so the other runs were left out"
 
 
 def ended_before_its_answer(part: Part) -> bool:

@@ -1,6 +1,7 @@
-"""Questions about a subject's lines: the numbers in them, and the texts that a listener reports.
+"""Finds numbers and received texts in the lines that a subject printed, logged or returned.
 
-A reported text may be one that was sent, an invented one, or one that was reported more than once.
+For a listener, each line is compared with the texts that the judge sent: the line may report such a text, change it,
+repeat it, or invent a text that was never sent.
 """
 
 from __future__ import annotations
@@ -27,18 +28,22 @@ _OPENING, _CLOSING = tuple("\"'“‘«`"), tuple("\"'”’»`")
 _A_TALKERS = re2.compile(r"\W*[Hh]ello,? [Ww]orld!?\W*\d+\W*")
 """Matches texts of talkers in this course and in the official tutorials."""
 _TWO_WORDS = re2.compile(r"\b([a-z]+) ([a-z]+) \d{4}\b")
-"""Matches the special part of the judge's random texts, see :func:`autograder.kit.recipes.sent_texts.random_texts`."""
+"""Matches the two random words and the number in the judge's texts; see
+:func:`autograder.kit.recipes.sent_texts.random_texts`.
+"""
 _BRACES = re2.compile(r"\{[\pL_][^{}]*\}")
-"""Matches the part of a text that an f-string would have filled in."""
+"""Matches a variable's name in braces, which an f-string would have replaced by the value."""
 _BYTE = ("\\x00", "\0")
-"""A zero byte, as Python shows it and raw. A serialized text has such bytes before and after it."""
+"""A zero byte, as Python's repr shows it and raw. In a printed message that is still serialized, such bytes surround
+the text.
+"""
 MUCH = 5
-"""The minimum number of successive characters of a text that a line contains only if it was made from that text."""
+"""A line with this many successive characters of a text, or more, was made from that text."""
 OFTEN = 3
-"""The minimum number of reports that count as a repetition, if only the text that is reported last is repeated."""
+"""The minimum number of reports that count as a repetition if only the last text is repeated."""
 GROWING = 6
-"""The minimum number of successive lines that each repeat all earlier texts. Fewer lines may be a look back at recent
-texts.
+"""The minimum number of lines, each of which contains all earlier texts, that count as repeating. A program may show a
+few recent texts.
 """
 
 
@@ -49,14 +54,15 @@ def tells(line: str, text: str) -> bool:
 
 
 def is_said(text: str, part: Part, *, after: Event | None = None) -> bool:
-    """Return True if the subject said a text; with ``after``, only after that event."""
+    """Return True if the subject printed, logged or returned a text; with ``after``, only after that event."""
     return any(tells(line, text) for line in part.said(after=after))
 
 
 def said_first_after(event: Event | None, part: Part) -> list[str]:
-    """Return the lines that the subject said for the first time after an event; none if the event is missing.
+    """Return the lines that the subject printed, logged or returned for the first time after an event.
 
-    A log line is recorded twice, as output and on /rosout, and the second copy may come late.
+    Lines from before the event are left out, because a log line is recorded twice, as output and on /rosout, and the
+    second copy may come late. Return no lines if there is no event.
     """
     if event is None:
         return []
@@ -66,18 +72,19 @@ def said_first_after(event: Event | None, part: Part) -> list[str]:
 
 
 def not_filled_in(lines: Sequence[str]) -> Advice | None:
-    """Return advice for the first line that contains a variable's name in braces: only an f-string fills in braces."""
+    """Return advice if a line contains a variable's name in braces, because the f before its string is missing."""
     line = next((line for line in lines if _BRACES.search(line)), None)
     if line is None:
         return None
     return Advice(
-        f"Your program said “{line}”: Python did not fill in the braces, because there is no f in front of the string.",
+        f"Your program said “{line}”: Python did not replace the braces by a value, because there is no f before the "
+        "string.",
         'Write f directly before the quotation mark: f"...". Python then puts the value where the braces are.',
     )
 
 
 def has_much_of(line: str, text: str) -> bool:
-    """Return True if a line contains so long a part of a text that this cannot be chance. Case does not matter."""
+    """Return True if a line contains so many successive characters of a text that they were made from it."""
     if tells(line, text) or any(byte in line for byte in _BYTE):
         return False
     where, what = line.lower(), text.lower()
@@ -86,7 +93,7 @@ def has_much_of(line: str, text: str) -> bool:
 
 @dataclass(frozen=True)
 class Frame:
-    """The words with which a program surrounds the texts that it reports.
+    """The words before and after a received text in a program's lines, such as "I heard: ".
 
     Attributes:
         before: The words before the text, in the same line.
@@ -97,7 +104,7 @@ class Frame:
     after: str
 
     def content(self, line: str) -> str | None:
-        """Return the part of a line that stands where the text would be; None if the words around it differ."""
+        """Return the part of a line between the surrounding words; None if the line has other words."""
         long_enough = len(line) >= len(self.before) + len(self.after)
         if not (long_enough and line.startswith(self.before) and line.endswith(self.after)):
             return None
@@ -120,10 +127,10 @@ class Frame:
         return self.has_quotes and not rest.endswith("=") and not any(mark in rest for mark in _OPENING)
 
     def is_claim(self, content: str) -> bool:
-        """Return True if a line with this content claims to report a received text.
+        """Return True if a line with the surrounding words and this content claims to report a received text.
 
-        Many programs begin each line with their name, even a line that says what they wait for. So a content without
-        quotation marks counts as a claim only if it looks like a talker's text.
+        Many programs begin each line with their name, even a line about what they wait for. So a content without
+        quotation marks counts only if it looks like a talker's text.
         """
         return self.quotes or (self.has_quotes and not content) or _A_TALKERS.fullmatch(content) is not None
 
@@ -131,9 +138,9 @@ class Frame:
 def invented(part: Part, sent: Sequence[str]) -> list[str]:
     """Return the texts that the subject claims to have heard although they were never sent.
 
-    The surrounding words are learned from the first line that contains a sent text. A line with the same words around
-    a different text was invented. If the subject reported none of the sent texts, every line with a quoted text
-    counts as a claim.
+    The surrounding words are taken from the first line that contains a sent text. A line with the same words around
+    another text is invented. If the subject reported none of the sent texts, every line with a quoted text counts as
+    invented.
     """
     found = _frames(part, sent)
     if not found:
@@ -143,7 +150,7 @@ def invented(part: Part, sent: Sequence[str]) -> list[str]:
 
 
 def _guessed(part: Part, sent: Sequence[str]) -> Iterator[str]:
-    """Yield the lines that contain a text of the judge's form that was not sent, as a program that guesses would."""
+    """Yield the lines with a text that was not sent but looks like the judge's texts, as if it was guessed."""
     known = {found[0] for text in sent for found in _TWO_WORDS.finditer(text)}
     words = {word for text in known for word in text.split()}
     for line in part.said():
@@ -152,11 +159,10 @@ def _guessed(part: Part, sent: Sequence[str]) -> Iterator[str]:
 
 
 def changed(part: Part, sent: Sequence[str], text: str) -> list[str]:
-    """Return the lines in which the subject reported something else instead of a sent text."""
+    """Return the lines in which the subject reported a changed form of a sent text."""
     found = _frames(part, sent)
     if not found:
-        # Whether a line is affected depends on the texts. If even the first text is changed, none is reported
-        # unchanged.
+        # No sent text is reported unchanged, so the surrounding words are unknown.
         return [line for line in _others(part, sent) if has_much_of(line, text)]
     return [
         line
@@ -187,11 +193,9 @@ def _in_frames(part: Part, sent: Sequence[str], frames: set[Frame]) -> Iterator[
 def repeated(part: Part, sent: Sequence[str]) -> dict[str, int]:
     """Return the texts that were reported more often than they were sent, each with its count.
 
-    Only reports in the same words and by the same way count.
-
-    Logging and printing are two ways, and so are two loggers. Only the words in which a text is reported first are
-    counted, because a line with other words may mention the text again. Words that differ only in a number, such as a
-    line number or a time, are the same words.
+    Only reports with the same surrounding words, made in the same way, count. Logging and printing are two ways, and so
+    are two loggers. Only the words of a text's first report count, because a line with other words may mention the text
+    again. Words that differ only in a number, such as a time, count as the same.
     """
     channels: dict[tuple[str, ...], list[str]] = {}
     for channel, line in _by_channel(part):
@@ -210,11 +214,10 @@ def repeated(part: Part, sent: Sequence[str]) -> dict[str, int]:
 
 
 def retold(part: Part, sent: Sequence[str]) -> str:
-    """Return the third line of those that repeat all earlier texts with each new one; empty if there are none.
+    """Return an example line if the subject repeats all earlier texts with each new text; empty if it does not.
 
-    For each text, the line with the fewest texts counts, because a program may report each text in a line of its own
-    and also show all of them. A few texts in one line, such as the last two, a batch or a summary, are not such a
-    repetition.
+    For each text, the line with the fewest texts counts, because a program may report each text in its own line and
+    also show all texts. A few texts in one line, such as the last two or a summary, do not count.
     """
     lines = [(line, {text for text in sent if tells(line, text)}) for line in part.said()]
     holding = [[one for one in lines if text in one[1]] for text in dict.fromkeys(sent)]
@@ -225,12 +228,12 @@ def retold(part: Part, sent: Sequence[str]) -> str:
 
 
 def _claim(lines: Sequence[str], text: str) -> str | None:
-    """Return the line in which a text is reported first; None if there is none."""
+    """Return the first line that contains a text; None if there is none."""
     return next((line for line in lines if tells(line, text)), None)
 
 
 def _kind(line: str, text: str) -> tuple[str, ...] | None:
-    """Return the words around a text, with all numbers made equal; None if the line does not contain the text."""
+    """Return the words around a text, with each number replaced by 0; None if the line does not contain the text."""
     frame = _frame(line, text)
     return tuple(re2.sub(r"[0-9]+", "0", words) for words in (frame.before, frame.after)) if frame else None
 
@@ -253,17 +256,17 @@ def _frame(line: str, text: str) -> Frame | None:
 
 @functools.lru_cache(maxsize=256)
 def _forms(text: str) -> tuple[str, ...]:
-    """Return the forms of a text in output: unchanged, with letters escaped as in JSON, and as printed bytes."""
+    """Return the forms of a text in output: unchanged, with escaped letters as in JSON, and as printed bytes."""
     return (text,) if text.isascii() else (text, ascii(text)[1:-1], repr(text.encode())[2:-1])
 
 
 _DASH = r"[\d\-−][\-−]"
-"""Matches a dash that is not a minus sign: after a digit, or in a row of dashes."""
+"""Matches a dash that is not a minus sign, because it follows a digit or another dash."""
 _UNSIGNED = rf"(?:^|[^\d\-−]|{_DASH})"
-"""Matches the characters before a number that has no sign."""
+"""Matches the text before a number that has no sign."""
 _UNSIGNED_ZERO = rf"(?:^|[^\d.\-−]|{_DASH}|(?:^|\D)\.)"
-"""Matches the characters before a 0 that has no sign. The 0 in 0.5 and in 1.0 is not a number of its own, but a 0 after
-a row of dots is.
+"""Matches the text before a 0 that has no sign. A 0 in 0.5 or 1.0 does not count as the number 0, but a 0 after a row
+of dots does.
 """
 
 
