@@ -1,4 +1,4 @@
-"""Interfaces of the publishers, servers and clients that the judge makes for a scenario."""
+"""The interfaces of the publishers, servers and clients that the judge makes in a scenario."""
 
 from __future__ import annotations
 

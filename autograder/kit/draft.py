@@ -1,9 +1,9 @@
-"""A builder for exercises: pass a recipe, then add criteria and mistakes, each as a decorated function.
+"""A builder for exercises: it takes a recipe, and then criteria and mistakes as decorated functions.
 
-Each function gets two views of the same type, both made by the recipe: the first shows the student's subject, the
-second the reference solution. There are two ways to add a mistake. :meth:`Draft.knows` takes two texts with
-placeholders: ``"It carries {seen.counters[0]}."`` quotes from a view, and ``{}`` stands for the value that was found.
-If texts are not enough, :meth:`Draft.mistake` decorates a function that returns the advice itself.
+Each function gets two views of the same type, which the recipe makes from the evidence. The first view shows the
+student's subject, the second the reference solution. There are two ways to add a mistake. :meth:`Draft.knows` takes two
+texts with placeholders: ``{seen.counters[0]}`` quotes from a view, and ``{}`` stands for the value that was found. If a
+text needs more than placeholders, :meth:`Draft.mistake` decorates a function that returns the advice.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 View = TypeVar("View")
 View_co = TypeVar("View_co", covariant=True)
 Judge = Callable[[View, View], Finding]
-"""A function that decides a criterion from the views of the subject and of the reference solution."""
+"""A function that decides a criterion, given the view of the subject and the view of the reference solution."""
 Told = Callable[[View, View], Advice | None]
-"""A function that returns the advice about a mistake, or None if the mistake was not made."""
+"""A function that returns the advice about a mistake, given the two views; None if the subject did not make it."""
 
 
 class Recipe(Protocol[View_co]):
-    """The base class of recipes. A recipe contains what exercises about one kind of subject have in common."""
+    """The interface of a recipe, which contains what exercises about one kind of subject have in common."""
 
     @property
     def roles(self) -> tuple[str, ...]:
@@ -36,7 +36,7 @@ class Recipe(Protocol[View_co]):
 
     @property
     def ladder(self) -> Sequence[Mistake]:
-        """Return the common mistakes, most specific first; others go at :data:`OWN` and :data:`OWN_LATE`."""
+        """The recipe's mistakes, most specific first, with the placeholders :data:`OWN` and :data:`OWN_LATE`."""
 
     def scenario(self, bench: Bench) -> None:
         """Run the scenario: tell the bench what to do in each part."""
@@ -49,29 +49,33 @@ class Recipe(Protocol[View_co]):
 
 
 class SeenAsItIs:
-    """A recipe whose two views are both the whole evidence, which also contains the reference solution's record."""
+    """The base class of a recipe whose two views are both the whole evidence."""
 
     def seen(self, evidence: Evidence) -> Evidence:
         """Return the evidence unchanged."""
         return evidence
 
     def expected(self, evidence: Evidence) -> Evidence:
-        """Return the same evidence, because it contains the reference solution's record as well."""
+        """Return the evidence unchanged, because it also contains the record of the reference solution."""
         return evidence
 
 
 OWN = Mistake("", lambda _: None)
-"""Placeholder in a list of mistakes: the exercise's own go here, before those of nodes that hang or are not spun."""
+"""A placeholder in a recipe's list of mistakes. An exercise's mistakes go here, before those of nodes that hang or are
+not spun.
+"""
 OWN_LATE = Mistake("", lambda _: None)
-"""Placeholder for the exercise's own mistakes that a node which is not spun would show as well."""
+"""A second placeholder, after the mistakes of nodes that hang or are not spun. An exercise's mistakes go here if such a
+node would show them, too.
+"""
 
 
 class Draft(Generic[View]):
-    """Collects the criteria and mistakes of an exercise.
+    """A builder that collects the criteria and mistakes of an exercise.
 
     Args:
-        exercise_id: The lab's folder and the file's name, such as ``"lab_8_1.battery"``.
-        title: The title of the card, naming the lab and the subject.
+        exercise_id: The lab's folder and the name of the exercise's file, such as ``"lab_8_1.battery"``.
+        title: The title of the card; it names the lab and the subject.
         task: One sentence that states the task.
         recipe: The recipe for the kind of subject.
     """
@@ -126,15 +130,15 @@ class Draft(Generic[View]):
         Args:
             key: A stable name, explained in ``docs/mistakes.md``.
             found: Returns whatever shows the mistake; a false value, such as None or "", if the mistake was not made.
-            says: The text for the student, with placeholders such as ``{seen.texts[0]}``; ``{}`` is the value that
-                was found.
-            next_step: The next step for the student, with the same placeholders.
-            certain: True if the record proves the mistake however busy the machine was; or a function that decides
-                this.
-            late: True if a node that hangs or is not spun shows it as well. Then those two mistakes are checked
-                first.
-            before: The key of the common mistake before which this one is checked, if neither of the two usual
-                positions fits.
+            says: The text about the mistake, with placeholders such as ``{seen.texts[0]}``; ``{}`` is the value that
+                ``found`` returned.
+            next_step: What the student should do now, with the same placeholders.
+            certain: True if the evidence proves the mistake however busy the machine was; or a function of the
+                subject's view that decides this.
+            late: True if a node that hangs or is not spun would show this mistake, too. Then the mistakes of such nodes
+                are checked first.
+            before: The key of one of the recipe's mistakes. The new mistake is checked just before it, instead of at
+                one of the two placeholders.
         """
 
         def told(seen: View, expected: View) -> Advice | None:
@@ -153,7 +157,7 @@ class Draft(Generic[View]):
         late: bool = False,
         before: str = "",
     ) -> Callable[[Told[View]], Told[View]]:
-        """Add a known mistake whose advice the decorated function returns. For the arguments see :meth:`knows`."""
+        """Add a known mistake; the decorated function returns the advice. For the arguments see :meth:`knows`."""
 
         def add(told: Told[View]) -> Told[View]:
             def advice(evidence: Evidence) -> Advice | None:
@@ -176,17 +180,17 @@ class Draft(Generic[View]):
         """Return the finished exercise. Call this after adding all criteria and mistakes.
 
         Args:
-            more: Further attributes of :class:`autograder.kit.model.Exercise`.
+            more: Other attributes of :class:`autograder.kit.model.Exercise`.
 
         Raises:
-            ValueError: A mistake is to come before one that the recipe does not have.
+            ValueError: ``before`` names a mistake that the recipe does not have.
         """
         before, mistakes = dict(self._before), list[Mistake]()
         for common in self._recipe.ladder:
             mistakes += [*before.pop(common.key, ()), *self._own.get(id(common), [common])]
         if before:
             raise ValueError(
-                f"the recipe has no mistake {' and no '.join(before)} for another one to come before"
+                f"the recipe has no mistake {' and no '.join(before)}: correct the argument before=..."
             )
         return Exercise(
             id=self._id,

@@ -1,4 +1,4 @@
-"""The record that the judge makes of a subject, and the questions that exercises ask about it."""
+"""What the judge records about a subject, and methods with which exercises read it."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ class Event:
     Attributes:
         t: Wall time in seconds since the part began.
         kind: What happened, such as ``message`` or ``goal``; docs/exercise-reference.md lists every kind with its data.
-        name: The topic, service or action; for a line of output, its stream; for the subject itself, such as
-            ``exited``.
+        name: The topic, service or action. For a line of output, this is the stream; for the subject itself, what
+            happened to it, such as ``exited``.
         data: Further fields of the event, as values that JSON can contain.
         sim: Simulated time in seconds if the judge stepped the clock, else None.
     """
@@ -33,7 +33,7 @@ class Event:
 
     @property
     def moment(self) -> float:
-        """The event's time in the subject's clock, in seconds: simulated if the judge stepped the clock, else ``t``."""
+        """The event's time in seconds: simulated time if the judge stepped the clock, else ``t``."""
         return self.t if self.sim is None else self.sim
 
 
@@ -46,18 +46,18 @@ class Part:
     events: Sequence[Event] = ()
 
     def of(self, kind: str, name: str | None = None) -> list[Event]:
-        """Return the events of a kind, in order of time. If ``name`` is given, only those with this name."""
+        """Return the events of a kind, in order of time. If ``name`` is given, return only those with this name."""
         return [e for e in self.events if e.kind == kind and (name is None or e.name == name)]
 
     def first(self, kind: str, name: str | None = None) -> Event | None:
-        """Return the first event of a kind, with this name if one is given, or None."""
+        """Return the first event of a kind; with ``name``, the first one with this name. None if there is none."""
         return next((e for e in self.events if e.kind == kind and (name is None or e.name == name)), None)
 
     def said(self, *, after: Event | None = None) -> list[str]:
-        """Return everything that the subject logged, printed or returned, in order of time, without tracebacks.
+        """Return the lines that the subject logged, printed or returned, in order of time, without tracebacks.
 
         Args:
-            after: Only output after this event.
+            after: If given, only lines after this event are returned.
         """
         start = self.events.index(after) + 1 if after is not None else 0
         # A traceback that began before the event ``after`` may continue beyond it.
@@ -72,7 +72,7 @@ class Part:
         return found
 
     def real_name(self, name: str) -> str:
-        """Return the name that the subject used for the task's ``name``: a different one if the subject misnamed it."""
+        """Return the name that the subject used instead of the task's ``name``; the same name if it used that."""
         event = self.first("misnamed", name)
         return name if event is None else str(event.data["real"])
 
@@ -88,20 +88,21 @@ class Part:
 
     @property
     def returned(self) -> str | None:
-        """The repr of the value that a function returned (``"None"`` for nothing); None if none has returned."""
+        """The repr of the value that a function returned, such as ``"None"``; None if no function has returned."""
         ending = self.ending
         return str(ending.data.get("value")) if ending is not None and ending.name == "returned" else None
 
     @functools.cached_property
     def traceback(self) -> str:
-        """The last traceback that the subject printed; empty if there is none. Cached, because most mistakes need it.
+        """The last traceback that the subject printed; empty if there is none.
 
-        A traceback that appears because the judge stopped the subject does not count.
+        A traceback that appears because the judge stopped the subject does not count. The value is cached, because most
+        mistakes need it.
         """
         for event in reversed(self.events):
             if event.kind == "subject" and event.data.get("traceback"):
                 return str(event.data["traceback"])
-        # Search each stream separately, and under a launch each program, because their lines may be interleaved.
+        # Each stream is searched alone, and under a launch each program, because their lines may be mixed.
         streams: dict[str, list[str]] = {}
         for event in self.of("output"):
             stream, line = _stream_and_line(event)
@@ -114,7 +115,10 @@ _LAUNCHED = re2.compile(r"(?s)(\[[\w.]+-\d+\] )?(.*)")
 
 
 def _stream_and_line(event: Event) -> tuple[str, str]:
-    """Return the stream (under a launch, also the program) of an output line, and the line without its prefix."""
+    """Return the stream of an output line, and the line without its prefix.
+
+    Under a launch, the stream contains the name of the program, too.
+    """
     text = str(event.data["text"])
     if not text.startswith("["):
         return event.name, text
@@ -130,8 +134,8 @@ INTERRUPTED = "Ctrl-C"
 
 _TRACEBACK = "Traceback (most recent call last)"
 _IGNORED = "Exception ignored in"
-"""The beginning of Python's message about an error in a destructor. Such an error stops nothing, and is often only a
-consequence of another one.
+"""The beginning of Python's message about an error in a destructor. Such an error does not stop the program, and is
+often the consequence of another error.
 """
 _OF_A_TRACEBACK = (
     "Exception in thread ",
@@ -145,7 +149,7 @@ _OF_A_TRACEBACK = (
     "During handling of the above exception",
     "The above exception was the direct cause",
 )
-"""Lines that begin like this belong to tracebacks or stacks, even if two threads print theirs at the same time.
+"""The beginnings of lines that belong to tracebacks or stacks, even if two threads print theirs at the same time.
 
 For example, if a Python program ends while one of its threads still spins, the C++ runtime often aborts it
 (``terminate called without an active exception``), and faulthandler then prints the stacks.
@@ -153,16 +157,16 @@ For example, if a Python program ends while one of its threads still spins, the 
 _FRAME = re2.compile(r'\s+File ".*", line \d+')
 _LOGGING_ERROR = "--- Logging error ---"
 _OF_A_LOGGING_ERROR = ("Call stack:", "    ", "Message: ", "Arguments: ")
-"""The beginnings of lines with which Python's ``logging`` says, after a traceback, what it could not log.
+"""The beginnings of the lines that Python's ``logging`` prints after the traceback of an error in a log call.
 
-The last one ends the block.
+The line with the last of these beginnings ends the block.
 """
 
 
 def without_tracebacks(events: Sequence[Event]) -> Iterator[tuple[int, Event]]:
-    """Yield all events with their indexes, without the lines of tracebacks, which are not the program's own.
+    """Yield each event with its index, but no lines of tracebacks.
 
-    Lines of ``logging`` about a message that it could not log are left out as well.
+    The lines that ``logging`` prints about a failed log call are left out, too.
     """
     inside: dict[str, bool] = {}
     failed_to_log: set[str] = set()
@@ -184,32 +188,35 @@ def without_tracebacks(events: Sequence[Event]) -> Iterator[tuple[int, Event]]:
 
 
 REPORTS = ("@workspace ", "@process ")
-"""The beginnings of lines with which a runner reports a build or a launched process. The subject did not write them.
+"""The beginnings of lines with which a runner reports a build or a launched process. Such lines do not come from the
+subject.
 """
 _ROS2_RUN = "[ros2run]: "
-"""The prefix of messages from ``ros2 run`` itself, for example that the program exited with failure 3. Such a message
-does not explain the failure.
+"""The prefix of messages from ``ros2 run``, for example that the program exited with failure 3. Such a message does not
+count as a report of the failure by the subject.
 """
 _PREFIX = re2.compile(r"^\[\w+\] \[[\d.]+\] \[(?P<logger>[^\]]*)\]: ")
-"""The prefix that rcutils puts before a log line on a terminal: level, time stamp, logger.
+"""Matches the prefix of a log line on a terminal: level, time stamp, logger.
 
-The prefix is not part of what the subject said.
+rcutils adds this prefix, so it does not count as text from the subject.
 """
 
 
 _LIBRARIES = re2.compile(r"\.action_(client|server)$|^(rcl|rclpy|rcutils|rmw\w*)(\.|$)")
-"""The names of ROS's own loggers, which write lines such as "Ignoring unexpected result response"
+"""Matches the names of ROS's own loggers. They write lines such as "Ignoring unexpected result response"
 (rclpy/action/client.py).
 """
 _COLOURS = r"(?:\x1b\[[\d;]*m)*"
 _MIDDLEWARE = re2.compile(
     rf"^{_COLOURS}\d{{4}}-\d\d-\d\d [\d:.]+ .*\[{_COLOURS}\w+{_COLOURS} (Error|Warning)\]"
 )
-"""The beginning of a Fast DDS error or warning. On a busy machine these appear even if the program is right."""
+"""Matches the beginning of an error or warning of Fast DDS. On a busy machine these appear even if the program is
+right.
+"""
 
 
 def spoken_by(event: Event) -> str | None:
-    """Return the text that the subject logged, printed or returned in an event, without terminal prefix, or None."""
+    """Return the text that the subject logged, printed or returned in an event, without prefix; None if none."""
     if event.kind in ("log", "output"):
         text = str(event.data["text"])
         prefix = _PREFIX.match(text) if text.startswith("[") else None
@@ -232,12 +239,13 @@ def _is_a_library(logger: str) -> bool:
 
 
 def _is_the_middlewares(text: str) -> bool:
-    # This runs for every line of output again and again, so the slow pattern is tried only on lines that may match.
+    # The slow pattern is tried only on lines that may match, because this code runs many times for every line of
+    # output.
     return ("Error]" in text or "Warning]" in text) and _MIDDLEWARE.match(text) is not None
 
 
 def _traceback_in(lines: Sequence[str]) -> str:
-    """Return the last Python traceback in lines of output, as a terminal shows it.
+    """Return the last Python traceback in lines of output, as a terminal would show it.
 
     A traceback that was cut off, because the process died or another thread printed in between, counts only if no
     complete one exists.
@@ -275,11 +283,11 @@ def _traceback_at(lines: Sequence[str], start: int) -> list[str]:
 
 @dataclass(frozen=True)
 class Evidence:
-    """Everything that criteria and mistakes may use to decide.
+    """Everything from which criteria and mistakes decide.
 
     Attributes:
-        parts: The record of the subject, one entry for each part of the scenario.
-        reference: The record of the reference solution, that is, the expected behavior.
+        parts: The runs of the subject, one for each part of the scenario.
+        reference: The record of the reference solution: the expected behavior.
         real_time: True if this is the second look, in which the judge does not speed up time.
         before: In the second look, the evidence of the first one; else None.
     """
@@ -290,7 +298,7 @@ class Evidence:
     before: Evidence | None = None
 
     def part(self, name: str) -> Part:
-        """Return the part with this name; an empty one if the scenario ended before that part."""
+        """Return the part with a given name; an empty part if the scenario ended before that part."""
         return next((part for part in self.parts if part.name == name), Part(name))
 
     @property
@@ -306,8 +314,8 @@ class Evidence:
     def ever_had(self, role: str) -> bool:
         """Return True if the subject had an endpoint of this role in any run, now or in the first look.
 
-        If the judge watches twice (:attr:`before`), both looks count, because an endpoint that exists only briefly may
-        go unseen in one of them.
+        If this is the second look, the first look (:attr:`before`) counts, too, because an endpoint that exists only
+        briefly may be missed in one of them.
         """
         return any(part.endpoints(role) for part in (*self, *(self.before or ())))
 
@@ -321,7 +329,7 @@ class Reference:
 
     Attributes:
         exercise: The exercise's id.
-        interface: For each role, the reference solution's endpoints as {name: type}.
+        interface: For each role, the types of the reference solution's endpoints by name.
         parts: The record of the reference solution, with the same parts as a subject's.
     """
 

@@ -1,4 +1,4 @@
-"""Reads a launch's reports on its processes, one line of JSON for each, and the rules in their command lines."""
+"""Reads the lines in which a launch reports its processes, and the remapping rules in their command lines."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Process:
     """A process that a launch started.
 
     Attributes:
-        pid: The process id, in the PID namespace of the process itself.
+        pid: The process id, as the process itself sees it in its PID namespace.
         parent: The id of the parent process, in the same namespace.
         argv: The command line of the process.
     """
@@ -37,7 +37,7 @@ def process_line(process: Process) -> str:
 
 
 def processes(part: Part) -> list[Process]:
-    """Return the processes that a launch started. A process that replaced its program (exec) has an entry for each."""
+    """Return the programs that a launch started; a process that replaced its program (exec) counts twice."""
     texts = [str(event.data["text"]) for event in part.of("output")]
     found = [_parsed(text[len(MARK) :]) for text in texts if text.startswith(MARK)]
     return [process for process in found if process is not None]
@@ -55,15 +55,15 @@ def _parsed(text: str) -> Process | None:
 
 
 def remappings(argv: Sequence[str]) -> list[tuple[str, str]]:
-    """Return the remapping rules ``from:=to`` that a command line passes to its node."""
+    """Return the remapping rules ``from:=to`` of a command line, as pairs of names."""
     return [(old, new) for _, old, new in placed_remappings(argv)]
 
 
 def placed_remappings(argv: Sequence[str]) -> list[tuple[range, str, str]]:
-    """Return the remapping rules ``from:=to`` of a command line, each with the range of arguments that make it up.
+    """Return the remapping rules ``from:=to`` of a command line, each with the indexes of its arguments.
 
-    After ``--ros-args`` a rule follows ``-r`` or ``--remap``. Elsewhere an argument ``from:=to`` alone is a rule: rcl
-    calls that form deprecated, but obeys it (rcl/arguments.h).
+    After ``--ros-args``, a rule follows ``-r`` or ``--remap``. Before it, an argument ``from:=to`` alone is a rule: rcl
+    calls this form deprecated, but obeys it (rcl/arguments.h).
     """
     found, of_ros = [], False
     for place, word in enumerate(argv):
@@ -77,20 +77,20 @@ def placed_remappings(argv: Sequence[str]) -> list[tuple[range, str, str]]:
 
 
 _OF_A_PACKAGE = re2.compile(r"/lib/(\w[\w-]{0,60})/(\w[\w.-]{0,60})$")
-"""The end of the path of a package's program."""
+"""Matches the end of the path of an installed program: its package and its name."""
 
 
 def as_run(
     argv: Sequence[str], programs: Sequence[tuple[str, str]], leads_there: Callable[[str, str], bool]
 ) -> tuple[str, ...]:
-    """Return a command line as ``ros2 run`` takes it, without some of its rules; empty if it starts no program.
+    """Return the arguments with which ``ros2 run`` would start a process; empty if it is not a program of a package.
 
-    Files of parameters are left out, too, because a launch writes one and removes it at its end.
+    Files of parameters are left out, because a launch writes them and removes them when it ends.
 
     Args:
         argv: The command line of a process.
-        programs: The module of each program of the workspace, with slashes for dots, and the end of its path.
-        leads_there: Tells whether a rule from one name to another is to be left out.
+        programs: For each program of the workspace, its module with slashes instead of dots, and the end of its path.
+        leads_there: Decides, for the two names of a remapping rule, whether the rule is left out.
     """
     # A prefix, such as `python3 -u`, may precede the program.
     own = argv[: argv.index("--ros-args")] if "--ros-args" in argv else argv
@@ -105,6 +105,6 @@ def as_run(
 
 
 def _program(word: str, programs: Sequence[tuple[str, str]]) -> str:
-    """Return the end of the path of the program that setup.py makes of a module or file; empty if there is none."""
+    """Return the end of the path of the program whose code is in a module or file; empty if there is none."""
     file = word.removesuffix(".py") if word.endswith(".py") else word.replace(".", "/")
     return next((path for module, path in programs if f"/{file}".endswith(f"/{module}")), "")

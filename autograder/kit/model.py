@@ -1,8 +1,8 @@
-"""The parts of an exercise as plain data, and the :class:`Bench` protocol with which its scenario is written.
+"""The data that describes an exercise, and the :class:`Bench` interface with which its scenario is written.
 
-An exercise module defines what the judge does (the scenario), what must hold (the criteria), and known mistakes. It
-drives the judge through :class:`Bench` and never imports the judge, so an exercise reads like its specification and
-can be tested without ROS.
+An exercise module defines what the judge does (the scenario), the requirements (the criteria), and known mistakes. A
+scenario uses the judge only through :class:`Bench` and never imports it. So an exercise reads like its specification,
+and can be tested without ROS.
 """
 
 from __future__ import annotations
@@ -21,21 +21,23 @@ if TYPE_CHECKING:
 
 
 STEP = 0.05
-"""Default length of one step in simulated seconds; short compared with every period in the course."""
+"""The default length of one step in simulated seconds. It is short compared with every period in the course."""
 
 
 class Pace(StrEnum):
     """The kind of time in which the judge watches a subject."""
 
     FAST = "fast"
-    """Simulated time is stepped if the subject follows it, and the judge's counterparts answer as fast as they can."""
+    """The judge steps simulated time if the subject follows it, and its counterparts answer as fast as they can."""
     REAL_TIME = "real time"
-    """Everything happens at the task's pace. A subject that fails at the fast pace is watched again like this."""
+    """Everything happens in real time, with the delays that the task describes. The second look at a subject that
+    failed at the fast pace is like this.
+    """
 
 
 @dataclass(frozen=True)
 class Finding:
-    """The decision on a criterion, with the expected and the observed behavior as the card words them."""
+    """The decision on a criterion, with the expected and the observed behavior in words for the card."""
 
     passed: bool
     expected: str
@@ -61,12 +63,13 @@ class Criterion:
 
 @dataclass(frozen=True)
 class Advice:
-    """The message to the student about a recognized mistake.
+    """The text for the student about a recognized mistake.
 
     Attributes:
         text: What happened, and why.
         next_step: What the student should do now.
-        traceback: The traceback that revealed the mistake, for the card; empty if something else revealed it.
+        traceback: The traceback that shows the mistake, for the card; empty if the mistake was recognized from
+            something else.
     """
 
     text: str
@@ -80,9 +83,9 @@ class Mistake:
 
     Attributes:
         key: A stable name, listed in ``docs/mistakes.md``.
-        recognise: Returns the advice if the evidence shows this mistake, else None.
-        certain: True if the evidence proves the mistake however busy the machine was. Then a second look in real time
-            is not needed.
+        recognise: Returns the advice if the evidence shows this mistake, otherwise None.
+        certain: True if the evidence proves the mistake however busy the machine was. Then no second look in real time
+            is needed.
     """
 
     key: str
@@ -93,7 +96,7 @@ class Mistake:
 def mistake(
     key: str, found: Callable[[Evidence], object], text: str, next_step: str, *, certain: bool = False
 ) -> Mistake:
-    """Make a known mistake that two sentences describe.
+    """Return a known mistake whose advice consists of two texts with placeholders.
 
     Args:
         key: A stable name, listed in ``docs/mistakes.md``.
@@ -112,7 +115,7 @@ def mistake(
 
 
 class Bench(Protocol):
-    """The methods with which a scenario is written. Every wait ends at an event or at its limit, and says which."""
+    """The methods with which a scenario is written. Every wait ends at an event or a time limit, and returns which."""
 
     pace: Pace
     before: Evidence | None
@@ -123,10 +126,10 @@ class Bench(Protocol):
     """True if the subject runs in a notebook's kernel. Then a student may be waiting for the check cell to finish."""
 
     def part(self, name: str, **inputs: Any) -> None:
-        """Begin a part, that is, a new run of the subject. ``inputs`` are stored in its record."""
+        """Begin a part, which is a new run of the subject. ``inputs`` are stored in the part's record."""
 
     def again(self, name: str = "") -> None:
-        """Begin a part again, the last one if no name is given, with a new run of the subject.
+        """Begin a part again with a new run of the subject; the last part if no name is given.
 
         The record of the earlier run is discarded.
         """
@@ -135,7 +138,7 @@ class Bench(Protocol):
         """In the second look, reuse a part of the first look in which the subject ended by itself. Return True if so.
 
         Use this for parts whose result does not depend on the pace. A part in which the subject was told how long to
-        wait is never reused.
+        wait is always run again.
         """
 
     def start(self, *arguments: Any, **options: Any) -> None:
@@ -146,13 +149,13 @@ class Bench(Protocol):
         """
 
     def release(self) -> None:
-        """Let a held subject spin; do nothing if the subject runs already."""
+        """Let the subject spin if it does not spin yet."""
 
     def await_endpoint(self, role: str, name: str) -> bool:
         """Wait until the subject's endpoint is on the ROS graph and matched with the judge's.
 
-        It gives up as soon as the subject has ended, or is known to have made all its endpoints. A held subject is
-        released if it may make the endpoint only in a callback.
+        The wait gives up once the subject has ended, or is known to have made all its endpoints. A subject that is not
+        yet spun is released if it may make the endpoint only in a callback.
 
         Args:
             role: ``"publisher"``, ``"subscription"``, ``"client"``, ``"action_client"``, ``"service"`` or
@@ -161,7 +164,7 @@ class Bench(Protocol):
         """
 
     def await_node(self) -> bool:
-        """Wait for a node of the subject. Return True if it is on the ROS graph, or was before the subject ended."""
+        """Wait for a node of the subject. Return True if one is, or was, on the ROS graph."""
 
     def await_sign_of_life(self, within: float) -> bool:
         """Wait until the subject has printed something or has a node on the graph. This records nothing.
@@ -171,13 +174,13 @@ class Bench(Protocol):
         """
 
     def listen(self, topic: str, type_name: str, *, latched: bool = False) -> None:
-        """Subscribe as the course's listener does: reliably, so that a best-effort talker is noticed.
+        """Subscribe to a topic with reliable QoS, like the course's listener, so that a best-effort talker is noticed.
 
         Args:
             topic: The full name of the topic.
             type_name: The message type, such as ``"std_msgs/msg/String"``.
-            latched: True to request earlier messages as well (transient local). A publisher that keeps none for late
-                subscribers is then not heard at all, and the QoS mismatch is recorded.
+            latched: True to request earlier messages, too (durability transient local). From a publisher that does not
+                store messages for late subscribers, nothing is then received, and the QoS mismatch is recorded.
         """
 
     def speak(self, topic: str, type_name: str) -> Speaker:
@@ -197,7 +200,8 @@ class Bench(Protocol):
             service: The full name of the service.
             type_name: The service type, such as ``"std_srvs/srv/Empty"``.
             answer: Returns the fields of the response, given the fields of the request.
-            hold: Which request, counted from 1, is not answered until :meth:`Server.release` is called; 0 for none.
+            hold: The number of the request, counted from 1, that is not answered until :meth:`Server.release` is
+                called; 0 for none.
         """
 
     def call(self, service: str, type_name: str) -> Caller:
@@ -216,19 +220,19 @@ class Bench(Protocol):
         goal_answer_takes: float = 0.0,
         cancel_answer_takes: float = 0.0,
     ) -> ActionCounterpart:
-        """Serve an action. The scenario decides each step of its server.
+        """Make an action server that does only what the scenario tells it to.
 
         ``goal_answer_takes`` and ``cancel_answer_takes`` are the delays of the answers, in seconds of wall time.
         """
 
     def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> None:
-        """Put a node of the judge on the graph, for the subject to look at. Give its endpoints as ``{topic: type}``."""
+        """Put a decoy node on the ROS graph for the subject to find. Its endpoints are given as ``{topic: type}``."""
 
     def compare_type(self, service: str, like: str) -> None:
-        """Record whether the subject's service type has the fields of the type ``like``."""
+        """Record whether the type of the subject's service has the same fields as the type ``like``."""
 
     def note_its_log(self) -> None:
-        """Record each different text that the subject logs once, for the reference output."""
+        """Record, for the reference output, each text that the subject logs, but only once."""
 
     def seen(self) -> Part:
         """Return the events of this part that were recorded so far."""
@@ -237,23 +241,23 @@ class Bench(Protocol):
         """Return the number of messages that arrived on a topic so far in this part."""
 
     def doubt(self) -> None:
-        """Require that this look is confirmed by a second one in real time."""
+        """Require a second look in real time to confirm this look."""
 
     def settle(self) -> None:
-        """Wait until the subject's executors have processed what was sent to them, if they still spin.
+        """Wait until the subject's executors, if they still spin, have processed everything that was sent to them.
 
         Without this, a fast subject would look slow on a busy machine.
         """
 
     def await_attention(self) -> None:
-        """Wait until the nodes to which the judge publishes are spun and have discovered the judge's publishers.
+        """Wait until the subscribing nodes are spun and have discovered the judge's publishers.
 
-        A best-effort subscription loses messages until it has itself discovered the publisher, however long ago the
-        publisher discovered the subscription.
+        A best-effort subscription loses messages until it has itself discovered the publisher. This may happen long
+        after the publisher has discovered the subscription.
         """
 
     def note_whether_it_spins(self) -> None:
-        """Send the subject's nodes a request that every spun node answers, and record whether one does not.
+        """Send the subject's nodes a request that every node answers if it is spun. Record whether a node does not.
 
         If a node does not answer, also record the stacks of the subject's threads. If the subject is a command, this
         ends it.
@@ -275,9 +279,9 @@ class Bench(Protocol):
         Args:
             seconds: The maximum number of seconds to pass.
             until: Time stops passing when this function returns True.
-            quiet: In real time, stop when no event was recorded for this many seconds.
-            step: The length of one step in simulated seconds. A timer with a shorter period fires once a step, so
-                times are only this precise; each step costs the judge and the subject a few milliseconds.
+            quiet: In real time, stop if no event was recorded for this many seconds.
+            step: The length of one step in simulated seconds. A timer with a shorter period fires only once in each
+                step. Shorter steps are more precise, but each step costs the judge and the subject a few milliseconds.
 
         Returns:
             False if simulated time could not go on because the subject's executor no longer spins.
@@ -286,12 +290,12 @@ class Bench(Protocol):
     def pass_time(self, seconds: float, role: str, name: str) -> None:
         """Let ``seconds`` pass quickly for a subject in real time, so that its timers fire now instead of later.
 
-        Meanwhile the subject's clock is simulated, and afterwards real again. If the subject does not follow
+        During this time the subject's clock is simulated; afterwards it is real again. If the subject does not follow
         simulated time, the seconds pass in real time.
 
         Args:
             seconds: Seconds of the subject's time.
-            role: The role of the endpoint whose node is meant.
+            role: The role of an endpoint of the node whose time passes.
             name: The full name of that endpoint's topic, service or action.
         """
 
@@ -303,7 +307,7 @@ class Bench(Protocol):
         Args:
             condition: Returns True when the wait is over.
             within: The limit in seconds of wall time.
-            quiet: Give up earlier if no event was recorded for this many seconds.
+            quiet: If given, give up earlier if no event was recorded for this many seconds.
         """
 
     def let_wait(self, seconds: float) -> None:
@@ -319,7 +323,8 @@ class Bench(Protocol):
             within: The limit in seconds of wall time.
 
         Returns:
-            True if Ctrl-C ended the subject. False also if it had ended before; then nothing is pressed.
+            True if Ctrl-C ended the subject. False if it did not, or if the subject had ended before; then Ctrl-C is
+                not pressed.
         """
 
     def await_end(self, within: float) -> bool:
@@ -340,18 +345,19 @@ class Exercise:
         scenario: Drives the bench through all parts.
         criteria: The requirements, in the order in which the card shows them.
         mistakes: The known mistakes, most specific first.
-        text: The sentences of the task's text -> the names of the criteria that judge each, separated by spaces. A
-            sentence that no criterion judges is listed as not graded below the task.
-        remarks: Functions that return remarks for the card, which cost no points: a sentence, or an empty text.
+        text: Maps each sentence of the task's text to the names of the criteria that judge it, separated by spaces. A
+            sentence that no criterion judges is listed below the task as not graded.
+        remarks: Functions that return a sentence for the card that costs no points, or an empty text.
         roles: The roles of the subject's endpoints, such as ``("publisher",)``. `record` waits for one of them.
-        limit: Time limit of a check in seconds of wall time, for the fast look and the one in real time together. A
-            command may build first, so it has more (`autograder/judge/subjects/command.py`).
-        arguments: The arguments that a command takes, in words; empty if it takes none.
-        sample_arguments: Example arguments, with which ``record`` starts the reference solution to see its interface.
+        limit: The time limit of a check in seconds of wall time, for the fast look and the one in real time together.
+            The limit for a command is longer, because a command may build first
+            (`autograder/judge/subjects/command.py`).
+        arguments: A description of the arguments that a command takes; empty if it takes none.
+        sample_arguments: Example arguments with which ``record`` starts the reference solution to see its endpoints.
         second_look: True if a subject that fails at the fast pace is watched again in real time.
         runner: How `autograder.workspaces` runs a path that is given instead of a command; None if the subject cannot
             be a path.
-        wraps_commands: True if that runner also runs commands.
+        wraps_commands: True if ``runner`` also runs commands.
         recorded: The kinds of events that a reference output keeps; None for the kinds that every exercise keeps.
     """
 
@@ -378,7 +384,7 @@ class Exercise:
         return sum(criterion.points for criterion in self.criteria)
 
     def judge_as_one(self, evidence: Evidence, right: str) -> Finding:
-        """Return the first criterion's finding that fails; if all criteria hold, a finding that says so.
+        """Return the finding of the first criterion that fails; if all criteria hold, a finding that says so.
 
         Args:
             evidence: Everything that the judge recorded.

@@ -1,4 +1,4 @@
-"""A package's programs, as reported before and after its build, and the modules that their entry points name."""
+"""Mistakes of a package's programs: entry points in setup.py, the package's name, and the folder of its modules."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from autograder.kit.workspace_report import PackageReport, WorkspaceReport
 
 BEGINNING = {Pace.FAST: 4.0, Pace.REAL_TIME: 15.0}
-"""Time limit in seconds of wall time, for each pace, in which a program or its build must print its first line."""
+"""For each pace, the time limit in seconds of wall time until a program or its build must print a first line."""
 
 
 @dataclass(frozen=True)
@@ -50,34 +50,34 @@ FORM = "a string of this form: executable = package.module:function, with no sla
 
 
 def await_build(bench: Bench) -> None:
-    """Wait until the workspace of a just started subject is built. Return at once if the subject is not a workspace."""
-    # A command may print nothing while it waits for the judge, so this wait has a time limit.
+    """Wait until the subject's workspace is built. Return at once if the subject is not a workspace."""
+    # This wait has a time limit, because a command may print nothing while it waits for the judge.
     bench.await_sign_of_life(BEGINNING[bench.pace])
     if bench.wait_until(lambda evidence: report_of(evidence.main, "found") is not None, 0.0):
         bench.wait_until(lambda evidence: report_of(evidence.main) is not None, BUILDING)
 
 
 def package_of(report: WorkspaceReport | None, name: str) -> PackageReport | None:
-    """Return the package with this name; None if the workspace does not contain it, or if there is no workspace."""
+    """Return a workspace's package with this name; None if there is no such package or no workspace."""
     return next((package for package in report.packages if package.name == name), None) if report else None
 
 
 def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
-    """Return advice if setup.py does not declare the task's program, or names a function that does not exist."""
+    """Return advice if setup.py lacks the task's entry point, or names a module or function that does not exist."""
     report, again = report_of(evidence.main), _again(evidence)
     if report is not None and report.built and report.missing == entry.program:
         own = package_of(report, entry.package)
         named = ", ".join(own.programs) if own else ""
-        # Without any entry point so far, the advice shows only the format, because the line itself would be the
+        # If setup.py has no entry point yet, the advice shows only the format, because the exact line would be the
         # answer.
         return Advice(
-            f"The package is built, but it has no program {entry.program}: setup.py names "
+            f"The package was built, but it has no program {entry.program}: setup.py names "
             f"{named or 'no entry point of the right form'}.",
-            f"In setup.py, the list 'console_scripts' has to contain {entry.line if named else FORM}. setup.cfg "
-            f"beside it has to put programs into $base/lib/{entry.package}. {again}",
+            f"In setup.py, the list 'console_scripts' must contain {entry.line if named else FORM}. In setup.cfg "
+            f"next to it, programs must go to $base/lib/{entry.package}. {again}",
         )
-    # If a traceback shows only Python's own code after the line that starts the program, the program failed before it
-    # imported any of the student's files.
+    # If the traceback ends in Python's code that loads the entry point, the program failed before it imported any file
+    # of the student.
     started = (part.traceback for part in evidence if _STARTS.search(part.traceback))
     tracebacks = "\n".join(text for text in started if _STARTS.search(own_line(text) or text))
     found = _LED_NOWHERE.search(tracebacks)
@@ -87,18 +87,18 @@ def entry_point(evidence: Evidence, entry: Entry) -> Advice | None:
     what = (
         f"the {'module' if found['module'] else 'function'} {name}"
         if name
-        else "a module, and to no function in it"
+        else "a module, but not to a function in it"
     )
     return Advice(
-        f"The entry point in setup.py leads to {what}{', which is not there' * bool(name)}.",
-        f"Write {entry.line}, with a comma after it: package, dot, the file without .py, a colon, and the function. "
-        f"{again}",
+        f"The entry point in setup.py points to {what}{', which does not exist' * bool(name)}.",
+        f"Write {entry.line} and a comma after it. This is the program, the package, a dot, the file without .py, a "
+        f"colon, and the function. {again}",
         tracebacks,
     )
 
 
 _STARTS = re2.compile(r"next\(matches\)\.load\(\)|load_entry_point\(")
-"""The lines that import the module and call the function, in the script that a build makes for an entry point."""
+"""Matches the lines that load the entry point in the script that a build makes for a program."""
 _LED_NOWHERE = re2.compile(
     r"(?m)^ModuleNotFoundError: No module named '(?P<module>[\w.]+)'"
     r"|module '[\w.]+' has no attribute '(?P<name>\w+)'"
@@ -107,7 +107,7 @@ _LED_NOWHERE = re2.compile(
 
 
 def _again(evidence: Evidence) -> str:
-    """Return the next step after a change. The judge builds a workspace; `ros2 run` starts an earlier build."""
+    """Return the next step after a correction, which depends on whether the judge builds the workspace itself."""
     return (
         "Then build and check again."
         if report_of(evidence.main) is None
@@ -120,8 +120,8 @@ def no_executable(evidence: Evidence, entry: Entry) -> Advice | None:
     if not any("No executable found" in str(event.data["text"]) for event in evidence.main.of("output")):
         return None
     return Advice(
-        "ros2 run found the package, but no program of that name in it.",
-        f"Name the entry point in setup.py: {entry.line}. Then build and source again.",
+        "`ros2 run` found the package, but no program with this name in it.",
+        f"Write the entry point in setup.py as {entry.line}. Then build and source the workspace again.",
     )
 
 
@@ -132,9 +132,10 @@ def package_name(evidence: Evidence, package: str) -> Advice | None:
         return None
     names = ", ".join(known.name for known in report.packages)
     return Advice(
-        f"The workspace was built, but the package {package} is not in it; there is {names}.",
-        f"The name of a package is its <name> in package.xml. Write {package} there, as the name in setup.py, and in "
-        "the paths in setup.cfg. The folder with your modules and the file in resource need this name, too.",
+        f"The workspace was built, but it does not contain the package {package}; it contains {names}.",
+        f"The name of a package is its <name> in package.xml. Write {package} in all these places: <name> in "
+        "package.xml, name in setup.py, the paths in setup.cfg, the folder with your modules, and the file in the "
+        "folder resource.",
     )
 
 
@@ -149,9 +150,9 @@ def wrong_folder(evidence: Evidence, entry: Entry) -> Advice | None:
     if lost is None or any(_module(named) == _dotted(lost) for named in own.programs):
         return None
     return Advice(
-        f"{file} is not in the folder of the package's modules: it is src/{package}/{lost}.",
-        f"Move it to src/{package}/{package}/{file}, into the inner one of the two folders {package}. Then check "
-        "again; the judge builds the package for you.",
+        f"{file} is not in the folder with the package's modules, but at src/{package}/{lost}.",
+        f"Move {file} to src/{package}/{package}/{file}: the path contains {package} twice. Then check again; the "
+        "judge builds the package for you.",
     )
 
 
@@ -165,9 +166,10 @@ def mistakes(entry: Entry) -> tuple[Mistake, ...]:
 
 
 def lost_entry_point(report: WorkspaceReport | None, package: str, program: str) -> bool:
-    """Return True if the package contains the module of an earlier lab, but no program starts that module any more.
+    """Return True if the package contains the module of an earlier lab, but no program starts that module.
 
-    Installed programs count as well, because setup.py may compute an entry point that its text does not show.
+    An installed program counts even if the text of setup.py does not show its entry point, because setup.py may compute
+    it.
     """
     own = package_of(report, package)
     if own is None or f"{package}/{program}.py" not in own.modules or program in own.installed:
@@ -181,5 +183,5 @@ def _module(entry: str) -> str:
 
 
 def _dotted(file: str) -> str:
-    """Return a file's path as a module name that Python can import."""
+    """Return a file's path as the name with which Python imports it."""
     return file.removesuffix(".py").replace("/", ".")

@@ -1,11 +1,11 @@
-"""What the workspace program should do if the subject is given as a path and not as a command."""
+"""The kinds of runners: what a check does with a path that is given as its subject instead of a command."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 ALONE = "--alone"
-"""The first argument that makes a runner start one program instead of the launch file. The remaining arguments are
+"""If this is the first argument, a runner starts one program instead of the launch file. The other arguments are then
 those of ``ros2 run``.
 """
 
@@ -42,7 +42,7 @@ class ServesInterface:
 
     Attributes:
         file: The file that defines the service type, such as ``"AddTwoInts.srv"``; it may be in any package.
-        service: The name of the service under which it is served.
+        service: The name that the judge's node gives to the service.
     """
 
     file: str
@@ -51,7 +51,7 @@ class ServesInterface:
 
 @dataclass(frozen=True)
 class Launches:
-    """Launch the given launch file. If it lies in a workspace, build the packages that it needs first.
+    """Launch the given launch file. If the file is in a workspace, first build the packages that it needs.
 
     If the first argument is :data:`ALONE`, the runner starts one program instead, in the environment that the launch
     would have.
@@ -66,7 +66,7 @@ class LaunchesFromPackage:
 
     Attributes:
         package: The name of the package.
-        file: The name of the launch file without the ending of its language, such as ``"remap.launch"``.
+        file: The name of the launch file without ``.py``, ``.xml`` or ``.yaml``, such as ``"remap.launch"``.
     """
 
     package: str

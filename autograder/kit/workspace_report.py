@@ -1,10 +1,9 @@
-"""The report about a workspace: one line of JSON after a marker, among a program's other output.
+"""The report on a workspace and its build, as one line of JSON in the output of the program that builds it.
 
-The judge sees a workspace's programs on the wire. Facts that are not visible there, such as the line at which the
-build failed, are reported by the program that builds the workspace. It does so before the student's own program
-prints anything, and only the first report counts. One line may be too short for a large workspace. So the packages
-that the exercise needs come first, and the report tells whether it contains all of them: a package that was left out
-is never judged as missing or wrong.
+The judge observes a workspace's programs on the network. The report contains facts that are not visible there, such as
+the line at which the build failed. It is printed before the student's own program prints anything, and only the first
+report counts. One line may be too short for a large workspace. So the packages that the exercise needs come first, and
+the report says whether all their details fit: a package that was left out never counts as missing or wrong.
 """
 
 from __future__ import annotations
@@ -26,11 +25,12 @@ MAX_LINE = 3_900
 _LIMITS = (2_500, 1_200, 600, 200, 50)
 """Maximum lengths, in characters, of each text in a report. They are tried in turn until the line is short enough."""
 AMENT_PACKAGE = "ament_package()"
-"""The value of ``missing`` for a package that was built but that ROS does not find."""
+"""The value of ``missing`` if a package was built but ROS does not find it, because its CMakeLists.txt lacks this call.
+"""
 BUILDING = 180.0
 """The time limit of a build, in seconds of wall time. A Python package needs one second, an interface package ten."""
 _FEW = 10
-"""The number of other packages that are named if there is no space to name all."""
+"""If not all other packages fit into the report, so many of them are named."""
 
 
 @dataclass(frozen=True)
@@ -39,9 +39,9 @@ class Interface:
 
     Attributes:
         file: The path of the file inside the package, such as ``"srv/AddTwoInts.srv"``.
-        text: The content without comments; None if the exercise does not need it, or if it was left out to save
-            space.
-        listed: True if the package's CMakeLists.txt names the file, or is too long to be searched.
+        text: The content without comments; None if the exercise does not need it, or if it did not fit.
+        listed: True if the package's CMakeLists.txt names the file; also True if CMakeLists.txt is too long to be
+            searched.
     """
 
     file: str
@@ -51,20 +51,20 @@ class Interface:
 
 @dataclass(frozen=True)
 class PackageReport:
-    """A package of the workspace, as the files of the package describe it.
+    """What the files of a package say about it.
 
     Attributes:
         name: The package's name in its package.xml.
         build_type: ``"ament_python"`` or ``"ament_cmake"``.
-        programs: The package's console scripts, as ``name = module:function``. Before the build, those that
-            setup.py's text shows; after it, the installed ones.
+        programs: The package's console scripts, as ``name = module:function``. Before the build, these are the ones in
+            the text of setup.py; after the build, the installed ones.
         interfaces: The interface files of the package.
         dependencies: All dependencies in package.xml, including ``member_of_group``.
         modules: The package's Python files, as paths inside the package.
-        commented: The dependencies that package.xml would have in addition if its comments counted.
+        commented: The dependencies that stand in comments of package.xml, so that they do not count.
         installed: The names of the package's programs that `ros2 run` finds; empty before the build.
-        launch_files: The package's launch files, as paths inside the package. After the build, the installed ones, as
-            paths below the package's folder in ``install``.
+        launch_files: The package's launch files, as paths inside the package. After the build, these are the installed
+            files, as paths inside the package's folder in ``install``.
     """
 
     name: str
@@ -91,8 +91,8 @@ class WorkspaceReport:
         line: The line of the log that explains the failure best.
         log: The end of the log of the failed build.
         packages: The packages of the workspace. Those that the exercise needs come first.
-        missing: The programs and interfaces that the exercise needs and the build did not produce.
-        complete: True if the report contains everything about the packages that the exercise needs.
+        missing: The programs and interfaces that the exercise needs but the build did not produce.
+        complete: True if the report contains all details of the packages that the exercise needs.
         changed: The sources that the student has changed since the last `colcon build`, in words; empty when grading
             a class.
     """
@@ -110,12 +110,12 @@ class WorkspaceReport:
 
 
 def as_line(report: WorkspaceReport, others: Sequence[PackageReport] = ()) -> str:
-    """Return the report as a line. Details for which there is no space are left out.
+    """Return the report as one line. Details that do not fit are left out.
 
     Args:
         report: A report on the packages that the exercise needs.
-        others: The other packages of the workspace. They are reported in full, by name or not at all, depending on
-            the space.
+        others: The other packages of the workspace. If they fit, they are reported with all details; otherwise only
+            their names, or nothing.
     """
     whole = _written(report)
     named = [PackageReport(package.name, package.build_type) for package in others]
@@ -136,19 +136,19 @@ def as_line(report: WorkspaceReport, others: Sequence[PackageReport] = ()) -> st
 
 
 def _shortened(package: PackageReport, limit: int) -> PackageReport:
-    """Return a package without its longer definitions and the ends of its lists; unchanged if everything is short."""
+    """Return a package with shorter lists and without long definitions; unchanged if everything is short."""
     few = limit // 20
     return replace(
         package,
         programs=package.programs[:few],
         interfaces=[_left_out(i) if len(i.text or "") > limit else i for i in package.interfaces[:few]],
-        # Dependencies that generate interfaces come first, because a task may require them.
+        # Dependencies whose names begin with rosidl_ come first, because a task may require them.
         dependencies=sorted(package.dependencies, key=lambda name: not name.startswith("rosidl_"))[
             : max(few, 5)
         ],
         modules=package.modules[
             : limit // 60
-        ],  # empty for the smallest limit, because other fields need the space
+        ],  # Empty for the smallest limit, because other fields need the space.
         commented=package.commented[: limit // 60],
         installed=package.installed[:few],
         launch_files=package.launch_files[: max(few, 5)],
@@ -166,7 +166,7 @@ def _written(report: WorkspaceReport) -> str:
 
 
 def report_of(part: Part, phase: str = "built") -> WorkspaceReport | None:
-    """Return the first report of a phase; None if there is none, for example because a command built nothing."""
+    """Return the first report of a phase; None if there is none, for example because the subject is not a workspace."""
     return next((report for _, report in _reports(part) if report.phase == phase), None)
 
 

@@ -228,9 +228,9 @@ OWN_IMPORT = (
 @pytest.mark.parametrize(
     ("lines", "missing", "named"),
     [
-        (LOADING, "my_robot_pakage", "leads to the module my_robot_pakage, which is not there"),
+        (LOADING, "my_robot_pakage", "points to the module my_robot_pakage, which does not exist"),
         (LOADING, "my_robot_pkg", ""),
-        (LOADING, "my_robot_pkg.tlaker", "leads to the module my_robot_pkg.tlaker, which is not there"),
+        (LOADING, "my_robot_pkg.tlaker", "points to the module my_robot_pkg.tlaker, which does not exist"),
         ((*LOADING, *OWN_IMPORT), "helper", ""),
         ((*LOADING, *OWN_IMPORT), "my_robot_pkg.helpers", ""),
     ],
