@@ -245,7 +245,7 @@ def reaped(wanted: int) -> int | None:
 
 
 def end_processes_in(folder: Path) -> None:
-    """Kill the processes of a submission that has its home in ``folder``, if its worker can no longer do so.
+    """Kill the processes of submissions that have their homes below ``folder``, if the executor can no longer do so.
 
     The processes are found by command line and environment. Children inherit the environment unless a program hides
     it on purpose.

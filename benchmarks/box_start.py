@@ -6,8 +6,11 @@ import contextlib
 import statistics
 from dataclasses import dataclass
 
-from autograder.execution.cells import Cell
-from autograder.grading.running.worker_process import WorkerProcess
+import msgspec
+
+from autograder.execution.cells import Cell, Execution
+from autograder.grading.running.executor import Executor
+from autograder.grading.running.orders import JUDGE, Order
 from autograder.grading.task import Task
 from autograder.temporary_folders import HeldFolder
 
@@ -40,14 +43,13 @@ def measure_box_start(turns: int) -> BoxStart:
     """
     spent: dict[bool, list[float]] = {True: [], False: []}
     with contextlib.ExitStack() as stack:
-        workers = {}
-        for boxed in spent:
-            scratch = stack.enter_context(HeldFolder("autograder-bench-"))
-            workers[boxed] = WorkerProcess(scratch.path / "0", boxed=boxed)
-            stack.callback(workers[boxed].end)
+        executor = Executor(stack.enter_context(HeldFolder("autograder-bench-")).path)
+        stack.callback(executor.stop)
         for turn in range(turns + 1):
-            for boxed, worker in workers.items():
-                execution = worker.execute(_empty(boxed))
+            for boxed in spent:
+                task = msgspec.Raw(msgspec.json.encode(_empty(boxed)))
+                answer = executor.execute("empty", msgspec.json.encode(Order(task, JUDGE)))
+                execution = msgspec.json.decode(answer, type=Execution)
                 if execution.trouble:
                     raise RuntimeError(f"an empty notebook could not be run: {execution.trouble}")
                 if turn:  # the first one starts the warm processes

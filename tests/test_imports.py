@@ -115,7 +115,7 @@ def test_what_was_handed_in_is_parsed_by_a_desk_alone() -> None:
 
 
 def test_the_process_with_the_gradebook_imports_nothing_that_executes_a_submission() -> None:
-    """Workers are started by the name of their module; the judge, too."""
+    """The executor process is started by the name of its module; the judge, too."""
     graph = {module: _runs(path, module, types=False) for module, path in _modules(PACKAGE).items()}
     reached = _reached("autograder.grading.batch", graph)
     executing = (
@@ -125,9 +125,9 @@ def test_the_process_with_the_gradebook_imports_nothing_that_executes_a_submissi
         "autograder.execution.runner",
     )
     but = {"autograder.judge.settings"}  # the variables of ROS, for the fork servers
-    assert "autograder.grading.running.worker_process" in reached
+    assert "autograder.grading.running.process_link" in reached
     assert [name for name in sorted(reached - but) if name.startswith(executing)] == []
-    assert "autograder.grading.running.worker" not in reached
+    assert "autograder.grading.running.executor" not in reached
 
 
 def test_no_folder_of_the_package_is_a_long_list() -> None:

@@ -32,8 +32,8 @@ COMMANDS = {
         "sleep 7656.5",
         [*COURSE, "check", "lab_1_2.talker", "--", sys.executable, "{folder}/program.py"],
     ),
-    "demo": ("running.worker", [*COURSE, "demo", "{folder}/class"]),
-    "execute": ("running.worker", [*COURSE, "execute", "lab_1_2", "--reports", "{folder}/reports"]),
+    "demo": ("running.executor", [*COURSE, "demo", "{folder}/class"]),
+    "execute": ("running.executor", [*COURSE, "execute", "lab_1_2", "--reports", "{folder}/reports"]),
     "test": ("sleep 7656.5", ["sh", "-c", TESTS]),
     "bank": (
         "talker.answers",

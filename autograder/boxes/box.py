@@ -128,6 +128,10 @@ class Supervision:
                 close_all([box.pidfd])
             return self._ended[name]
 
+    def abandon(self) -> None:
+        """Let the supervisor end all boxes, without waiting. Any thread may call this, even while another one waits."""
+        self._channel.hang_up()
+
     def close(self) -> None:
         """End all boxes, and wait until none of their processes is alive. This may be called twice."""
         try:

@@ -95,6 +95,10 @@ class ForkedProcess:
         self._look(within)
         return self._status is not None or self._lost
 
+    def abandon(self) -> None:
+        """Kill the process without waiting. It then counts as lost. Any thread may call this."""
+        self._channel.hang_up()
+
     def end_box(self) -> None:
         """Kill every process in the box. The exit status of this process can still be read."""
         if self._box is not None:

@@ -97,6 +97,11 @@ class Channel:
         poll.register(self._socket, 0)
         return bool(poll.poll(0))
 
+    def hang_up(self) -> None:
+        """Let both ends see that the connection is over. Any thread may call this, even while another one waits."""
+        with contextlib.suppress(OSError):
+            self._socket.shutdown(socket.SHUT_RDWR)
+
     def close(self) -> None:
         """Close the connection. This may be called twice."""
         self._socket.close()

@@ -241,7 +241,7 @@ class ForkServer:
 
 @dataclass(frozen=True)
 class Addresses:
-    """The addresses of the fork servers. A worker gets them on its command line.
+    """The addresses of the fork servers.
 
     Attributes:
         supervisors: The address used by :class:`autograder.boxes.sandbox.Enclosure`; empty without a sandbox.

@@ -255,6 +255,10 @@ class Enclosure:
             os.close(writing)
         return WarmCommand(process, reading, box.pid)
 
+    def abandon(self) -> None:
+        """End all boxes without waiting. Whoever uses one sees that it is lost. Any thread may call this."""
+        self._supervision.abandon()
+
     def close(self) -> None:
         """End all boxes, and wait until none of their processes is alive. This may be called twice."""
         self._supervision.close()

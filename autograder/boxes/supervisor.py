@@ -3,9 +3,9 @@
 The scratch is the file system in memory to which the boxes write. The supervisor is forked by a separate fork server
 (:mod:`autograder.boxes.fork_server`), which has few imports. It enters new user, network and mount namespaces, in which
 bubblewrap then makes the boxes. Each box gets a further user namespace, so that no process in a box has rights over the
-network. When the connection to the worker is lost, for whatever reason, the supervisor kills all boxes and exits.
+network. When the connection to the executor is lost, for whatever reason, the supervisor kills all boxes and exits.
 
-The worker sends ``open`` (once), ``start`` (for a box or a command) and ``kill``. The supervisor answers ``opened``,
+The executor sends ``open`` (once), ``start`` (for a box or a command) and ``kill``. The supervisor answers ``opened``,
 ``started``, ``ended`` or ``failed``.
 """
 
@@ -81,7 +81,7 @@ class _Supervisor:
         self._started: dict[str, _Started] = {}
 
     def serve(self) -> None:
-        """Carry out the worker's messages, and report which boxes have ended."""
+        """Carry out the executor's messages, and report which boxes have ended."""
         while True:
             watched: list[Any] = [self._channel, *(started.end for started in self._started.values())]
             ready, _, _ = select.select(watched, [], [])

@@ -120,6 +120,11 @@ class BoxedPlace:
         """The folder that the student's box sees, read-only, at the path ``SHARED_FOLDER``."""
         return self._shared
 
+    def abandon(self) -> None:
+        """End everything in the boxes without waiting. Any thread may call this. Whoever waits sees that it is lost."""
+        for enclosure in {self.enclosure, self.programs}:
+            enclosure.abandon()
+
     def start_kernel(self, channels: Channels) -> ForkedProcess:
         """Start the kernel: a child of the fork server enters the student's box."""
         box = self.enclosure.box(_STUDENT, [Bind(self._shared, SHARED_FOLDER)], guarded=True)
@@ -188,6 +193,7 @@ class UnboxedPlace:
         del programs  # not needed, because there is only one network, the host's
         self._addresses, self._folder, self._judge, self._limits = addresses, folder, judge, limits
         self.guard = NoGuard()
+        self._started: list[ForkedProcess] = []
         self._cwd = write_files(files, folder / "work")
         self._variables = {**variables, socket_variable: str(self.judge_socket)}
 
@@ -195,6 +201,11 @@ class UnboxedPlace:
     def judge_socket(self) -> Path:
         """The path of the socket on which the judge listens."""
         return self._folder / _JUDGE
+
+    def abandon(self) -> None:
+        """End the processes without waiting; see :meth:`BoxedPlace.abandon`."""
+        for process in list(self._started):
+            process.abandon()
 
     def start_kernel(self, channels: Channels) -> ForkedProcess:
         """Start the kernel as a fork of the fork server."""
@@ -204,13 +215,12 @@ class UnboxedPlace:
             boxed=False,
             call={"key": channels.key, "address": str(channels.folder / "k")},
         )
-        descriptors = [channels.shell, channels.iopub, channels.log]
-        return ForkedProcess(self._addresses.kernels, entrance, descriptors)
+        return self._start(self._addresses.kernels, entrance, [channels.shell, channels.iopub, channels.log])
 
     def start_desk(self, channels: Channels) -> ForkedProcess:
         """Start the desk that reads what the kernel says, as another fork."""
         entrance = _desk_entrance(channels, channels.folder, self._limits, boxed=False)
-        return ForkedProcess(self._addresses.kernels, entrance, [channels.orders])
+        return self._start(self._addresses.kernels, entrance, [channels.orders])
 
     def start_judge(self, listener: int, orders: int, *, of_programs: bool = False) -> ForkedProcess:
         """Start a judge as a fork of the judges' fork server."""
@@ -219,7 +229,12 @@ class UnboxedPlace:
         entrance = Entrance(
             cwd=str(self._folder), environment=environment, boxed=False, rlimits=self._limits.of_the_judge
         )
-        return ForkedProcess(self._addresses.judges, entrance, [listener, orders])
+        return self._start(self._addresses.judges, entrance, [listener, orders])
+
+    def _start(self, server: str, entrance: Entrance, descriptors: Sequence[int]) -> ForkedProcess:
+        process = ForkedProcess(server, entrance, descriptors)
+        self._started.append(process)
+        return process
 
     def __enter__(self) -> Self:
         return self

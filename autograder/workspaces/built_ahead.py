@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import os
+import threading
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -62,9 +62,8 @@ def build_ahead(folder: Path, jobs: Jobs) -> None:
     ]
     if (own := reference_workspace()).is_dir():
         every.append(lambda: builds.build(look(own), None, name=COURSE))
-    first = os.getpid() % max(
-        1, len(every)
-    )  # begin with different packages in workers that start at the same time
+    # Notebooks that start at the same time begin with different packages.
+    first = threading.get_native_id() % max(1, len(every))
     for build in (*every[first:], *every[:first]):
         # If a build takes too long, skip it: each submission with this package then builds it for itself.
         with contextlib.suppress(BuildTookTooLong):

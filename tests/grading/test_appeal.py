@@ -19,7 +19,7 @@ from autograder.grading.appeal import write_appeal
 from autograder.grading.class_store import ClassStore
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.errors import GradingError
-from autograder.grading.running import sandboxing, worker
+from autograder.grading.running import sandboxing, task_execution
 from autograder.judge.verdicts import keeping, reference, trial
 from autograder.kit.evidence import Event, Evidence, Part
 from autograder.messages.orders import Report
@@ -182,8 +182,8 @@ def test_the_evidence_of_a_notebook_has_an_end_however_many_checks_are_flooded(
         def __enter__(self) -> Any:
             return self
 
-    monkeypatch.setattr(worker, "MOST_EVIDENCE", 100)
-    with worker._Judges(lambda _: Flooded(), (), "") as judges:
+    monkeypatch.setattr(task_execution, "MOST_EVIDENCE", 100)
+    with task_execution._Judges(lambda _: Flooded(), (), "") as judges:
         for number in range(5):
             judges.open(f"lab.exercise_{number}")
             judges.close()

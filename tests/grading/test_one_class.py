@@ -32,7 +32,7 @@ def steps() -> list[tuple[str, str]]:
 def test_a_class_goes_through_these_files_in_this_order(
     tiny: TinyClass, with_fake_judge: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """A step in a worker process is known by the stack that reaches the judge there."""
+    """A step in the executor process is known by the stack that reaches the judge there."""
     table = steps()
     assert len(table) >= 10
     stack = tmp_path / "stack.json"

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import json
 import tempfile
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from unittest import mock
@@ -18,14 +16,13 @@ from autograder import course, exercises
 from autograder.boxes.fork_server import ForkServers
 from autograder.grading.classes.sample_class import _without_markers
 from autograder.grading.rebuilding.task_making import cells_of
-from autograder.grading.running import worker, workspace_service
+from autograder.grading.running import task_execution, workspace_service
+from autograder.grading.running.orders import JUDGE
 from autograder.grading.task import Task
 from autograder.judge.serving import attached
-from autograder.judge.serving.process import JudgeProcess
 from autograder.judge.settings import boxed_ros_environment
 from autograder.masters.layout import lab_name, masters
 from autograder.masters.source import source_notebook
-from autograder.process_trees import adopt_orphans
 from autograder.workspaces.built_ahead import FILE, Files
 from autograder.workspaces.graded_builds import GradedBuilds
 from autograder.workspaces.packages import WORKSPACE
@@ -53,22 +50,18 @@ def main(options: argparse.Namespace) -> int:
     del options
     root = course.root()
     found: dict[Path, list[Files]] = {}
-    with (
-        ForkServers(
-            attached.__name__,
-            boxed=True,
-            environment=boxed_ros_environment(),
-            of_judges=course.variables(),
-            interfaces=course.interface_modules(),
-        ) as warm,
-        # A worker ends every process below its own, so it must not be the one that has started the fork servers.
-        ProcessPoolExecutor(1, mp_context=get_context("fork")) as workers,
-    ):
+    with ForkServers(
+        attached.__name__,
+        boxed=True,
+        environment=boxed_ros_environment(),
+        of_judges=course.variables(),
+        interfaces=course.interface_modules(),
+    ) as warm:
         for master in masters(root):
             task = _task(master)
             if task is None:
                 continue
-            built = workers.submit(_built, task, warm.addresses).result()
+            built = _built(task, warm.addresses)
             print(f"{task.notebook}: {len(built)} builds", flush=True)
             packages = found.setdefault(master.parents[1], [])
             packages += [files for files in built if files not in packages]
@@ -101,13 +94,12 @@ def _built(task: Task, addresses: Addresses) -> list[Files]:
             trees[order.tree.digest] = order.tree
         return made
 
-    adopt_orphans()
     with (
         tempfile.TemporaryDirectory(prefix="ahead-") as scratch,
         mock.patch.object(GradedBuilds, "_entry", remembering),
         mock.patch.object(workspace_service, "build_ahead"),
     ):
-        execution = worker.execute(task, Path(scratch), JudgeProcess, addresses)
+        execution = task_execution.execute(task, Path(scratch), JUDGE, addresses)
     if execution.trouble:
         raise RuntimeError(f"{task.notebook}: {execution.trouble}")
     return [_files(tree) for tree in trees.values()]

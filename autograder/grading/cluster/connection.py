@@ -7,9 +7,9 @@ import importlib.util
 import re  # noqa: TID251  (an instructor's address)
 from typing import TYPE_CHECKING
 
-from autograder.grading.cluster.client_link import ClientLink
 from autograder.grading.errors import GradingError
 from autograder.grading.running.dispatcher import Dispatcher
+from autograder.grading.running.process_link import client_of
 from environment.installation import installing
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def connected(
         SchedulerGone: No scheduler answers at this address.
         NoWorkers: The scheduler has no worker that can be given work.
     """
-    with ClientLink(address) as link:
+    with client_of(address) as link:
         pool = Dispatcher(link, address, judge=judge, boxed=boxed, tell=tell)
         pool.await_workers()
         yield pool

@@ -10,12 +10,12 @@ from typing import Any
 
 from distributed import Worker, WorkerPlugin, get_worker
 
-from autograder.grading.running.this_machine import WorkerProcesses
+from autograder.grading.running.executor import Executor
 from autograder.temporary_folders import HeldFolder
 
 _changing = threading.Lock()
 _scratch: HeldFolder | None = None
-_processes: WorkerProcesses | None = None
+_executor: Executor | None = None
 
 
 def execute(data: bytes) -> bytes:
@@ -24,28 +24,28 @@ def execute(data: bytes) -> bytes:
     Args:
         data: An :class:`autograder.grading.running.orders.Order` as JSON.
     """
-    global _scratch, _processes
+    global _scratch, _executor
     worker = get_worker()
     with _changing:
-        if _processes is None:
+        if _executor is None:
             _scratch = HeldFolder("autograder-worker-")
-            _processes = WorkerProcesses(_scratch.path)
+            _executor = Executor(_scratch.path)
             worker.loop.add_callback(worker.plugin_add, plugin=_Watch(), name="autograder")
-        processes = _processes
-    return processes.execute(str(worker.get_current_task()), data)
+        executor = _executor
+    return executor.execute(str(worker.get_current_task()), data)
 
 
 class _Watch(WorkerPlugin):
-    """Ends the processes of a canceled order, because Dask itself would let them go on."""
+    """Ends what a canceled order runs, because Dask itself would let it go on."""
 
     def transition(self, key: Any, start: str, finish: str, **_: Any) -> None:
         """End an order that was canceled. Dask calls this when a task of the worker changes its state."""
-        if start == "executing" and finish == "released" and _processes is not None:
-            _processes.cancel(key)
+        if start == "executing" and finish == "released" and _executor is not None:
+            _executor.cancel(key)
 
     def teardown(self, worker: Worker) -> None:  # noqa: ARG002  (Dask's signature)
-        """End every worker process and what it runs. Dask calls this when the worker ends."""
-        if _processes is not None:
-            _processes.stop()
+        """End everything that the orders run. Dask calls this when the worker ends."""
+        if _executor is not None:
+            _executor.stop()
         if _scratch is not None:
             _scratch.remove()

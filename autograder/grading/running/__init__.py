@@ -1,1 +1,1 @@
-"""Executes tasks in parallel, with worker processes, boxes and fork servers."""
+"""Executes tasks in parallel, on this machine or on the workers of a cluster."""

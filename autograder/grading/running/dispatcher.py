@@ -258,8 +258,8 @@ class Dispatcher:
                 self._consider(address, name, data)
             case Unfit(address, name, reason):
                 self._refuse(address, name, _could_not_be_asked(reason))
-            case Left(address):
-                self._forget(address, "its worker ended while it ran this submission")
+            case Left(address, reason):
+                self._forget(address, reason or "its worker ended while it ran this submission")
             case Answered(number, data) if number in self._flights:
                 self._answered(number, data)
             case Failed(number, reason, forged) if number in self._flights:
@@ -267,6 +267,10 @@ class Dispatcher:
                     self._forged(number, reason)
                 else:
                     self._lost(number, f"its worker could not run it: {reason}")
+            case Broken(reason) if not self._address:
+                raise NoWorkers(
+                    f"This machine cannot execute notebooks: {reason}. What was graded so far is kept."
+                )
             case Broken(reason):
                 raise SchedulerGone(
                     f"The Dask scheduler at {self._address} cannot be reached ({reason}). Check that it "
@@ -355,7 +359,7 @@ class Dispatcher:
     def _forged(self, number: int, reason: str) -> None:
         address = self._flights[number].worker
         if address == ADDRESS:
-            self._lost(number, f"its worker process gave an impossible answer: {reason}")
+            self._lost(number, f"the process that executes notebooks gave an impossible answer: {reason}")
             return
         for held in self._workers[address].flights:
             self._flights[held].job.attempts -= 1  # this was the fault of the worker, not of the notebook
@@ -371,7 +375,7 @@ class Dispatcher:
         for number, flight in list(self._flights.items()):
             if number in self._flights and flight.deadline <= now:
                 if flight.worker == ADDRESS:
-                    self._lost(number, "its worker process has not answered in time")
+                    self._lost(number, "it has not ended in time")
                     continue
                 self._turn_out(flight.worker, "it has not answered in time. Start it again")
 
@@ -400,7 +404,7 @@ class Dispatcher:
 
 
 def _most_seconds(task: Task) -> float:
-    # The factor 2 is because a machine tries a task again if its worker process ended.
+    # The factor 2 is because the time limits of cells stretch while the machine is overloaded.
     return 2 * task.limits.longest + _EXTRA_SECONDS
 
 

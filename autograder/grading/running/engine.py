@@ -12,7 +12,7 @@ import psutil
 from autograder.boxes.limits import BUILD_LIMITS, Limits
 from autograder.grading.running.dispatcher import Dispatcher, Done
 from autograder.grading.running.orders import JUDGE
-from autograder.grading.running.this_machine import ThisMachine
+from autograder.grading.running.process_link import ThisMachine
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable
@@ -25,7 +25,7 @@ _PER_CORE = 4
 or for a program to start.
 """
 BOX_BYTES = Limits().beside_bytes + 150_000_000
-"""The memory in bytes that each further notebook may take, with its sandbox, judge and worker process."""
+"""The memory in bytes that each further notebook may take, with its sandbox and judge."""
 _RESERVE_BYTES = 1_000_000_000
 
 
@@ -54,7 +54,7 @@ def execute_all(
 ) -> Generator[Done, None, None]:
     """Execute tasks in parallel, and yield results as they are ready.
 
-    If the caller leaves the loop early, every worker process and what it runs is ended.
+    If the caller leaves the loop early, everything that runs is ended.
 
     Args:
         tasks: The tasks in the order in which they begin. A thread takes each of them when a slot becomes free.

@@ -82,9 +82,10 @@ class Asked(msgspec.Struct, frozen=True, tag=True):
 
 
 class Left(msgspec.Struct, frozen=True, tag=True):
-    """A message: a worker has ended."""
+    """A message: a worker has ended, and the reason if it is known."""
 
     worker: str
+    reason: str = ""
 
 
 class Answered(msgspec.Struct, frozen=True, tag=True):

@@ -141,7 +141,7 @@ def test_its_folder_is_its_own_whatever_another_user_has_put_there(
     guessed.mkdir(mode=0o777)
     given: list[Path] = []
 
-    class Processes:
+    class FakeExecutor:
         def __init__(self, scratch: Path) -> None:
             given.append(scratch)
 
@@ -150,9 +150,9 @@ def test_its_folder_is_its_own_whatever_another_user_has_put_there(
 
         def stop(self) -> None: ...
 
-    monkeypatch.setattr(dask_worker, "_processes", None)
+    monkeypatch.setattr(dask_worker, "_executor", None)
     monkeypatch.setattr(dask_worker, "_scratch", None)
-    monkeypatch.setattr(dask_worker, "WorkerProcesses", Processes)
+    monkeypatch.setattr(dask_worker, "Executor", FakeExecutor)
     monkeypatch.setattr(dask_worker, "get_worker", Mock)
     assert [dask_worker.execute(b"one"), dask_worker.execute(b"two")] == [b"one", b"two"]
     (scratch,) = given

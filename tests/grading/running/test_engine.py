@@ -2,15 +2,29 @@
 
 from __future__ import annotations
 
+import queue
 import threading
 import time
 from typing import TYPE_CHECKING, Any
 
+import msgspec
 import pytest
 
 from autograder.boxes.limits import Ended
 from autograder.execution.cells import Cell, CellRun, Execution
-from autograder.grading.running import dispatcher, engine, this_machine
+from autograder.grading.running import dispatcher, engine
+from autograder.grading.running.orders import (
+    ADDRESS,
+    Answered,
+    Broken,
+    Command,
+    Failed,
+    Give,
+    Joined,
+    News,
+    Offer,
+    Order,
+)
 from autograder.grading.task import Task
 
 if TYPE_CHECKING:
@@ -18,8 +32,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-class WorkerProcesses:
-    """In place of processes with worker processes: an answer for each execution, and what was seen of them.
+class FakeMachine:
+    """In place of the executor process: an answer for each execution, and what was seen of them.
 
     Args:
         answer: Gives the result of an execution, of which it is told how often the student's work was executed before.
@@ -31,15 +45,38 @@ class WorkerProcesses:
         self._together = threading.Barrier(together, timeout=60)
         self._lock = threading.Lock()
         self._running = 0
+        self._news: queue.SimpleQueue[News] = queue.SimpleQueue()
         self.seen: list[tuple[str, bool, int]] = []
         """Of each execution: the student, whether it had its share of memory only, how many ran with it."""
 
-    def __call__(self, *_: object, **__: object) -> WorkerProcesses:
+    def __call__(self, scratch: Path, slots: int) -> FakeMachine:
+        self._news.put(Joined(ADDRESS, ADDRESS, msgspec.json.encode(Offer("", slots, ""))))
         return self
 
-    stopping = False
+    def __enter__(self) -> FakeMachine:
+        return self
 
-    def execute(self, task: Task) -> Execution:
+    def __exit__(self, *_: object) -> None: ...
+
+    def say(self, command: Command) -> None:
+        if isinstance(command, Give):
+            threading.Thread(target=self._carry_out, args=(command,), daemon=True).start()
+
+    def hear(self, within: float | None) -> News:
+        return self._news.get(timeout=within)
+
+    def stop(self) -> None:
+        self._news.put(Broken("stopped"))
+
+    def _carry_out(self, give: Give) -> None:
+        order = msgspec.json.decode(give.order, type=Order)
+        try:
+            execution = self._execute(msgspec.json.decode(bytes(order.task), type=Task))
+            self._news.put(Answered(give.number, msgspec.json.encode(execution)))
+        except MemoryError:
+            self._news.put(Failed(give.number, "MemoryError"))
+
+    def _execute(self, task: Task) -> Execution:
         with self._lock:
             self._running += 1
             times = sum(student == task.notebook for student, _, _ in self.seen)
@@ -49,10 +86,6 @@ class WorkerProcesses:
         with self._lock:
             self._running -= 1
         return self._answer(task, times)
-
-    def stop(self) -> None: ...
-    def kill(self) -> None: ...
-    def end(self) -> None: ...
 
 
 @pytest.fixture
@@ -64,12 +97,12 @@ def run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
         together: int = 1,
         cells: int = 0,
     ) -> Any:
-        processes = WorkerProcesses(answer, together)
-        monkeypatch.setattr(this_machine, "WorkerProcess", processes)
+        machine = FakeMachine(answer, together)
+        monkeypatch.setattr(engine, "ThisMachine", machine)
         # A worker is not told the name of the student: the notebook has it, too.
         tasks = [Task(student, "lab", student, (Cell(""),) * cells, "0", "1") for student in students]
         done = list(engine.execute_all(tasks, tmp_path / "scratch" / "x", workers))
-        return {d.task.student: d.execution for d in done}, processes.seen, done
+        return {d.task.student: d.execution for d in done}, machine.seen, done
 
     return made
 

@@ -1,100 +1,75 @@
-"""A process that executes tasks one after the other. It exchanges lines of JSON over the socket on its standard input.
-
-Even a single notebook gets a separate process, because this process becomes the parent of every daemon that a
-submission starts, and ends them all. It ends when its grader ends.
-"""
+"""Executes one task: starts its boxes, kernel and judge, runs the notebook, and ends them all."""
 
 from __future__ import annotations
 
 import contextlib
 import functools
 import importlib
-import os
-import queue
-import signal
-import sys
-import threading
-import time
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-import msgspec
-
-from autograder.boxes.fork_server import Addresses
-from autograder.boxes.limits import Ended, raise_own
+from autograder.boxes.limits import Ended
 from autograder.boxes.sandbox import NoSandbox
 from autograder.execution.notebook_boxes import BoxedPlace, JudgeSetting, UnboxedPlace
 from autograder.execution.runner import Unfinished, run_notebook
 from autograder.grading.returning.rendering_time import too_costly
 from autograder.grading.running.workspace_service import arrange, served
-from autograder.grading.task import Task
 from autograder.judge.bench.patience import Patience
 from autograder.judge.serving import attached
 from autograder.judge.serving.domain import lease
 from autograder.judge.settings import boxed_ros_environment, ros_environment
 from autograder.messages.checks import SOCKET_VARIABLE
-from autograder.messages.lines import Hangup, Lines
-from autograder.process_trees import adopt_orphans, end_descendants
 from autograder.temporary_folders import scratch_folder
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
+    from pathlib import Path
 
+    from autograder.boxes.fork_server import Addresses
     from autograder.boxes.limits import Left
     from autograder.execution.cells import Cell, Execution
+    from autograder.grading.task import Task
     from autograder.verdict import Verdict
 
-LAST_SECONDS = 10.0
-"""Seconds for a worker to end cleanly after its grader has ended. A running grader allows less time."""
 MOST_EVIDENCE = 4_000_000
 """The maximum size in bytes of the evidence of one notebook, enough for ten checks. The evidence of later checks is
 dropped.
 """
 
 
-def main(arguments: list[str]) -> None:
-    """Execute tasks until the grader closes the connection.
-
-    Args:
-        arguments: The scratch folder, the class that makes a judge (``module:class``), and the addresses of the fork
-            servers, as JSON.
-    """
-    scratch, judge = Path(arguments[0]), _imported(arguments[1])
-    addresses = msgspec.json.decode(arguments[2], type=Addresses)
-    raise_own()
-    adopt_orphans()
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
-    grader = Lines.with_parent()
-    for line in _tasks(grader):
-        execution = execute(msgspec.json.decode(line, type=Task), scratch, judge, addresses)
-        end_descendants()
-        grader.say_json(msgspec.json.encode(execution))
-
-
-def execute(task: Task, scratch: Path, judge: Any, addresses: Addresses) -> Execution:
-    """Execute one task. A failure of the grader itself becomes part of the result.
+def execute(
+    task: Task,
+    scratch: Path,
+    judge: str,
+    addresses: Addresses,
+    began: Callable[[BoxedPlace | UnboxedPlace], None] = lambda _: None,
+) -> Execution:
+    """Execute one task.
 
     Args:
         task: The task.
         scratch: The folder in which the task gets its own folder.
-        judge: Makes a judge, given the path of a socket, a seed, and a function that starts the judge's process.
+        judge: The class of the judge, as ``module:class``. It is called with the path of a socket, a seed, and a
+            function that starts the judge's process.
         addresses: The addresses of the fork servers. Without the one for supervisors there is no sandbox.
+        began: Called with the boxes of the task before anything runs in them.
+
+    Raises:
+        Exception: The grader itself failed.
     """
-    try:
-        with contextlib.ExitStack() as stack:
-            folder = stack.enter_context(scratch_folder(scratch))
-            execution = _execute(task, folder, judge, addresses, stack)
-        return replace(execution, as_typed=too_costly(task.cells))
-    except Exception as error:
-        return task.in_trouble(f"{type(error).__name__}: {error}")
-    finally:
-        # This happens even if this process is being ended: nothing of the submission may outlive it.
-        end_descendants()
+    with contextlib.ExitStack() as stack:
+        folder = stack.enter_context(scratch_folder(scratch))
+        execution = _execute(task, folder, _imported(judge), addresses, stack, began)
+    return replace(execution, as_typed=too_costly(task.cells))
 
 
 def _execute(
-    task: Task, folder: Path, judge: Any, addresses: Addresses, stack: contextlib.ExitStack
+    task: Task,
+    folder: Path,
+    judge: Any,
+    addresses: Addresses,
+    stack: contextlib.ExitStack,
+    began: Callable[[BoxedPlace | UnboxedPlace], None],
 ) -> Execution:
     if task.boxed and not addresses.supervisors:
         raise NoSandbox("this task is for a box, and there is none here")
@@ -112,6 +87,7 @@ def _execute(
         programs=bool(arrangement.runners),
     )
     stack.enter_context(place)
+    began(place)
     stack.enter_context(served(arrangement, place, addresses))
 
     def made(of_programs: bool) -> Any:
@@ -222,38 +198,3 @@ def _ros_variables(stack: contextlib.ExitStack, *, boxed: bool) -> Mapping[str, 
 def _imported(name: str) -> Any:
     module, _, attribute = name.partition(":")
     return getattr(importlib.import_module(module), attribute)
-
-
-def _tasks(grader: Lines) -> Iterator[bytes]:
-    """Yield tasks as they come. When the grader ends, end this process, if necessary by force during a task.
-
-    The end of the connection is the only usable sign. The system's signal (PR_SET_PDEATHSIG) comes when the thread
-    that started this process ends, and a grader's threads come and go.
-    """
-    lines: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
-    idle = threading.Event()
-
-    def read() -> None:
-        with contextlib.suppress(Hangup):
-            while True:
-                lines.put(grader.hear_json())
-        lines.put(None)
-        if not idle.is_set():
-            os.kill(os.getpid(), signal.SIGTERM)
-        time.sleep(LAST_SECONDS)
-        # A thread is stuck, and so is the clean-up, which waits for that thread.
-        end_descendants()
-        os._exit(1)
-
-    threading.Thread(target=read, daemon=True).start()
-    while True:
-        idle.set()
-        line = lines.get()
-        if line is None:
-            return
-        idle.clear()
-        yield line
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])

@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import msgspec
 import psutil
 import pytest
 from nbgrader.api import Gradebook
@@ -21,7 +22,9 @@ from autograder.boxes.limits import Ended
 from autograder.execution.cells import Cell, CellCheck, CellRun, Execution
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.running import engine
-from autograder.grading.running.worker import a_check_was_stopped
+from autograder.grading.running.orders import ADDRESS, Give, Order
+from autograder.grading.running.task_execution import a_check_was_stopped
+from autograder.grading.task import Task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,7 +33,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::sqlalchemy.exc.SAWarning")
 
 
 def leftovers(tiny: TinyClass) -> list[psutil.Process]:
-    """Workers of this class have its scratch folder in their command, and supervisors have mounted something there."""
+    """The executor has the scratch folder of its class in its command, and supervisors have mounted something there."""
     scratch = f"{tempfile.gettempdir()}/{ClassDirectory(tiny.path).scratch_prefix}"
     found = []
     for process in psutil.process_iter(["cmdline", "status"]):
@@ -239,35 +242,36 @@ def test_fork_servers_that_die_are_started_anew(tiny: TinyClass, with_fake_judge
     assert tiny.scores("ada") == {TALKER: 10, LISTENER: 9}
 
 
-WORKER = """
-import signal, sys, time
-from autograder.grading.running import worker
-worker.LAST_SECONDS = 0.5
-signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
-for line in worker._tasks(worker.Lines.with_parent()):
+EXECUTOR = """
+import sys, threading
+from autograder.grading.running import executor
+executor.LAST_SECONDS = 0.5
+def execute(*_):
     print("at work", flush=True)
-    try:
-        time.sleep(3600)
-    finally:
-        open(sys.argv[1]).read()  # who is to tidy up waits, too
+    open(sys.argv[1]).read()  # whoever should clean up waits, too
+executor.execute = execute
+executor.Executor._addresses = lambda *_, **__: None
+executor.main([sys.argv[1], "1"])
 """
 
 
-def test_a_worker_that_waits_for_what_never_comes_ends_with_its_batch(tmp_path: Path) -> None:
+def test_an_executor_that_waits_for_what_never_comes_ends_with_its_batch(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     grader, its_own = socket.socketpair()
     with its_own:
-        worker = subprocess.Popen(
-            [sys.executable, "-c", WORKER, str(tmp_path / "pipe")],
+        executor = subprocess.Popen(
+            [sys.executable, "-c", EXECUTOR, str(tmp_path / "pipe")],
             stdin=its_own.fileno(),
             stdout=subprocess.PIPE,
         )
     try:
-        assert worker.stdout
-        grader.sendall(b"a task\n")
-        assert worker.stdout.readline() == b"at work\n"
+        assert executor.stdout
+        task = msgspec.json.encode(Task("ada", "lab", "lab", (Cell(""),), "0", "1"))
+        order = msgspec.json.encode(Order(msgspec.Raw(task), "a:B"))
+        grader.sendall(msgspec.json.encode(Give(1, ADDRESS, order)) + b"\n")
+        assert executor.stdout.readline() == b"at work\n"
         grader.close()
-        assert worker.wait(60.0) == 1
+        assert executor.wait(60.0) == 0
     finally:
-        worker.kill()
-        worker.wait()
+        executor.kill()
+        executor.wait()

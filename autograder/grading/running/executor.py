@@ -1,0 +1,194 @@
+"""Executes orders on this machine, each in a thread: in the executor process of a batch, or in a Dask worker.
+
+A thread only starts the processes of a notebook and reads checked messages from them. The kernel, its desk and the
+judge are forked from fork servers, which are started at the first order and kept. As a program, this module is the
+executor process: it exchanges lines of JSON with the dispatcher over the socket on its standard input.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from autograder import course
+from autograder.boxes.fork_server import ForkServers
+from autograder.boxes.limits import raise_own
+from autograder.grading.running.orders import (
+    ADDRESS,
+    LARGEST_ANSWER,
+    Answered,
+    Command,
+    Failed,
+    Give,
+    Joined,
+    News,
+    Offer,
+    Order,
+)
+from autograder.grading.running.task_execution import execute
+from autograder.grading.task import Task
+from autograder.judge.settings import boxed_ros_environment, ros_environment
+from autograder.messages.lines import Hangup, Lines
+from autograder.process_trees import adopt_orphans, end_descendants
+
+if TYPE_CHECKING:
+    from autograder.boxes.fork_server import Addresses
+    from autograder.execution.notebook_boxes import BoxedPlace, UnboxedPlace
+
+LAST_SECONDS = 10.0
+"""Seconds for the executor process to clean up after its grader has ended. A running grader allows less time."""
+_JUDGE_MODULE = "autograder.judge.serving.attached"
+
+
+class Executor:
+    """Executes orders. Any thread may use it, and several at the same time.
+
+    Args:
+        scratch: The folder in which each submission gets its own folder.
+    """
+
+    def __init__(self, scratch: Path) -> None:
+        self._scratch = scratch
+        self._changing = threading.Condition()
+        self._running: dict[str, _Running] = {}
+        self._fork_servers: dict[bool, ForkServers] = {}
+        self._stopped = False
+
+    def execute(self, key: str, data: bytes) -> bytes:
+        """Execute an order, and return the execution as JSON.
+
+        Args:
+            key: A key for the order, for use in :meth:`cancel`.
+            data: An :class:`autograder.grading.running.orders.Order` as JSON.
+        """
+        order = msgspec.json.decode(data, type=Order)
+        task = msgspec.json.decode(bytes(order.task), type=Task)
+        running = _Running()
+        with self._changing:
+            self._running[key] = running
+            if self._stopped:
+                running.end()
+        try:
+            execution = execute(
+                task, self._scratch, order.judge, self._addresses(boxed=task.boxed), running.began
+            )
+            answer = msgspec.json.encode(execution)
+        except Exception as error:
+            answer = msgspec.json.encode(task.in_trouble(f"{type(error).__name__}: {error}"))
+        finally:
+            with self._changing:
+                del self._running[key]
+                self._changing.notify_all()
+        if len(answer) > LARGEST_ANSWER:
+            return msgspec.json.encode(task.in_trouble(f"its result has {len(answer)} bytes"))
+        return answer
+
+    def cancel(self, key: str) -> None:
+        """End everything that an order runs, because its answer is no longer needed."""
+        with self._changing:
+            running = self._running.get(key)
+        if running is not None:
+            running.end()
+
+    def stop(self, within: float | None = None) -> None:
+        """End everything that runs, and the fork servers. Later orders end at once.
+
+        Args:
+            within: The maximum number of seconds to wait for the threads that execute orders; by default
+                ``LAST_SECONDS``.
+        """
+        deadline = time.monotonic() + (LAST_SECONDS if within is None else within)
+        with self._changing:
+            self._stopped = True
+            for running in self._running.values():
+                running.end()
+            self._changing.wait_for(lambda: not self._running, max(0.0, deadline - time.monotonic()))
+            for kept in self._fork_servers.values():
+                kept.stop()
+
+    def _addresses(self, *, boxed: bool) -> Addresses:
+        """Return the addresses of the fork servers. Start those that do not run.
+
+        Args:
+            boxed: True to include the fork server for the boxes' supervisors.
+        """
+        with self._changing:
+            kept = self._fork_servers.get(boxed)
+            if kept is None or not kept.alive:
+                if kept is not None:
+                    kept.stop()
+                kept = self._fork_servers[boxed] = ForkServers(
+                    _JUDGE_MODULE,
+                    boxed=boxed,
+                    environment=boxed_ros_environment() if boxed else ros_environment(),
+                    of_judges=course.variables(),
+                    interfaces=course.interface_modules(),
+                )
+            return kept.addresses
+
+
+class _Running:
+    """An order that is being executed. Any thread may end it."""
+
+    def __init__(self) -> None:
+        self._changing = threading.Lock()
+        self._place: BoxedPlace | UnboxedPlace | None = None
+        self._ended = False
+
+    def began(self, place: BoxedPlace | UnboxedPlace) -> None:
+        """Record the boxes of the order."""
+        with self._changing:
+            self._place = place
+            if self._ended:
+                place.abandon()
+
+    def end(self) -> None:
+        """End every process in the boxes. The execution then ends with trouble."""
+        with self._changing:
+            self._ended = True
+            if self._place is not None:
+                self._place.abandon()
+
+
+def main(arguments: list[str]) -> None:
+    """Execute orders until the grader closes the connection.
+
+    Args:
+        arguments: The scratch folder, and the number of notebooks to execute at the same time.
+    """
+    raise_own()
+    adopt_orphans()
+    executor, grader = Executor(Path(arguments[0])), Lines.with_parent()
+    offer = msgspec.json.encode(Offer("", int(arguments[1]), ""))
+    with contextlib.suppress(Hangup):
+        grader.say_json(msgspec.json.encode(Joined(ADDRESS, ADDRESS, offer)))
+        while True:
+            command = msgspec.json.decode(grader.hear_json(), type=Command)
+            if isinstance(command, Give):
+                threading.Thread(target=_answer, args=(executor, grader, command), daemon=True).start()
+            else:
+                executor.cancel(str(command.number))
+    executor.stop()
+    end_descendants()
+    os._exit(0)  # a thread that is stuck must not keep this process alive
+
+
+def _answer(executor: Executor, grader: Lines, give: Give) -> None:
+    news: News
+    try:
+        news = Answered(give.number, executor.execute(str(give.number), give.order))
+    except BaseException as error:  # answer with the error, because the dispatcher waits for an answer
+        news = Failed(give.number, f"{type(error).__name__}: {error}")
+    with contextlib.suppress(Hangup):
+        grader.say_json(msgspec.json.encode(news))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

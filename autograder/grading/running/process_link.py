@@ -1,0 +1,178 @@
+"""The dispatcher's connection to a process that carries out its commands: the executor process or the Dask client.
+
+Both sides send lines of JSON: the dispatcher sends a ``Command``, the process sends ``News``
+(:mod:`autograder.grading.running.orders`).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import queue
+import socket
+import sys
+import threading
+from typing import TYPE_CHECKING, Self
+
+import msgspec
+
+from autograder import course
+from autograder.grading.running.orders import ADDRESS, Broken, Command, Left, News
+from autograder.messages.lines import Hangup, Lines
+from autograder.process_trees import end_processes_in, end_soon
+from autograder.temporary_folders import unnamed_file
+from environment.python_child import python_child
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from types import TracebackType
+
+GOODBYE_SECONDS = 2.0
+"""Seconds after which a process that was asked to end is killed, so that Ctrl-C takes less than three seconds."""
+_STARTS = 3
+"""The maximum number of starts in a row of an executor process that says nothing."""
+_STOPPED = Broken("the run was stopped")
+
+
+class ProcessLink:
+    """A running process. At the end of the ``with`` block, the process is ended.
+
+    Args:
+        words: The module of the process, and its arguments.
+        folder: The current folder of the process; None for the folder of this process.
+    """
+
+    _cleans_up = False
+    """True if the process must clean up before it ends, even after an error."""
+
+    def __init__(self, *words: str, folder: str | None = "/") -> None:
+        self._words, self._folder = words, folder
+        self._news: queue.SimpleQueue[News] = queue.SimpleQueue()
+        self._changing = threading.Lock()
+        self._closing = self._stopped = False
+
+    def __enter__(self) -> Self:
+        # The process prints into a file, because a pipe that no process reads would fill up.
+        self._log = unnamed_file()
+        self._start()
+        threading.Thread(target=self._listen, daemon=True).start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """End the process. After an error, a client process ends at once, and its scheduler cancels its tasks."""
+        with self._changing:
+            self._closing = True
+        self._end(at_once=kind is not None and not self._cleans_up)
+        self._log.close()
+
+    def say(self, command: Command) -> None:
+        """Send a command. If the process has ended, :meth:`hear` reports that."""
+        with contextlib.suppress(Hangup):
+            self._lines.say_json(msgspec.json.encode(command))
+
+    def hear(self, within: float | None) -> News | None:
+        """Return the next message; None if no message came in time.
+
+        Args:
+            within: The number of seconds to wait; None to wait without limit.
+        """
+        try:
+            news = self._news.get(timeout=None if within is None else max(0.0, within))
+        except queue.Empty:
+            return None
+        return _STOPPED if self._stopped else news
+
+    def stop(self) -> None:
+        """Let the dispatcher receive no more messages, so that it gives out no more tasks. Any thread may call this."""
+        self._stopped = True
+        self._news.put(_STOPPED)
+
+    def _start(self) -> None:
+        own, its_own = socket.socketpair()
+        with its_own:
+            child = python_child(
+                "-m", *self._words, environment={**os.environ, **course.variables()}, folder=self._folder
+            )
+            self._process = child.start(
+                stdin=its_own.fileno(),
+                stdout=self._log,
+                stderr=self._log,
+                start_new_session=True,  # Ctrl-C reaches only the grader, which then ends this process
+            )
+        self._lines = Lines(own, sys.maxsize)
+
+    def _end(self, *, at_once: bool) -> None:
+        """Ask the process to end, and wait for its end. Kill it if it takes too long, or if it must end at once."""
+        if at_once:
+            self._process.kill()
+        self._lines.finish()
+        end_soon(self._process, GOODBYE_SECONDS)
+        self._lines.close()
+
+    def _listen(self) -> None:
+        """Read the messages continuously: a process that waits for us to read would not read our commands."""
+        said_nothing = 0
+        while True:
+            said_nothing += 1
+            try:
+                while True:
+                    self._news.put(msgspec.json.decode(self._lines.hear_json(), type=News))
+                    said_nothing = 0
+            except Hangup:
+                reason = f"its process ended{self._last_words()}"
+            except (msgspec.MsgspecError, ValueError, MemoryError) as error:
+                reason = f"its process sent an invalid message: {error}"
+            with self._changing:
+                if self._closing or said_nothing >= _STARTS or not self._starts_again(reason):
+                    self._news.put(Broken(reason))
+                    return
+
+    def _starts_again(self, reason: str) -> bool:
+        """Start the process again after it ended, if that is possible. Return whether it was started."""
+        del reason
+        return False
+
+    def _last_words(self) -> str:
+        with contextlib.suppress(ValueError, OSError):
+            self._log.seek(0)
+            lines = self._log.read().decode(errors="replace").strip().splitlines()
+            return f" ({lines[-1][:300]})" if lines else ""
+        return ""
+
+
+class ThisMachine(ProcessLink):
+    """The connection to the executor process of this machine. If the process dies, it is started again.
+
+    Args:
+        scratch: The folder in which submissions run.
+        slots: The number of notebooks to execute at the same time.
+    """
+
+    _cleans_up = True
+
+    def __init__(self, scratch: Path, slots: int) -> None:
+        super().__init__("autograder.grading.running.executor", str(scratch), str(slots))
+        self._scratch = scratch
+
+    def _starts_again(self, reason: str) -> bool:
+        self._end(at_once=True)
+        self._news.put(Left(ADDRESS, reason))
+        self._start()
+        return True
+
+    def _end(self, *, at_once: bool) -> None:
+        super()._end(at_once=at_once)
+        if self._process.returncode != 0:
+            end_processes_in(self._scratch)  # the process may not have cleaned up after itself
+
+
+def client_of(address: str) -> ProcessLink:
+    """Return the connection to a client process of a Dask cluster.
+
+    Args:
+        address: The scheduler's address.
+    """
+    # The process starts in this process's folder, because Dask's settings may name certificates by relative paths.
+    return ProcessLink("autograder.grading.cluster.dask_client", address, folder=None)
