@@ -285,7 +285,7 @@ def _where(call: int, decide: Sequence[_Instruction]) -> list[_Instruction]:
 
 
 def _load(argument: int) -> _Instruction:
-    """Return an instruction that loads the low half of an argument: the kernel uses no more of a flag or command."""
+    """Return an instruction to load the low half of an argument. The kernel ignores the rest of a flag or command."""
     return (_LOAD, 0, 0, _ARGUMENTS + 8 * argument)
 
 

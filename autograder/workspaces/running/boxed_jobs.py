@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from autograder.workspaces.running.jobs import BuildOrder, ProgramJob
 
 PROGRAM_LIMITS = Limits(cpu_seconds=200.0, memory_bytes=1_500_000_000, processes=400)
-"""The limits for the box of a program, if the system does not enforce the limits of the whole submission."""
+"""The limits for the box of one program. They apply in addition to the limits of the whole submission."""
 PACK_SECONDS = 60.0
 """Time limit in seconds of wall time for packing the result of a build."""
 LOOK_EVERY = 0.5
