@@ -119,7 +119,7 @@ def _begin(entrance: Entrance, descriptors: Sequence[int], run: Run) -> None:
             filters = filter_for_boxes(hidden_memory=entrance.hidden_memory)
             give_up_rights(b"" if entrance.reader_seconds else filters)
         # Call this only now, because giving up rights clears the setting (prctl(2)). The parent is in another PID
-        # namespace.
+        # namespace, so its id is not passed.
         die_with_parent()
         signal.signal(signal.SIGINT, signal.default_int_handler)
         if entrance.reader_seconds:

@@ -132,7 +132,6 @@ def _tidy(address: str) -> None:
 
 
 def _child(mode: str, module: Any, listener: socket.socket, connection: socket.socket) -> None:
-    """Run a child from its fork to its exit."""
     code = 1
     try:
         listener.close()

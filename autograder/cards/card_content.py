@@ -201,7 +201,6 @@ class Card:
         return card._shortened() if short else card
 
     def _shortened(self) -> Card:
-        """Return the card without its details."""
         return replace(self, criteria=(), remarks=(), traffic=Traffic(()), detail=(), facts=(), solution=None)
 
 

@@ -217,7 +217,6 @@ class _Run:
             self._exited(program.exit_code())
 
     def _pass_on(self, program: Program) -> None:
-        """Pass on the program's output, line by line, while it is needed."""
         left = MAX_OUTPUT
         for text in output_lines(program, lambda: not self._cancelled.is_set()):
             left -= len(text) + 1  # an empty line counts, too, because it has to be sent
