@@ -144,7 +144,7 @@ class _Supervisor:
         if name in self._started:
             raise ValueError(f"a box named {name} already exists")
         info, writing = os.pipe()
-        # In a separate session, because Ctrl-C is meant for the command and its process group, not for bubblewrap.
+        # Start the command in a separate session, because Ctrl-C must reach its process group, but not bubblewrap.
         words = [*arguments, "--new-session", "--info-fd", str(writing)]
         words, kept = bubblewrap(words, hidden_memory=hidden_memory)
         kept.append(writing)

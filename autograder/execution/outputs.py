@@ -228,7 +228,7 @@ def _is_base64(text: str) -> bool:
 
 
 def _without_overwritten_lines(output: dict[str, Any]) -> dict[str, Any]:
-    """Join a stream's pieces; where carriage returns overwrite a line, keep what a terminal would show."""
+    """Join a stream's pieces. If carriage returns overwrite a line, keep the text that a terminal would show."""
     if output["output_type"] != "stream":
         return output
     lines = "".join(output["text"]).replace("\r\n", "\n").split("\n")

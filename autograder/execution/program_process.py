@@ -142,7 +142,7 @@ def _python_path(environment: Mapping[str, str]) -> list[str]:
 
 
 def _is_ours(script: str) -> bool:
-    """Return True if a file is a Python script for this interpreter, including that of an archive (``zipapp``)."""
+    """Return True if a file is a Python script for this interpreter, or an archive of one (``zipapp``)."""
     line = _head(Path(script)).split(b"\n")[0]
     return line == f"#!{INTERPRETER}".encode() and pkgutil.get_importer(script) is None
 

@@ -49,7 +49,7 @@ class ServiceSockets:
 
     Attributes:
         judge: The socket that only the judge's box sees.
-        notebook: The socket that the student's box sees; None for no such socket.
+        notebook: The socket that the student's box sees; None if the notebook cannot request builds.
     """
 
     judge: Path
