@@ -1,10 +1,10 @@
 """Guards that enforce a box's limits: cgroups if the host allows them, otherwise regular checks of the processes.
 
-With cgroups, the operating system itself refuses or ends a process at a limit. Without them, a watch reads the box's
-``/proc`` several times a second and ends the box; limits on each single process stop whatever is faster than the
-watch. The watch also reads the largest amount of memory that a process ever had, so the verdict is the same whichever
-limit a process reaches first. The limit on processor time is always enforced by the watch, because being late does no
-harm there.
+With cgroups, the operating system itself refuses or ends a process at a limit. Without them, this guard reads the box's
+``/proc`` several times a second and ends a box that exceeds a limit. Limits on each single process stop a program that
+is faster than these checks. The checks also read the largest amount of memory that a process ever had, so the verdict
+is the same whichever limit a process reaches first. The limit on processor time is always enforced by the checks,
+because it does no harm if they are late.
 """
 
 from __future__ import annotations

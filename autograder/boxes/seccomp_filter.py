@@ -1,21 +1,20 @@
 """The system calls that programs in a box may not make, as a seccomp filter.
 
-The namespaces decide what a box can reach. The filter forbids calls that no answer to an exercise needs and in which
-kernels had security holes: tracing other processes, mounting, namespaces in namespaces, keys, BPF, io_uring. It
-forbids watching files (inotify) because a user has only 128 watches for all boxes and programs together; programs
-that cannot watch check from time to time instead. It forbids semaphores and messages of System V because a few
-thousand calls take gigabytes that belong to no process, and asynchronous input and output (``io_setup``) because all
-programs of the machine share one number of requests. It forbids leases (``fcntl``) because a lease delays every other
-process that opens the file for up to 45 seconds, even if the file is read-only here: Python's own modules are the
-same files in every box.
+The namespaces decide what a box can reach. In addition, the filter refuses:
 
-The filter also refuses calls for which the kernel keeps memory that it charges to no cgroup and that no guard can
-count: attributes of files (access control lists), memory policies (``mbind``; the policy of a file in memory outlives
-its mapping), names of a process's pieces of memory (``prctl``), filters of sockets and of system calls (each is
-compiled, and all boxes share the space for that), and the two kinds of file locks that ``/proc/locks`` does not show
-for a box: those of an open file description, and those of a process that shares its table of open files and has
-ended. The guard counts all other locks (:mod:`autograder.boxes.guards`). Of the network protocols, a box has those
-whose waiting data the guard counts: UDP, TCP, and netlink to list the interfaces.
+* calls that no exercise needs and in which kernels had security holes: tracing other processes, mounting, namespaces in
+  namespaces, keys, BPF, io_uring;
+* watching files (inotify), because a user has only 128 watches for all boxes and programs together; programs that
+  cannot watch files check them from time to time instead;
+* semaphores and messages of System V, because a few thousand calls take gigabytes that belong to no process;
+* asynchronous input and output (``io_setup``), because all programs of the machine share one number of requests;
+* leases (``fcntl``), because a lease delays every other process that opens the file for up to 45 seconds, even if the
+  file is read-only here; Python's own modules are the same files in every box;
+* calls for which the kernel keeps memory that no cgroup and no guard counts: attributes of files (access control
+  lists), memory policies (``mbind``), names of areas of memory (``prctl``), filters of sockets and of system calls;
+* locks that ``/proc/locks`` does not show for a box: those of an open file description, and those of a process that
+  shares its table of open files and has ended; the guard counts all other locks (:mod:`autograder.boxes.guards`);
+* network protocols whose waiting data the guard does not count: all except UDP, TCP, and netlink to list interfaces.
 
 A refused call fails with EPERM, as for any user without the right to make it. Calls for attributes of files fail with
 EOPNOTSUPP, as on a file system without attributes, which ``cp -p`` expects. ``clone3`` fails as if it did not exist
