@@ -24,7 +24,7 @@ HERE = Path(__file__).parent
 # File: line, words of the problem, words of the remedy.
 REFUSED = {
     "duplicate_grade_id": (19, "'double' is already used by the cell on line 9", "grade_id"),
-    "an_exercise_checked_twice": (24, "'lab_9_1-double' is taken", "one cell only"),
+    "an_exercise_checked_twice": (24, "'lab_9_1-double' is already used", "one cell only"),
     "no_markers": (12, "without '### BEGIN SOLUTION'", "Put what students"),
     "never_ended": (12, "without '### END SOLUTION'", "Put what students"),
     "misspelt_marker": (13, "marker is misspelt", "'### BEGIN SOLUTION' and nothing else"),
