@@ -129,7 +129,7 @@ class Supervision:
             return self._ended[name]
 
     def abandon(self) -> None:
-        """Let the supervisor end all boxes, without waiting. Any thread may call this, even while another one waits."""
+        """Make the supervisor end all boxes, and do not wait. Any thread may call this, even if another one waits."""
         self._channel.hang_up()
 
     def close(self) -> None:

@@ -96,7 +96,7 @@ class ForkedProcess:
         return self._status is not None or self._lost
 
     def abandon(self) -> None:
-        """Kill the process without waiting. It then counts as lost. Any thread may call this."""
+        """Kill the process, and do not wait for its end. The process then counts as lost. Any thread may call this."""
         self._channel.hang_up()
 
     def end_box(self) -> None:

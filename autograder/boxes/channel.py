@@ -98,7 +98,7 @@ class Channel:
         return bool(poll.poll(0))
 
     def hang_up(self) -> None:
-        """Let both ends see that the connection is over. Any thread may call this, even while another one waits."""
+        """End the connection for both ends. Any thread may call this, even while another thread waits for a message."""
         with contextlib.suppress(OSError):
             self._socket.shutdown(socket.SHUT_RDWR)
 

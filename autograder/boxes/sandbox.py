@@ -43,16 +43,18 @@ OUTPUT_BYTES = 1_000_000
 
 
 class Enclosure:
-    """The network, the scratch and the boxes of one submission. Several threads may use it.
+    """The network, the scratch (a file system in memory) and the boxes of one submission.
+
+    Several threads may use an enclosure.
 
     Args:
         supervisors: The socket address of the fork server that starts supervisors.
         folder: A short-lived folder that nothing else uses; it is created if it does not exist. A box sees only those
             parts of it that are bound.
         files: Files to put into the notebook's folder, by relative path.
-        scratch_bytes: The maximum size in bytes of all files that the boxes write together.
+        scratch_bytes: The maximum size in bytes of all files that the boxes write into the scratch together.
         scratch_inodes: The maximum number of files, folders and links in the scratch.
-        guard: Enforces the limits on the commands, together with everything else that it guards.
+        guard: Enforces the limits. The commands of this enclosure count together with all other boxes of the guard.
 
     Raises:
         NoSandbox: The supervisor could not make the namespaces.
@@ -93,7 +95,7 @@ class Enclosure:
         Args:
             name: A name that no other box of this enclosure has.
             binds: What the box sees in addition to the system, Python and this package.
-            scratch: True if the box gets the enclosure's scratch; False if it gets a small one of its own.
+            scratch: True if the box gets the enclosure's scratch; False if it gets a small scratch of its own.
             guarded: True if the guard's limits apply to every process that enters the box, and to the box's own first
                 processes, which a program inside could control.
 
@@ -256,7 +258,7 @@ class Enclosure:
         return WarmCommand(process, reading, box.pid)
 
     def abandon(self) -> None:
-        """End all boxes without waiting. Whoever uses one sees that it is lost. Any thread may call this."""
+        """End all boxes, and do not wait. Any thread may call this. Threads that use a box see that it is lost."""
         self._supervision.abandon()
 
     def close(self) -> None:

@@ -45,7 +45,7 @@ def prepare() -> None:
 
 
 def run(channel: Channel) -> None:
-    """Serve one submission until its worker disconnects."""
+    """Serve one submission until the executor disconnects."""
     die_with_parent()
     supervisor = _Supervisor(channel)
     try:

@@ -1,7 +1,6 @@
 """The boxes in which a notebook runs, or their replacement if the user asked for no sandbox.
 
-Each of the two classes starts the two processes of a notebook, its kernel and its judge, and leaves no process
-behind.
+Each of the two classes starts the processes of a notebook (kernel, desk and judge), and leaves none behind.
 """
 
 from __future__ import annotations
@@ -34,8 +33,8 @@ DESK_FOLDER = Path("/run/kernel")
 """The path, in the box of a kernel's desk, of the folder with the kernel's sockets."""
 _STUDENT, _JUDGE = "student", "judge"
 _PROGRAMS_SCRATCH_BYTES, _PROGRAMS_SCRATCH_FILES = 1_000_000, 1_000
-"""The limits, in bytes and in files, of the scratch folder in the boxes of programs. Only the supervisor writes there;
-the files that a program writes are in the memory of its own box.
+"""The limits, in bytes and in files, of the scratch that the boxes of programs share. Only the supervisor writes there.
+Each program writes its files into a small scratch of its own box.
 """
 
 
@@ -112,7 +111,7 @@ class BoxedPlace:
 
     @property
     def judge_socket(self) -> Path:
-        """The path of the judge's socket. The student's box sees only this socket's folder of the judge."""
+        """The path of the judge's socket. The student's box sees the folder that contains this socket."""
         return self._shared / _JUDGE
 
     @property
@@ -121,7 +120,7 @@ class BoxedPlace:
         return self._shared
 
     def abandon(self) -> None:
-        """End everything in the boxes without waiting. Any thread may call this. Whoever waits sees that it is lost."""
+        """End all boxes, and do not wait. Any thread may call this. Threads that wait for a box see that it is lost."""
         for enclosure in {self.enclosure, self.programs}:
             enclosure.abandon()
 
@@ -139,7 +138,7 @@ class BoxedPlace:
         )
 
     def start_desk(self, channels: Channels) -> ForkedProcess:
-        """Start the desk that reads what the kernel says: another fork of that fork server enters a box of its own."""
+        """Start the kernel's desk: another child of the same fork server enters a separate box."""
         box = self.enclosure.box("desk", [Bind(channels.folder, DESK_FOLDER)], scratch=False)
         entrance = _desk_entrance(channels, DESK_FOLDER, self._limits, boxed=True)
         return ForkedProcess(self._addresses.kernels, entrance, [channels.orders], box)
@@ -203,7 +202,7 @@ class UnboxedPlace:
         return self._folder / _JUDGE
 
     def abandon(self) -> None:
-        """End the processes without waiting; see :meth:`BoxedPlace.abandon`."""
+        """Kill the processes, and do not wait for their end; see :meth:`BoxedPlace.abandon`."""
         for process in list(self._started):
             process.abandon()
 
@@ -218,7 +217,7 @@ class UnboxedPlace:
         return self._start(self._addresses.kernels, entrance, [channels.shell, channels.iopub, channels.log])
 
     def start_desk(self, channels: Channels) -> ForkedProcess:
-        """Start the desk that reads what the kernel says, as another fork."""
+        """Start the kernel's desk as another child of the same fork server."""
         entrance = _desk_entrance(channels, channels.folder, self._limits, boxed=False)
         return self._start(self._addresses.kernels, entrance, [channels.orders])
 

@@ -36,7 +36,7 @@ _TERMINAL = ("%%bash", "%%sh", "%%script")
 
 
 class Unfinished(RuntimeError):
-    """The judge had not finished the check when its time was over."""
+    """The judge did not finish the check within its time limit."""
 
 
 class Judge(Protocol):
@@ -135,7 +135,7 @@ class _Run:
                     self._hangs.note(cell, _title(cell))
 
     def _allow(self, index: int, cell: Cell) -> None:
-        """Set the time limit of a cell. A cell that uses a name that hung before does not get the full time again."""
+        """Set the time limit of a cell. It is shorter if the cell uses a function or class that hung before."""
         if (before := self._hangs.before(cell)) is not None:
             self._hung_before[index] = before
             self._allowed[index] = seconds_again(cell, self._allowed[index], self._limits)
@@ -157,7 +157,7 @@ class _Run:
         return Execution(tuple(runs), self._verdicts, self._trouble, seconds, start_seconds)
 
     def _what_led_to(self, check: int, runs: list[CellRun]) -> list[tuple[str, CellRun]]:
-        """Return the code cells before a check, with titles: those since the last check, or all if none failed."""
+        """Return the code cells since the last check with their titles; if none of them failed, all earlier ones."""
         code = [index for index in range(check) if self._cells[index].kind is CellType.CODE]
         checks = [index for index in code if self._cells[index].check is not None]
         recent = [index for index in code if index > (checks[-1] if checks else -1)]
@@ -166,7 +166,7 @@ class _Run:
         return [(_title(self._cells[index]), runs[index]) for index in recent]
 
     def failed(self, reason: str, seconds: float) -> Execution:
-        """Return the execution after a failure of the grader itself. None of its checks counts."""
+        """Return the execution after a failure of the grader itself. No check in it counts."""
         runs = tuple(self._cell_run(index) for index in range(len(self._cells)))
         verdicts = {i: grader_trouble(cell.check, reason) for i, cell in enumerate(self._cells) if cell.check}
         return Execution(runs, verdicts, reason, seconds)
@@ -187,17 +187,17 @@ class _Run:
         try:
             verdict = judge.close()
         except Unfinished as error:
-            # If the cell reached its time limit, the judge was too slow. If the cell ended before, it did not wait for
-            # the verdict. Then the check counts as failed, because otherwise a student could stop a check at a
-            # convenient moment.
+            # If the cell reached its time limit, the judge was too slow. A cell that ended earlier did not wait for the
+            # verdict: its check counts as failed, because otherwise a student could stop a check at a convenient
+            # moment.
             if self._ended[index] is Ended.TIMED_OUT:
                 self._judge_failed(index, cell.check, error)
             return
         except Exception as error:
             self._judge_failed(index, cell.check, error)
             return
-        # A cell that was stopped at a limit has not shown everything, so a failed verdict would depend on how much
-        # the judge had seen by then.
+        # Ignore a failed verdict on a cell that was stopped at a limit: it depends on how much the judge had seen by
+        # then.
         if verdict is not None and (verdict.passed or self._ended[index] not in LIMITS):
             self._count(index, cell.check, verdict)
 

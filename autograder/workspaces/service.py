@@ -1,6 +1,6 @@
 """The grader's service for checks of workspaces: it receives sources, builds them, runs programs and reports.
 
-It runs in the grader's worker, outside all boxes, and has two Unix sockets:
+The service runs in the grader's executor, outside all boxes, and has two Unix sockets:
 
 * The **judge's** socket, which the student's box cannot see. One connection is one check. The judge sends the sources
   that it got from the notebook. The service writes and reads them, and has them built and run. It tells the judge

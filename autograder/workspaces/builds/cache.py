@@ -260,6 +260,8 @@ def size_of(folder: Path) -> int:
     for root_, _, names in os.walk(folder):
         size += BLOCK
         for name in names:
-            with contextlib.suppress(FileNotFoundError):  # another worker may be removing this file
+            with contextlib.suppress(
+                FileNotFoundError
+            ):  # another thread or process may be removing this file
                 size += BLOCK + Path(root_, name).lstat().st_size
     return size

@@ -84,7 +84,7 @@ class BoxedJobs:
     def _turn(self, cancelled: Callable[[], bool]) -> Iterator[None]:
         """Hold the lock that lets only one build at a time be run again with more memory.
 
-        The lock is on the folder of the fork servers, because all workers of a batch have the same one.
+        The lock is on the folder of the fork servers, because all submissions that run at once have the same one.
 
         Raises:
             GivenUp: The build is no longer needed.
