@@ -1,4 +1,4 @@
-"""Finds the course's own files: its chapters, and the labs of a chapter in order."""
+"""Finds the files of the course: its chapters, and the labs and exercises of each chapter in order."""
 
 from __future__ import annotations
 
@@ -14,30 +14,30 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 VARIABLE = "AUTOGRADER_COURSE"
-"""The environment variable for the path of the top folder of a course that does not contain this package."""
+"""The environment variable for the path of the course's top folder, if the course does not contain this package."""
 SOLUTIONS = "solutions"
-"""The name of the folder that contains the chapters as authors write them."""
+"""The name of the folder in which authors write the chapters: masters, exercises and reference outputs."""
 HANDED_OUT = "exercises"
-"""The name of the folder that replaces ``solutions`` in a hand-out. It contains the judge's part of the chapters,
-without masters.
+"""The name of the folder that replaces ``solutions`` in the copy of a course for students. It contains the files that
+the judge needs, and no masters.
 """
 CHAPTERS = "chapters"
 """The name of the folder with the notebooks that students open. It has one folder for each chapter."""
 CHAPTER = "chapter.toml"
-"""The name of the file that describes a chapter beyond what the folders of its labs show."""
+"""The name of the file that describes a chapter: its title, and the order of its labs and exercises."""
 INTERFACES = "interfaces"
-"""The name of a chapter's folder for interface packages, which the course's set-up builds."""
+"""The name of a chapter's folder with interface packages, which are built when the course is set up."""
 GITHUB = "https://github.com/"
 BRANCH = "main"
-"""The branch of the course's repository that links for readers open."""
+"""The branch of the course's repository to which links for readers lead."""
 COPY = "(your copy,"
-"""The words by which a copy that `./course reset` kept is recognized; they are in its file name."""
+"""A part of the file name of each copy that `./course reset` makes of a student's notebook."""
 LAB = "lab.md"
-"""The name of the master in a lab's folder. The lab's notebook is derived from it."""
+"""The name of the master in a lab's folder, from which the lab's notebook is made."""
 WHY = ".why.md"
-"""The suffix of the file, next to an exercise, that contains the reasons for its reference solution."""
+"""The suffix of the file next to an exercise that explains the reference solution."""
 SOLUTION = ".solution.json"
-"""The suffix of the file with an exercise's solution and its reasons, which students see with full marks."""
+"""The suffix of the file with an exercise's solution and explanation, which students see once they have full marks."""
 
 
 class NoCourse(LookupError):
@@ -45,7 +45,7 @@ class NoCourse(LookupError):
 
 
 class BrokenChapter(Exception):
-    """The description of a chapter cannot be used. The message names the file and what is wrong."""
+    """The description of a chapter is not valid. The message names the file and the fault."""
 
 
 @dataclass(frozen=True)
@@ -55,10 +55,12 @@ class Chapter:
     Attributes:
         folder: The folder that contains the chapter's description and a folder for each lab.
         title: The title of the chapter.
-        labs: The folders of the chapter's labs, in reading order. Labs that the description does not name come last.
-        exercises: For a lab whose exercises are not done in alphabetical order, their names in the right order.
-        interfaces: The interface packages that come with the chapter, for its nodes to import. The course's set-up
-            builds each, from the chapter's folder ``interfaces`` or from the course's environment.
+        labs: The folders of the chapter's labs, in the order in which students do them. Labs that the description does
+            not name come last.
+        exercises: The names of a lab's exercises in their order, by lab. A lab with exercises in alphabetical order
+            need not be included.
+        interfaces: The names of interface packages that the chapter's nodes import. They are built when the course is
+            set up, from the chapter's folder ``interfaces`` or from the folder of the course's environment.
     """
 
     folder: Path
@@ -68,20 +70,20 @@ class Chapter:
     interfaces: tuple[str, ...]
 
     def in_order(self, lab: Path, files: Sequence[Path]) -> list[Path]:
-        """Return the files of a lab's exercises in the order in which they are done."""
+        """Return the files of a lab's exercises in the order in which students do the exercises."""
         wanted = self.exercises.get(lab.name, ())
         return sorted(files, key=lambda file: wanted.index(file.stem) if file.stem in wanted else len(wanted))
 
     def exercises_of(self, lab: Path) -> dict[str, Path]:
-        """Return the files of a lab's exercises by id, in the order in which they are done."""
+        """Return the files of a lab's exercises by exercise id, in the order in which students do the exercises."""
         return {f"{lab.name}.{file.stem}": file for file in self.in_order(lab, sorted(lab.glob("[!_]*.py")))}
 
 
 def root() -> Path:
     """Return the top folder of the course.
 
-    It is the folder that the environment variable ``AUTOGRADER_COURSE`` names, or else the clone that contains this
-    package.
+    The environment variable ``AUTOGRADER_COURSE`` names this folder. If it is not set, the course is the repository
+    that contains this package.
 
     Raises:
         NoCourse: No course was found.
@@ -98,7 +100,7 @@ def root() -> Path:
 
 
 def use(folder: Path) -> None:
-    """Use a course in this process and its children, unless the environment names one or one contains this package."""
+    """Use a course in this process and its children, unless ``root()`` already finds another one."""
     if VARIABLE not in os.environ and not _written(Path(__file__).resolve().parents[1]).is_dir():
         os.environ[VARIABLE] = str(folder)
 
@@ -106,8 +108,8 @@ def use(folder: Path) -> None:
 def use_the_one_around(folder: Path) -> None:
     """Use the course that contains a folder, if there is one, in this process and its children.
 
-    This is meant for commands that run their user's own code. A command for a class must never search for a course,
-    because a student's folder could contain one, too.
+    Call this only in commands that run the user's own code. A command for a class must not search the folders above for
+    a course, because a student's folder could contain a false one.
     """
     for candidate in (folder, *folder.parents):
         if _written(candidate).is_dir():
@@ -116,15 +118,15 @@ def use_the_one_around(folder: Path) -> None:
 
 
 def variables() -> dict[str, str]:
-    """Return the environment variables with which another process finds the same course. No student's box gets them."""
+    """Return the environment variables with which another process finds this course. No student's sandbox gets them."""
     return {VARIABLE: str(root())}
 
 
 def repository(folder: Path) -> str:
     """Return the address of a course's public repository, ``https://github.com/OWNER/NAME``; empty if it has none.
 
-    The address is ``Repository`` in the table ``[project.urls]`` of the course's pyproject.toml, and is written
-    nowhere else.
+    The address is read from ``Repository`` in the table ``[project.urls]`` of the course's pyproject.toml, the only
+    place for it.
 
     Args:
         folder: The top folder of the course.
@@ -147,7 +149,7 @@ def repository(folder: Path) -> str:
 
 
 def archive(address: str) -> str:
-    """Return the address of a zip with all files of a repository."""
+    """Return the address of a zip file with all files of a repository."""
     return f"{address}/archive/refs/heads/{BRANCH}.zip"
 
 
@@ -158,7 +160,7 @@ def chapters(folder: Path) -> tuple[Chapter, ...]:
         folder: The top folder of the course.
 
     Raises:
-        BrokenChapter: A description cannot be used.
+        BrokenChapter: The description of a chapter is not valid.
     """
     written = _written(folder)
     found = {file.parent for file in written.glob(f"*/{CHAPTER}")}
@@ -167,23 +169,26 @@ def chapters(folder: Path) -> tuple[Chapter, ...]:
 
 
 def _written(folder: Path) -> Path:
-    """Return the folder that contains the chapters: the authors' own folder, or that of a hand-out."""
+    """Return the folder that contains the chapters: ``solutions`` or, in a copy for students, ``exercises``."""
     solutions, handed_out = folder / SOLUTIONS, folder / HANDED_OUT
     return handed_out if handed_out.is_dir() and not solutions.is_dir() else solutions
 
 
 def released(lab: Path) -> Path:
-    """Return the path of a lab's released notebook in a hand-out."""
+    """Return the path of a lab's notebook in a copy of the course for students."""
     return lab / f"{lab.name}.ipynb"
 
 
 def interfaces() -> tuple[str, ...]:
-    """Return the interface packages that come with the course."""
+    """Return the names of all interface packages of the course's chapters."""
     return tuple(name for chapter in chapters(root()) for name in chapter.interfaces)
 
 
 def interface_modules() -> tuple[str, ...]:
-    """Return the names of modules that may contain classes of these packages. A package need not have all of them."""
+    """Return the names of the modules that may contain the course's interfaces, such as ``my_robot_interfaces.msg``.
+
+    A package need not have all of these modules.
+    """
     return tuple(f"{package}.{kind}" for package in interfaces() for kind in ("msg", "srv", "action"))
 
 
@@ -223,7 +228,7 @@ def _are_names(said: object) -> bool:
 
 
 def _is_lab(folder: Path) -> bool:
-    # A hand-out contains exercises and released notebooks but no masters.
+    # A copy of the course for students contains notebooks and exercises, but no masters.
     return folder.is_dir() and (
         (folder / LAB).is_file() or released(folder).is_file() or any(folder.glob("*.py"))
     )

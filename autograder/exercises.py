@@ -1,9 +1,9 @@
-"""Finds the exercises in the labs' folders. The module of an exercise is imported when it is first needed.
+"""Finds the exercises in the labs' folders, and imports the module of an exercise at its first use.
 
-An exercise ``lab_1_2.talker`` is the file ``talker.py`` in the folder ``lab_1_2`` of a chapter. It is also a module
-of the same name, so that the files of a lab import each other as in a package. A file whose name begins with an
-underscore is a part of other exercises. Only judges and graders import these modules; no student's sandbox contains
-them.
+The exercise ``lab_1_2.talker`` is the file ``talker.py`` in the folder ``lab_1_2`` of a chapter. Python can import it
+as the module ``lab_1_2.talker``, so the files of a lab can import each other. A file whose name begins with an
+underscore is not an exercise, but a part of other exercises. Only judges and graders import these modules; no student's
+sandbox contains the files.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from autograder.kit.model import Exercise
 
 REFERENCE = ".reference.json"
-"""The suffix of the file, next to an exercise, that contains its reference output."""
+"""The suffix of the file next to an exercise that contains the exercise's reference output."""
 
 
 class UnknownExercise(LookupError):
-    """There is no exercise with this id. The message names similar ones."""
+    """No exercise has this id. The message names exercises with similar ids."""
 
 
 class BrokenExercise(Exception):
@@ -47,8 +47,8 @@ def get(exercise_id: str) -> Exercise:
     """Return the exercise with this id.
 
     Raises:
-        UnknownExercise: There is no exercise with this id.
-        BrokenExercise: Its file cannot be imported, or does not define an exercise with this id.
+        UnknownExercise: No exercise has this id.
+        BrokenExercise: The exercise's file cannot be imported, or does not define an exercise with this id.
     """
     file = path(exercise_id)
     try:
@@ -58,7 +58,7 @@ def get(exercise_id: str) -> Exercise:
     exercise: Exercise | None = getattr(module, "EXERCISE", None)
     if exercise is None:
         raise BrokenExercise(
-            f"{file} defines no EXERCISE: name the file _{file.name} if it is a part of another one"
+            f"{file} does not define EXERCISE: name the file _{file.name} if it is a part of other exercises"
         )
     if exercise.id != exercise_id:
         raise BrokenExercise(f"{file} defines the exercise {exercise.id!r}: its id has to be {exercise_id!r}")
@@ -99,12 +99,12 @@ def reference_path(exercise_id: str) -> Path:
 
 
 def grade_id(exercise_id: str) -> str:
-    """Return the nbgrader grade_id of an exercise's check cell, in which nbgrader does not allow a dot."""
+    """Return nbgrader's grade_id for an exercise's check cell: the id with ``-`` for the dot, as nbgrader requires."""
     return exercise_id.replace(".", "-")
 
 
 def _words(error: Exception) -> str:
-    """Return the error of an import, with its file and line, as one line of text."""
+    """Return an error of an import as one line of text, with the file and line."""
     kind = type(error).__name__
     if isinstance(error, SyntaxError):
         return f"{kind}: {error.msg} ({error.filename}, line {error.lineno})"
@@ -116,7 +116,7 @@ def _files() -> dict[str, Path]:
     return _files_of(course.root())
 
 
-# The files are found only once, because a judge in its sandbox cannot list the labs' folders.
+# The result is cached, because a judge cannot list the labs' folders any more when it is in its sandbox.
 @functools.cache
 def _files_of(root: Path) -> dict[str, Path]:
     return {
@@ -128,7 +128,7 @@ def _files_of(root: Path) -> dict[str, Path]:
 
 
 class _LabsFinder:
-    """Lets Python find the folder of a lab as a package, in any chapter."""
+    """Makes Python find the folder of a lab, in any chapter, as a package."""
 
     @staticmethod
     def find_spec(

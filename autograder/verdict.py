@@ -1,7 +1,7 @@
-"""The verdict on one exercise, as plain data that is sent as JSON.
+"""The verdict on one exercise, as plain data that can be sent as JSON.
 
-Everything that shows, stores or counts a verdict (cards, the gradebook, ``--json``) uses these types. They do not
-depend on ROS, notebooks or the judge.
+All parts that show, store or count verdicts (cards, the gradebook, ``--json``) use these types. The types do not depend
+on ROS, notebooks or the judge.
 """
 
 from __future__ import annotations
@@ -13,22 +13,22 @@ import msgspec
 
 
 class State(StrEnum):
-    """The result of a check. The three values are never mixed up."""
+    """The result of a check. A failure of the judge is never a failure of the subject."""
 
     PASSED = "passed"
     """Every criterion is met."""
     FAILED = "failed"
     """The subject was checked, and at least one criterion is not met."""
     NOT_CHECKED = "not_checked"
-    """The judge itself failed (no ROS, no free domain, a judge that died). This says nothing about the subject."""
+    """The judge itself failed, for example because no ROS domain was free. This says nothing about the subject."""
 
 
 @dataclass(frozen=True)
 class CriterionResult:
-    """A requirement, and whether it was met.
+    """A requirement of the exercise, and whether the subject met it.
 
     Attributes:
-        name: A stable key for the criterion, such as ``"rate"``.
+        name: The criterion's key, such as ``"rate"``, which does not change with the wording.
         title: A one-line name for people, such as ``"Publishes every 0.5 s"``.
         points: The points that the criterion is worth.
         passed: True if the criterion is met.
@@ -46,10 +46,10 @@ class CriterionResult:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """A known mistake, with what to do next.
+    """A known mistake that was recognized, with the next step for the student.
 
     Attributes:
-        key: The stable name of the mistake, such as ``"topic_name"`` (``docs/mistakes.md`` lists them).
+        key: The mistake's key, such as ``"topic_name"`` (``docs/mistakes.md`` lists all keys).
         text: What happened and why, in one to three sentences for a student.
         next_step: What to do now, in the imperative.
     """
@@ -65,12 +65,12 @@ ASKS_FOR_INPUT = Diagnosis(
     "Remove the line with `input()`, and write the value into the code instead. A program that needs a value takes "
     "it from `sys.argv`.",
 )
-"""The diagnosis for a cell, class or program that waits for someone to type; the words are the same for all three."""
+"""The diagnosis for a cell, class or program that waits for keyboard input."""
 
 
 @dataclass(frozen=True)
 class Moment:
-    """One dot on the card's timeline.
+    """One dot on the timeline of a card.
 
     Attributes:
         t: Seconds since the judge began to watch, in simulated time if ``simulated`` is true.
@@ -78,10 +78,10 @@ class Moment:
         direction: ``"from_subject"``, ``"to_subject"`` or ``"note"``; ``"expected"`` for a message of the reference
             solution that did not come.
         label: A few words, such as the text, the numbers or the status.
-        part: The name of the part (``"the service is late"``) if the check has several parts, else empty.
+        part: The name of the part, such as ``"the service is late"``; empty if the check has only one part.
         simulated: True if ``t`` is simulated time.
-        key: True for an important event, such as a goal, a cancel request or a result. A picture always names it.
-        stray: True if the event is irrelevant for the task, such as a message on another topic.
+        key: True for an important event, such as a goal, a cancel request or a result. The timeline always labels it.
+        stray: True for an endpoint that the task does not ask for.
     """
 
     t: float
@@ -105,7 +105,7 @@ class Verdict:
         score: The points earned; 0 unless the subject was checked.
         max_score: The maximum points.
         criteria: The criteria in the order of the exercise; empty if nothing could be checked.
-        diagnosis: The known mistake that helps most; None if there is no mistake.
+        diagnosis: The most helpful diagnosis; None if the check passed.
         remarks: Remarks that cost no points.
         timeline: The most important events on the wire, in order.
         seed: The seed of the random inputs; the same seed gives the same inputs.
@@ -148,7 +148,7 @@ def from_json(data: bytes | str) -> Verdict:
 
 
 def failed(exercise: str, title: str, max_score: float, diagnosis: Diagnosis, detail: str = "") -> Verdict:
-    """Return the verdict, with zero points, for a check that is impossible because of the submission itself."""
+    """Return a failed verdict with zero points, for a submission that cannot be checked because of its own mistake."""
     return Verdict(
         exercise=exercise,
         title=title,
@@ -161,7 +161,7 @@ def failed(exercise: str, title: str, max_score: float, diagnosis: Diagnosis, de
 
 
 def not_checked(exercise: str, title: str, max_score: float, reason: str, next_step: str = "") -> Verdict:
-    """Return the verdict, with zero points, after a failure of the grader itself, which is not the student's fault.
+    """Return a verdict with the state ``not_checked``, after a failure of the grader that is not the student's fault.
 
     If ``next_step`` is not given and the reason has two lines, the second line is the next step.
     """

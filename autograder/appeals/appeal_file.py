@@ -1,4 +1,4 @@
-"""Reads and writes appeal files: one check of one student, as JSON for people and for ``./course replay``."""
+"""Reads and writes appeal files. Each contains one check of one student, as JSON for people and ``./course replay``."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ ABOUT = (
 )
 """The text at the top of each appeal file."""
 MAX_BYTES = 64_000_000
-"""The maximum size of an appeal file in bytes. The largest evidence takes a fifth of it."""
+"""The maximum size of an appeal file in bytes. The largest possible evidence takes a fifth of this size."""
 _WIDTH = 120
-"""The maximum length of a line of JSON, in characters. Longer values are broken into lines if possible."""
+"""The maximum length of a line of JSON, in characters. A longer value takes several lines if possible."""
 
 
 class BadAppeal(ValueError):
@@ -53,7 +53,7 @@ class Appeal(msgspec.Struct, frozen=True):
         task: The task, in one sentence.
         course: The version of the course with which the check was made.
         solution: The student's cells that ran before the check, in order.
-        expected: The reference output with which the check compared; None if the course has a newer one.
+        expected: The reference output to which the check compared the subject; None if the course has a newer one.
         seen: The evidence, with the verdict that is in the gradebook.
     """
 
@@ -68,7 +68,7 @@ class Appeal(msgspec.Struct, frozen=True):
 
 
 def dump(appeal: Appeal) -> bytes:
-    """Return the content of the file: JSON, with one event per line."""
+    """Return the content of an appeal file: JSON, with one line for each event."""
     content = plain(msgspec.to_builtins(appeal))
     head = {"format": FORMAT, "about": ABOUT}
     return ("\n".join(_lines({**head, **content}, "")) + "\n").encode()
@@ -88,7 +88,7 @@ def read(path: Path) -> Appeal:
             f"{path} cannot be read: {error.strerror}. Name a file that `appeal` wrote."
         ) from error
     if len(data) > MAX_BYTES:
-        raise BadAppeal(f"{path} is larger than any appeal file")
+        raise BadAppeal(f"{path} is larger than any appeal file: name a file that `appeal` wrote")
     try:
         content = json.loads(data)
     except (ValueError, RecursionError) as error:
@@ -99,7 +99,7 @@ def read(path: Path) -> Appeal:
     if not isinstance(content, dict) or content.pop("format", None) != FORMAT:
         raise BadAppeal(
             f"{path} is JSON, but not an appeal file of this version of the course ({FORMAT}). "
-            f"`{COMMAND} appeal CLASS STUDENT EXERCISE` writes one."
+            f"Write it again: {COMMAND} appeal CLASS STUDENT EXERCISE"
         )
     try:
         return msgspec.convert(restored(content), type=Appeal)
@@ -108,7 +108,7 @@ def read(path: Path) -> Appeal:
 
 
 def _lines(value: Any, indent: str, before: str = "", after: str = "") -> Iterator[str]:
-    """Yield lines of JSON. A short value takes a single line."""
+    """Yield the lines of JSON for a value. A short value, or an event, takes a single line."""
     whole = _json(value)
     inside = (
         (list(value.items()) if isinstance(value, dict) else value) if isinstance(value, (dict, list)) else ()

@@ -1,14 +1,15 @@
 """Writes the evidence of a check as MCAP: each event is a message in JSON, for Foxglove and other programs.
 
-In the file, the messages of a topic are on that topic, and log lines are on ``/rosout``. Requests, answers, goals and
-so on are on topics named after the service or action and the kind of event, such as ``/add_two_ints/asked``. Everything
-else is on topics below ``/judge``. The field ``_judge`` of each message contains its part of the check, its look
-(quick, or in real time), and its time by the judge's clock and by the simulated clock.
+In the file, a message that the judge observed on a topic is on the same topic, and log lines are on ``/rosout``.
+Requests, answers, goals and so on are on topics named after the service or action and the kind of event, such as
+``/add_two_ints/asked``. All other events are on topics below ``/judge``. Each message has a field ``_judge``, which
+contains the part of the check, the look (``quick`` or ``real time``), and the time by the judge's clock and by the
+simulated clock.
 
-A second form, for ``ros2 bag play``, contains only the messages of topics, in CDR with the definitions of their
-types. A player has to know each type, and all messages must have the same encoding.
+A second kind of file, for ``ros2 bag play``, contains only the messages on topics, in ROS's own encoding (CDR) and with
+the definitions of their types. All messages of such a file must have this encoding.
 
-The runs of a check follow one after the other, in the order of the evidence.
+The times in the file put the parts of a check one after the other, in the order of the evidence.
 """
 
 from __future__ import annotations
@@ -27,16 +28,17 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Part
 
 _ENDS = {"message": "publisher", "sent": "subscription"}
-"""The role of the subject's endpoint for each kind of message event: a message that it sent, or one that it received.
+"""The role of the subject's endpoint, by kind of event: ``message`` is a message that the subject has published,
+``sent`` one that the judge has published.
 """
 _OF_CALLS = (
     "asked", "answered", "request", "response", "goal", "goal_sent", "goal_answer", "goal_answered", "feedback",
     "feedback_heard", "cancel", "cancel_sent", "cancel_answer", "cancel_answered", "result_request", "result",
     "result_heard",
 )  # fmt: skip
-"""The kinds of events between the client and the server of a service or an action."""
+"""The kinds of events that are messages between the client and the server of a service or action."""
 _JUDGE = "_judge"
-"""The name of the field with everything that is not part of the message itself."""
+"""The name of the field with the data that is not part of the message itself."""
 _SECOND = 1_000_000_000
 
 
@@ -80,9 +82,10 @@ def write_messages(kept: Kept, stream: IO[bytes]) -> int:
 
 
 def write_bag(kept: Kept, stream: IO[bytes]) -> tuple[int, int]:
-    """Write the messages of topics as ``ros2 bag record`` does. Return how many were and were not written.
+    """Write the messages on topics as ``ros2 bag record`` does. Return how many were written, and how many were not.
 
-    A message cannot be written if its type was not on the graph, is not installed here, or has different fields now.
+    A message is not written if the evidence does not contain its type, or if the type is not installed or has different
+    fields now.
 
     Args:
         kept: The evidence.
@@ -119,9 +122,10 @@ def _in_cdr(kind: Any, fields: Mapping[str, Any]) -> bytes:
 
 
 def _channel_in_cdr(file: MessageFile, topic: str, type_name: str) -> tuple[int, Any] | None:
-    """Return the channel number of a topic and the class of its messages; None if the type is not installed here."""
+    """Return the channel number of a topic and the class of its messages; None if the message type is not installed."""
     try:
-        # The definition comes first, because looking for a class imports a module, and the file may name any module.
+        # Look for the definition first: it fails for a name that is not a message type. Looking for the class would
+        # import any module that the file names.
         text = definition(type_name)
         kind = interface(type_name)
     except LookupError:
@@ -131,7 +135,7 @@ def _channel_in_cdr(file: MessageFile, topic: str, type_name: str) -> tuple[int,
 
 
 def _seen(kept: Kept) -> Iterator[tuple[str, Event, int, dict[str, Any]]]:
-    """Yield each event with its topic, its time and the message for it."""
+    """Yield each event of the evidence with the topic, time and content of the message to write."""
     began = kept.at - kept.verdict.seconds
     for look in kept.looks:
         for part in look.parts:
@@ -167,7 +171,7 @@ def _message(look: KeptLook, part: Part, event: Event) -> dict[str, Any]:
 
 
 def _types(kept: Kept) -> dict[tuple[str, str], str]:
-    """Return the types of topics on the graph, by kind of event and name of the topic."""
+    """Return the types of the topics in the evidence; the keys are pairs of a kind of event and a topic."""
     return {
         (kind, topic): str(type_name)
         for look in kept.looks
@@ -193,7 +197,8 @@ def _extend(schema: dict[str, Any], value: Any) -> None:
                 _extend(items, inner)
     kind = _kind(value)
     if schema.setdefault("type", kind) != kind:
-        # Values of this field have different types, so programs that read the file show them as text.
+        # The values of this field have different types. JSON Schema then says ``string``, so that programs show all of
+        # them.
         schema["type"] = "string"
 
 

@@ -1,4 +1,4 @@
-"""Judges a check again from its evidence, with the current code."""
+"""Judges a check again from its evidence, with the current code of the exercise."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ class Replay:
     """The result of judging a check a second time.
 
     Attributes:
-        then: The verdict when the check was made.
-        now: The verdict of the current code.
+        then: The earlier verdict, from when the check was made.
+        now: The new verdict, from the current code.
         differences: One line for each important difference: state, points, criteria, diagnosis.
         notes: Possible reasons for differences, and differences that are only in the wording.
     """
@@ -41,7 +41,7 @@ class Replay:
 
 
 def replay(kept: Kept) -> Replay:
-    """Decide the criteria and the diagnosis of a check again.
+    """Judge a check again from its evidence, and compare the new verdict with the earlier one.
 
     Raises:
         CannotReplay: The exercise no longer exists, or the evidence is not sufficient.
@@ -49,7 +49,7 @@ def replay(kept: Kept) -> Replay:
     then = kept.verdict
     if kept.cut:
         raise CannotReplay(
-            f"the judge saw more in this check than is kept, and no verdict follows from a part of it: {kept.cut}. "
+            f"the evidence of this check was too long and is incomplete, so no verdict follows from it: {kept.cut}. "
             f"`{COMMAND} grade --student STUDENT --again` repeats the check with the same inputs."
         )
     try:
@@ -67,7 +67,7 @@ def replay(kept: Kept) -> Replay:
             f"{exercise.id} cannot be decided from this evidence ({type(error).__name__}: {error}). Either it was "
             "edited, or it comes from another version of the course: then use that version."
         ) from error
-    notes = ["the reference output of this exercise has changed since"] if changed else []
+    notes = ["the reference output of this exercise has changed since then"] if changed else []
     return Replay(then, now, list(_differences(then, now)), notes + list(_other_words(then, now)))
 
 
@@ -89,7 +89,7 @@ def _differences(then: Verdict, now: Verdict) -> Iterator[str]:
 
 
 def _other_words(then: Verdict, now: Verdict) -> Iterator[str]:
-    """Yield differences in texts that a student reads, but on which no grade depends."""
+    """Yield differences in the wording that students read. They change no grade."""
     before = {criterion.name: criterion for criterion in then.criteria}
     for new in now.criteria:
         old = before.get(new.name)

@@ -1,1 +1,1 @@
-"""The messages between the autograder's processes: lines of JSON, each of a type that is defined here."""
+"""The types of the messages between the autograder's processes. A message is a line of JSON."""

@@ -1,7 +1,7 @@
-"""The messages between a notebook and the judge, over the judge's Unix socket. One connection is one check.
+"""The messages between a notebook and the judge, on the judge's Unix socket. Each check has its own connection.
 
-The notebook is not trusted. Its messages affect only what the subject is recorded as having said or done. The judge
-itself watches the traffic on the wire.
+The judge does not trust the notebook. The notebook's messages only report the subject's output and how each run ends.
+The judge itself observes the traffic on the wire.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from autograder.messages.workspaces import Source
 from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annotations)
 
 SOCKET_VARIABLE = "AUTOGRADER_JUDGE_SOCKET"
-"""The environment variable for the path of the judge's socket. A kernel without it starts its own judge."""
+"""The environment variable for the path of the judge's socket. A kernel without this variable starts its own judge."""
 
 # --- From the notebook: about its check
 
 
 class Check(Message, frozen=True):
-    """The first message: request a check.
+    """The notebook's first message, which requests a check.
 
     Attributes:
         kind: ``"class"`` for a Node class, ``"path"`` for a workspace or a launch file, ``"function"`` for everything
@@ -31,21 +31,21 @@ class Check(Message, frozen=True):
 
 
 class Ready(Message, frozen=True):
-    """The notebook has received the domain of the check."""
+    """The notebook has received :class:`Begin`, and is ready to start runs."""
 
 
 class Met(Message, frozen=True):
-    """The answer to :class:`Meet`: True if the notebook's participant has noticed the new and the removed endpoints."""
+    """The answer to :class:`Meet`: True if the participant sees the new endpoints, and none of the removed ones."""
 
     seen: bool
 
 
 class Sources(Message, frozen=True):
-    """The last message of the reply to :class:`Collect`, after one :class:`Source` for each source.
+    """The last message of the reply to :class:`Collect`. Before it, the notebook sends a :class:`Source` for each file.
 
     Attributes:
-        path: The path of the workspace or launch file among the sources.
-        trouble: Why there are no sources, in words for the student; empty if there are.
+        path: The relative path of the workspace or launch file to check.
+        trouble: Why no sources could be sent, in words for the student; empty if they were sent.
     """
 
     path: str
@@ -66,13 +66,13 @@ class _RunMessage(Message, frozen=True):
 
 
 class Started(_RunMessage, frozen=True):
-    """The subject's function was called; ``accepted`` are those of the offered options for which it has a parameter."""
+    """The function was called. ``accepted`` are those options of :class:`Start` for which it has a parameter."""
 
     accepted: list[str]
 
 
 class Constructed(_RunMessage, frozen=True):
-    """The node is made; ``marker`` is a topic created after everything that the constructor makes.
+    """The node's constructor has returned. ``marker`` is a topic that was created after all of the node's endpoints.
 
     ``goes_on`` is true if the node has a timer or a thread, which may make more endpoints once the node spins.
     ``twin`` is the node's name if the constructor has made a second node with this name.
@@ -111,7 +111,7 @@ class Raised(_RunMessage, frozen=True):
 
 
 class Exited(_RunMessage, frozen=True):
-    """The process that was started for a path has ended."""
+    """The process that runs a workspace or launch file has ended."""
 
     code: int | None = None
 
@@ -137,11 +137,12 @@ FromNotebook = Check | Ready | Met | Source | Sources | RunMessage
 
 
 class Begin(Message, frozen=True):
-    """A request to use this ROS domain.
+    """The judge's request to use this ROS domain.
 
     Attributes:
         domain: The ROS domain of this check.
-        keeper: The name of the node that stays in the context between the runs of a class or function.
+        keeper: The name for the node that keeps the notebook's participant alive between the runs of a class or
+            function.
     """
 
     domain: int
@@ -149,11 +150,11 @@ class Begin(Message, frozen=True):
 
 
 class Collect(Message, frozen=True):
-    """A request to send the source files at the path in the check cell. The grader builds and runs them itself."""
+    """A request to send the source files of the workspace or launch file, which the grader builds and runs itself."""
 
 
 class Meet(Message, frozen=True):
-    """A request to wait until the participant sees certain endpoints of the judge, and no longer sees others.
+    """A request to wait until the participant sees the judge's new endpoints, and the removed ones no longer.
 
     Attributes:
         fresh: True to make a new context first.
@@ -191,7 +192,7 @@ class Release(Message, frozen=True):
 
 
 class Interrupt(Message, frozen=True):
-    """A request to send Ctrl-C to the process that runs a path."""
+    """A request to send Ctrl-C to the process that runs a workspace or launch file."""
 
     run: int
 
@@ -209,7 +210,7 @@ class Stop(Message, frozen=True):
 
 
 class SoFar(Message, frozen=True, tag="so_far"):
-    """A message that the check goes on, with what is known so far. A later look may show that this is wrong.
+    """A sentence about what the judge knows so far. The check goes on, and may show that the sentence is wrong.
 
     Attributes:
         words: A sentence for the student; empty if nothing is known.
@@ -230,7 +231,7 @@ class Judged(Message, frozen=True, tag="verdict"):
 
 
 class Refused(Message, frozen=True):
-    """The last message if nothing is judged, with the reason."""
+    """The last message if the judge refuses the check. It contains the reason."""
 
     why: str
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from types import UnionType
 
 MAX_LINE = 1_000_000
-"""The maximum size of a message in bytes. A longer one ends the connection."""
+"""The maximum size of a message in bytes. A longer message ends the connection."""
 
 
 class Hangup(ConnectionError):
@@ -39,22 +39,22 @@ class NotUnderstood(ValueError):
 
 
 def _tag(name: str) -> str:
-    """Return the word for a type of message, such as ``callback_raised`` for ``CallbackRaised``."""
+    """Return the word in JSON for a type of message, such as ``callback_raised`` for ``CallbackRaised``."""
     return "".join(f"_{c.lower()}" if c.isupper() and i else c.lower() for i, c in enumerate(name))
 
 
 class Message(msgspec.Struct, frozen=True, tag_field="say", tag=_tag):
-    """A message. Its field ``say`` contains the word for its type."""
+    """A message. The field ``say`` in its JSON contains the word for its type."""
 
 
 MessageT = TypeVar("MessageT", bound=Message)
 
 
 class Lines:
-    """One connection. Any thread may send, but only one may receive.
+    """One connection for messages. Any thread may send, but only one thread may receive.
 
     Args:
-        connection: A connected Unix socket, which this object owns from now on.
+        connection: A connected Unix socket. Closing this object closes the socket.
         largest: The maximum size of a received message, in bytes.
     """
 
@@ -65,11 +65,11 @@ class Lines:
 
     @classmethod
     def to(cls, path: Path | str, limit: float | None = None) -> Self:
-        """Connect to a socket.
+        """Connect to a listening Unix socket.
 
         Args:
             path: The path of the socket.
-            limit: The limit of each wait, in seconds of wall time; None for no limit.
+            limit: Time limit for each sending and receiving, in seconds of wall time; None for no limit.
 
         Raises:
             Hangup: No process accepts the connection.
@@ -87,7 +87,7 @@ class Lines:
     def with_parent(cls, largest: int = sys.maxsize) -> Self:
         """Connect to the parent process, which started this one with a socket as its standard input.
 
-        No child of this process inherits that socket, so the connection ends when this process ends.
+        Children of this process get an empty standard input instead. So the connection ends when this process ends.
         """
         connection = socket.socket(fileno=os.dup(0))
         nothing = os.open(os.devnull, os.O_RDONLY)
@@ -138,10 +138,10 @@ class Lines:
         try:
             return msgspec.convert(words, type=kind)
         except (msgspec.ValidationError, ValueError) as error:
-            raise NotUnderstood("this message is not expected here") from error
+            raise NotUnderstood("the other side sent a message of a type that is not expected") from error
 
     def hear_json(self, within: float | None = None) -> bytes:
-        """Wait for the next message, and return it undecoded.
+        """Wait for the next message, and return its line of JSON without decoding it.
 
         Args:
             within: The limit in seconds of wall time; None for no limit.
@@ -158,13 +158,13 @@ class Lines:
             if searched > self._largest:
                 raise TooLong("a message is too long")
             if deadline is not None and not self._readable(deadline):
-                raise Silent("the other side said nothing in time")
+                raise Silent("the other side sent no message in time")
             try:
                 chunk = self._socket.recv(1 << 16)
             except OSError as error:
                 raise Hangup(str(error)) from error
             if not chunk:
-                raise Hangup("the other side hung up")
+                raise Hangup("the other side disconnected")
             self._buffer += chunk
         line = bytes(self._buffer[:end])
         del self._buffer[: end + 1]
@@ -188,7 +188,7 @@ class Lines:
 
 
 def listen(path: Path) -> socket.socket:
-    """Return a listening Unix socket that only this user can reach. It replaces a socket left by a process that ended.
+    """Return a listening Unix socket that only this user can reach. A file at this path is replaced.
 
     Args:
         path: The path of the socket, at most 107 bytes long (unix(7)).
@@ -205,7 +205,7 @@ def encode(message: Message) -> bytes:
     """Return a message as bytes, with a newline at the end.
 
     Lone surrogates, which Python uses in file names that are not UTF-8, are sent as JSON escapes. msgspec alone would
-    reject them, but no output of a student may end a check.
+    reject them, and a student's output that contains one would end the check.
     """
     return json.dumps(msgspec.to_builtins(message, enc_hook=_plain)).encode() + b"\n"
 
@@ -221,5 +221,5 @@ def _words(line: bytes) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> str:
-    """Return a plain string for a value whose class the student derived from ``str``."""
+    """Return a plain string for a value that msgspec does not know, such as one of a class derived from ``str``."""
     return str.__str__(value) if isinstance(value, str) else str(value)

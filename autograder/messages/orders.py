@@ -1,4 +1,4 @@
-"""The messages between the grader and its judge process: one JSON line each way, on a socket that no notebook has."""
+"""The messages between the grader and the judge process: an order and its answer, on a socket that no notebook has."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from autograder.verdict import Verdict  # noqa: TC001  (msgspec reads the annota
 
 
 class Open(msgspec.Struct, tag="open", frozen=True):
-    """An order to allow one check of this exercise.
+    """An order to allow the notebook one check of this exercise.
 
     Attributes:
         exercise: The exercise's id.
@@ -17,9 +17,9 @@ class Open(msgspec.Struct, tag="open", frozen=True):
         workspaces: The path at which the judge reaches the socket of the grader's workspace service; empty if there
             is none.
         evidence: True to add the evidence to the report.
-        boxed: True if judge and notebook are in sandboxes, as for a submission. No other program is on their network,
-            so a domain is free even if its ports seem to be in use. The judge reports the verdict only to the grader;
-            :class:`autograder.messages.checks.Judged` says why.
+        boxed: True if judge and notebook are in sandboxes, as for a submission. No other program is on the network of
+            the sandboxes, so a ROS domain is free even if its ports seem to be in use. The judge reports the verdict
+            only to the grader (:class:`autograder.messages.checks.Judged` says why).
     """
 
     exercise: str
@@ -31,7 +31,7 @@ class Open(msgspec.Struct, tag="open", frozen=True):
 
 
 class Close(msgspec.Struct, tag="close", frozen=True):
-    """An order to allow no further check, and to report the result of the last one."""
+    """An order to end the opened check and to report its result."""
 
 
 class Report(msgspec.Struct, frozen=True):
@@ -40,7 +40,7 @@ class Report(msgspec.Struct, frozen=True):
     Attributes:
         verdict: The judge's verdict; None if no check was requested or the judge failed.
         reference: The reference output as text, after a recording.
-        trouble: Why there is no verdict, in words; empty if no check was requested.
+        trouble: Why there is no verdict, as a text for people; empty if there is one, or if no check was requested.
         evidence: The evidence, as :mod:`autograder.judge.verdicts.keeping` packs it; empty if it was not requested.
         crowded: True if the subject did not pass, perhaps because the machine was overloaded.
         unfinished: True if there is no verdict because the judge's time was over.

@@ -1,6 +1,6 @@
-"""The messages of the grader's workspace service: with the judge for a check, with a notebook for a build.
+"""The messages between the grader's workspace service and the judge (for a check) or a notebook (for a build).
 
-The service's reports and the programs' output are different messages, so that no program can fake a report.
+The service's reports and the programs' output have different types, so that no program can fake a report.
 """
 
 from __future__ import annotations
@@ -9,10 +9,10 @@ from autograder.messages.lines import Message
 
 
 class Source(Message, frozen=True):
-    """A file or folder of the sources.
+    """A source file or folder of a submission.
 
     Attributes:
-        path: The relative path, with slashes.
+        path: The relative path, with ``/`` between its parts.
         data: The content of the file; None for a folder.
         executable: True if the owner may execute it.
     """
@@ -31,9 +31,9 @@ class Check(Message, frozen=True):
     Attributes:
         exercise: The exercise's id.
         domain: The ROS domain of the programs.
-        path: The path of the workspace or launch file among the sources.
+        path: The relative path of the workspace or launch file to check.
         count: The number of sources that follow.
-        trouble: Why there are no sources, in words for the student; empty if some follow.
+        trouble: Why no sources follow, in words for the student; empty if they follow.
     """
 
     exercise: str
@@ -44,7 +44,7 @@ class Check(Message, frozen=True):
 
 
 class Start(Message, frozen=True):
-    """A request to run the submission. It is built first, unless that was done already.
+    """A request to run the submission. The service builds it first, unless it has been built already.
 
     Attributes:
         run: The number of the run.
@@ -111,7 +111,7 @@ class Stopped(Message, frozen=True):
 
 
 class Trouble(Message, frozen=True):
-    """The service failed, which is not the submission's fault."""
+    """The service itself failed; the submission is not the cause."""
 
     why: str
 
@@ -127,7 +127,7 @@ class Build(Message, frozen=True):
 
     Attributes:
         count: The number of sources that follow.
-        path: The path of the workspace among the sources.
+        path: The relative path of the workspace to build.
         only: The names of the packages to build.
     """
 
@@ -137,7 +137,7 @@ class Build(Message, frozen=True):
 
 
 class NotBuilt(Message, frozen=True, tag="no"):
-    """The service builds nothing for this notebook, for this reason."""
+    """The service does not build this workspace. ``why`` is the reason, in words."""
 
     why: str
 
@@ -153,11 +153,11 @@ class BuildFailed(Message, frozen=True, tag="failed"):
 
 
 class BuildDone(Message, frozen=True, tag="built"):
-    """The build succeeded, and follows as an archive.
+    """The build succeeded. Its install folder follows as an archive, in :class:`Piece` messages.
 
     Attributes:
         pieces: The number of messages that contain the archive.
-        install: The path of the install folder that is written in the files of the build.
+        install: The path at which the build's files expect the install folder to be.
         seconds: The duration of the build, in seconds of wall time.
     """
 
