@@ -175,7 +175,7 @@ ROWS = (
     Elsewhere(
         r"NameError: name '(?P<name>this|true|false|null|NULL|nullptr|undefined)' is not defined",
         "{name} is a word of another language.",
-        "Python's words are self (for this), True, False and None, with these capitals.",
+        "In Python, write self instead of this, and True, False or None with these capitals.",
     ),
     Elsewhere(
         r"(?:ModuleNotFoundError: No module named|NameError: name) '(?:rclcpp|RCLCPP_\w+)\b"

@@ -78,7 +78,7 @@ SAYS = {
     "node.create_publisher<String>('chatter', 10)": "create_publisher(String, 'chatter', 10)",
     "node.create_client(Trigger, 'x').async_send_request(1)": "call_async",
     "rclpy.spin_some(node)": "rclpy.spin(your_node)",
-    "this.count = 0": "In Python it is self",
+    "this.count = 0": "In Python, write self",
     "done = true": "True, False or None",
     "answer = nullptr": "True, False or None",
     "message = std_msgs::msg::String()": "Write a dot in place of ::",
