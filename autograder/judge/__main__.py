@@ -1,6 +1,6 @@
 """``python -m autograder.judge --socket PATH``: run the judge for one notebook.
 
-With ``--attached LISTENER ORDERS``, run a judge that a grader controls. This judge runs only the checks that the grader
+``--attached LISTENER ORDERS`` instead runs a judge that a grader controls: it runs only the checks that the grader
 orders. Both arguments are file descriptors of inherited sockets.
 """
 

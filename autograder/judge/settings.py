@@ -1,8 +1,8 @@
 """Set the environment variables that a judge's or subject's process needs before it imports ROS.
 
-A participant of Jazzy's Fast DDS announces itself every 3 s (measured). So a participant that is older than about a
-second often discovers a new process only seconds after it started. With the profile next to this file, the judge's
-participants announce themselves every 100 ms. Subjects do not need the profile.
+A participant of Jazzy's Fast DDS announces itself every 3 s (measured). So an older participant often discovers a new
+process only seconds after the process has started. With the profile next to this file, the judge's participants
+announce themselves every 100 ms. Subjects do not need the profile.
 """
 
 from __future__ import annotations

@@ -136,7 +136,7 @@ class ScriptedActionServer:
         self._feedback.publish(message)
 
     def finish(self, status: str, **fields: Any) -> None:
-        """End the current goal with a status, which is a key of :data:`STATUS`, and with a result with these fields."""
+        """End the current goal with a status (a key of :data:`STATUS`) and a result that has these fields."""
         response = self._type.Impl.GetResultService.Response()
         response.status = STATUS[status]
         filled(response.result, fields)
@@ -221,8 +221,8 @@ class ScriptedActionServer:
         """Publish the current goal's status on the action's status topic.
 
         The server does this by itself if the status changes or the client requests the result, but not if it accepts a
-        goal. A goal handle of rclpy has the status UNKNOWN until a status arrives. So a client that looks at the
-        status, not at the answer, to learn whether its goal was accepted finds UNKNOWN and is not right by chance.
+        goal. A client must learn from the answer, not from the status, whether its goal was accepted. A client that
+        reads the status finds UNKNOWN, the first status of a goal handle of rclpy, and is not right by chance.
         """
         line = GoalStatus(goal_info=GoalInfo(goal_id=self._goal_id), status=self._status)
         self._statuses.publish(GoalStatusArray(status_list=[line]))

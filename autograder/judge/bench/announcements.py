@@ -1,11 +1,11 @@
 """Detects that a process has made a node, even if the process ends before the ROS graph shows the node.
 
 A DDS participant announces itself when it is created, and rmw_fastrtps creates it together with a process's first node.
-Before the graph shows that node, several more messages must be exchanged. A program that ends at once may end before
-that. But its announcement has then arrived at the sockets of this module.
+The graph shows the node only after several more messages. If a program ends before these messages, its announcement has
+still arrived at the sockets of this module.
 
-Participants announce themselves to a multicast group or, if discovery is limited to this machine, to the ports of the
-first participants on it (DDSI-RTPS 2.5, 9.6.1).
+Participants announce themselves to a multicast group or, if discovery is limited to this machine, to the ports that the
+first participants on this machine use (DDSI-RTPS 2.5, 9.6.1).
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ nor keep the judge from other work.
 
 
 class Announcements:
-    """Listens for the announcements of DDS participants. If a socket cannot be opened, it does without that socket.
+    """Listens for the announcements of DDS participants, on each of two sockets that can be opened.
 
     Args:
         domain_id: The ROS domain.

@@ -21,7 +21,7 @@ reader.
 
 
 def patiently(service: Service, wanted: Callable[[], bool] = lambda: True) -> Callable[[Any, Any], None]:
-    """Make a service wait with each answer until the client can receive it. Return the new function that sends answers.
+    """Make a service send each answer again until the client receives it. Return the new function that sends answers.
 
     A new client can often send a request before it can receive an answer. The middleware waits 0.1 s for the client,
     then drops the answer and warns ("client will not receive response", rmw_fastrtps_shared_cpp/rmw_response.cpp). On a

@@ -132,7 +132,7 @@ class TestBench:
         self.part(dropped.name, **dropped.inputs)
 
     def keep(self, name: str) -> bool:
-        """Reuse the first look's record of this part if the subject ended by itself in it. Return True if so.
+        """If the subject ended by itself in this part of the first look, reuse that record. Return True if reused.
 
         The record is not reused if the part's inputs say how long a function has to wait.
         """
@@ -199,7 +199,7 @@ class TestBench:
     # --- the subject ---------------------------------------------------------------------------------------
 
     def start(self, *arguments: Any, **options: Any) -> None:
-        """Start the subject once it has discovered the judge's new endpoints and lost the removed ones."""
+        """Start the subject when its participant has discovered the judge's new endpoints and lost the removed ones."""
         if (self._there or self._gone) and not self._subject.knows(there=self._there, gone=self._gone):
             self.unmet = True
         if self._announcements is not None:
@@ -228,11 +228,11 @@ class TestBench:
         return self.await_end(within)
 
     def await_end(self, within: float) -> bool:
-        """Wait until the subject has ended by itself. Return False if it has not within ``within`` seconds."""
+        """Wait until the subject has ended by itself. Return False if it is still running after ``within`` seconds."""
         return self._recorder.wait(lambda: self._subject.ended, within)
 
     def await_endpoint(self, role: str, name: str) -> bool:
-        """Wait until the subject has this endpoint and it is matched with the judge's. Return True if so.
+        """Wait until the subject has this endpoint, matched with the judge's. Return False if it does not in time.
 
         If a notebook's class has not made the endpoint in the constructor, spin its node and wait again.
         """
@@ -377,7 +377,7 @@ class TestBench:
         return self._time.run(seconds, until=until, quiet=quiet, step=step)
 
     def pass_time(self, seconds: float, role: str, name: str) -> None:
-        """Speed up the clock of a subject in real time until ``seconds`` have passed; if it refuses, wait as long."""
+        """Make ``seconds`` pass fast for a node in real time. If the node does not accept a fast clock, just wait."""
         self._time.lend(seconds, role, self._real(name))
 
     def let_wait(self, seconds: float) -> None:

@@ -1,4 +1,4 @@
-"""Queries for the subject's nodes and endpoints: all on the ROS graph that are not the judge's.
+"""Queries for the subject's nodes and endpoints, that is, for those on the ROS graph that are not the judge's.
 
 rclpy has no event for changes of the graph, so callers repeat these queries. A query takes well under a millisecond.
 """
@@ -58,7 +58,7 @@ def subject_nodes(judge: Node, keeper: str) -> list[NodeName]:
     Args:
         judge: The judge's node.
         keeper: The name of the node with which a notebook's check keeps its participant alive; empty if it has none.
-            One node with that name is ignored. A second one belongs to the subject, however it learned the name.
+            One node with this name is ignored. A second node with this name belongs to the subject.
     """
     own = judge.get_name()
     seen = judge.get_node_names_and_namespaces()
@@ -104,8 +104,8 @@ class TopicEnd:
 def topic_ends(judge: Node) -> list[TopicEnd]:
     """Return the subject's publishers and subscriptions.
 
-    The query is by topic, because if two nodes have the same name, a query by node returns only one of them. Besides,
-    an endpoint may be known before its node, because the two are announced separately.
+    The query is by topic, because if two nodes have the same name, a query by node returns only one of them. And an
+    endpoint may be discovered before its node, because DDS announces them separately.
     """
     own = judge.get_name()
     return [
@@ -195,7 +195,7 @@ hexadecimal.
 
 
 def server_endpoints(node: Node, services: Iterable[str]) -> set[Endpoint]:
-    """Return the DDS endpoints of these services, which the node serves.
+    """Return the DDS endpoints of the services that this node serves under these names.
 
     In DDS, a service consists of a reader of requests and a writer of replies (rmw_fastrtps_shared_cpp,
     namespace_prefix.cpp). A client considers the service ready when it has discovered both.
@@ -208,7 +208,7 @@ def server_endpoints(node: Node, services: Iterable[str]) -> set[Endpoint]:
 
 
 def topic_endpoints(node: Node, topics: Iterable[str]) -> set[Endpoint]:
-    """Return the endpoints of a node's publishers and subscriptions on these topics, given by full names."""
+    """Return the DDS endpoints of a node's publishers and subscriptions on these topics."""
     return _endpoints(node, [f"rt{name}" for name in topics])
 
 

@@ -27,8 +27,9 @@ class Settling:
     """Tells when a command's nodes and endpoints have not changed for a while.
 
     Args:
-        seconds: How long they must not have changed, in seconds of patience (:mod:`autograder.judge.bench.patience`).
-            On a busy machine, a program that has made its node may wait for a processor before it makes its endpoints.
+        seconds: How long the nodes and endpoints must stay the same, in seconds of patience
+            (:mod:`autograder.judge.bench.patience`). On a busy machine, a program that has made its node may wait for a
+            processor before it makes its endpoints.
     """
 
     def __init__(self, seconds: float) -> None:
@@ -36,7 +37,7 @@ class Settling:
         self._patience = Patience(seconds)
 
     def unchanged(self, interface: graph.Interface, nodes: int) -> bool:
-        """Return True if there are nodes, and the graph has not changed for this time."""
+        """Return True if there are nodes, and the graph has been the same for ``seconds``."""
         state = (nodes, interface)
         if state != self._last:
             self._last = state
@@ -118,7 +119,7 @@ class Presence:
     # --- waiting -------------------------------------------------------------------------------------------
 
     def await_endpoint(self, role: str, name: str) -> bool:
-        """Wait until the subject's endpoint is on the graph and matched with the judge's endpoint, if there is one."""
+        """Wait until the subject's endpoint is on the graph and matched, if the judge has a matching endpoint."""
         self.await_interface(
             lambda interface: name in interface.get(role, {}) or name in self._met().get(role, {})
         )
@@ -166,8 +167,8 @@ class Presence:
         """Wait until a condition on the graph holds, the subject has ended, or all its endpoints are on the graph.
 
         Returns:
-            The endpoints that the last query found. The same ones are recorded: a new query could find less, because
-            the endpoints of a program disappear when it ends.
+            The endpoints that the last query found. Exactly these are recorded, because a new query could find fewer:
+                the endpoints of a program disappear when it ends.
         """
         settled = Settling(self._settled)
         interface: graph.Interface = {}
@@ -188,7 +189,7 @@ class Presence:
         return interface
 
     def _await_appearance(self, condition: Callable[[], bool]) -> None:
-        """Wait until a condition holds, at most :data:`APPEAR`; wait again if the subject starts more processes."""
+        """Wait until a condition holds, at most :data:`APPEAR` seconds, longer if the subject starts more processes."""
         patience = Patience(APPEAR)
         # A command's runner starts the command at once. So a process that begins in the second half of the time limit
         # shows that something else, such as a build, is going on.

@@ -1,9 +1,9 @@
 """Waits until the middleware's threads have processed every message that has arrived.
 
-The judge learns of a program's end through a pipe, but of the program's messages through threads of the middleware.
-When the end is known, such a thread may have been woken by a message and still wait for a processor. A message wakes
-its thread at once (futex(7), udp(7)). So a thread that sleeps has nothing left to do, and a thread that was awake has
-processed its messages once it has slept.
+The judge learns of a program's end through a pipe, but of the program's messages through threads of the middleware. On
+a busy machine, the judge may learn of the end while such a thread, woken by a message, still waits for a processor. A
+message wakes its thread at once (futex(7), udp(7)), so a thread that sleeps has no message left. A thread that is awake
+has processed its messages when it goes to sleep.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class _Thread:
 
 
 def await_turns(patience: Patience) -> bool:
-    """Wait until each thread of the middleware that is awake has slept. Return False if the time is up before that."""
+    """Wait until each thread of the middleware that is awake has slept once. Return False if the time is up first."""
     return all(_await_turn(patience) for _ in range(TURNS))
 
 

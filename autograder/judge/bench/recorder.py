@@ -190,7 +190,7 @@ def _is_speech(event: Event) -> bool:
 
 
 def _kept(data: Any, limit: int) -> tuple[Any, int]:
-    """Return a shortened copy of an event's data, and the number of characters that it counts as.
+    """Return a shortened copy of an event's data, and the size of the copy in characters.
 
     Texts and lists are cut to a length that a verdict can use, because a subject may send gigabytes.
     """

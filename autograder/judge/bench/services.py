@@ -25,7 +25,7 @@ class RecordedServer:
     """A service that the judge offers until :meth:`close`. One answer may be held back until :meth:`release`.
 
     Attributes:
-        services: The full name of the service, in a tuple.
+        services: A tuple with the full name of the service.
     """
 
     def __init__(

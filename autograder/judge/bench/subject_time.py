@@ -63,8 +63,8 @@ class NodeClock:
     """Publishes ``/clock`` for one node of the subject, and checks whether the node keeps up.
 
     An answer from the node's parameter service proves that its executor has made a round since the request. An executor
-    takes one request of a service in each round (rclpy/executors.py, ``_take_service``). So the answers to three
-    requests that are sent together prove three rounds, in the time of one exchange of messages.
+    takes one request of a service in each round (rclpy/executors.py, ``_take_service``). So if three requests are sent
+    together, their answers prove three rounds, and take as long as one answer.
     """
 
     def __init__(self, wire: Wire, recorder: Recorder, node: NodeName) -> None:
@@ -108,7 +108,7 @@ class NodeClock:
 
         Args:
             seconds: The maximum number of simulated seconds.
-            until: Time stops passing when this function returns True.
+            until: Stop earlier if this function returns True.
 
         Returns:
             True if the node accepted the clock and answered after each step.
@@ -167,7 +167,7 @@ def answers(wire: Wire, recorder: Recorder, node: NodeName, limit: float = PATIE
 
 
 class SimulatedClock(NodeClock):
-    """A simulated clock for one node of the subject, which moves in steps.
+    """A simulated clock that moves in steps, for one node of the subject.
 
     Attributes:
         doubtful: True if the result must be confirmed in real time, because a step took too long or another node
@@ -195,7 +195,7 @@ class SimulatedClock(NodeClock):
         """Keep the clock still for a moment. Return True if the subject stays silent meanwhile.
 
         Args:
-            silent: Returns True as long as the subject has published nothing more.
+            silent: Returns True as long as the subject has published no further message.
         """
         self._recorder.wait(lambda: not silent(), STANDSTILL)
         return silent()
@@ -234,8 +234,8 @@ class SubjectTime:
         wire: The judge's participant.
         recorder: The record of the part. Each new event ends a wait.
         subject: The subject.
-        presence: The subject's nodes, and which of the judge's endpoints they are matched with.
-        opened: The clock is added to this stack, which is closed at the end of the part.
+        presence: Finds the subject's nodes on the graph.
+        opened: The stack of everything that is closed at the end of the part. The clock is added to it.
         pace: Decides whether simulated time is tried at all.
         doubt: Called if an observation must be confirmed in real time.
     """
@@ -287,7 +287,7 @@ class SubjectTime:
         return True
 
     def lend(self, seconds: float, role: str, name: str) -> None:
-        """Lend a simulated clock to the node with this endpoint for some seconds. If the node refuses, wait as long."""
+        """Lend a simulated clock to the node with this endpoint (:meth:`NodeClock.lend`). If it refuses, just wait."""
         for node in graph.owners(self._wire.node, role, name):
             if node.full not in self._deaf:
                 with contextlib.closing(NodeClock(self._wire, self._recorder, node)) as clock:
@@ -296,9 +296,9 @@ class SubjectTime:
         self._recorder.wait(lambda: self._subject.ended, seconds, wall=True)
 
     def settle(self) -> None:
-        """Wait until the subject has handled the messages it received: until each node has answered two new requests.
+        """Wait until the subject has handled the messages that it received.
 
-        Nodes that have already failed to answer in this part are skipped.
+        To be sure, each node has to answer two new requests. A node that has failed to answer in this part is skipped.
         """
         limit = ANSWER_LIMIT if self._pace is Pace.FAST else PATIENT_ANSWER
         for node in self._presence.counterparts():
@@ -342,8 +342,8 @@ class SubjectTime:
         self._open.callback(stepped.close)
         if stepped.take_over() and stepped.stands_still(self._silence()):
             return stepped
-        # The subject may switch to simulated time later and then stand still, because nobody steps the clock. So only a
-        # new run in real time can decide.
+        # The subject may still switch to simulated time later, and then its timers stand still, because the judge does
+        # not step the clock. So only a new run in real time can decide.
         self._recorder.simulated_now = None
         if self._presence.subscriptions:
             self._doubt()

@@ -50,7 +50,7 @@ class _QuietNode(Node):
 
 
 class Wire:
-    """The judge's DDS participant on one ROS domain, with one node. A new participant is discovered at once.
+    """The judge's DDS participant on one ROS domain, with one node. Each has its own ROS context and thread.
 
     Attributes:
         node: The judge's node. It has no parameter services and no log topic, so that it adds almost nothing to the
@@ -111,7 +111,7 @@ class Wire:
         return True
 
     def _take_one_of_each(self, patience: Patience) -> bool:
-        """Wait while the executor makes a round, which takes at most one message from each endpoint. False if too late.
+        """Let the executor take at most one message from each endpoint. Return False if the time is up first.
 
         An executor begins each round with its tasks and then takes what has arrived (rclpy/executors.py,
         _wait_for_ready_callbacks). So two tasks, one after the other, enclose one whole round.
@@ -129,7 +129,7 @@ class Wire:
 
     def close(self) -> None:
         """Stop spinning, join the thread and leave the domain. An unjoined thread would abort the interpreter."""
-        with self._closing:  # Another thread may be processing a subject's last messages right now.
+        with self._closing:  # Wait: another thread may be in take_in.
             self._closed = True
         self.executor.shutdown(timeout_sec=1.0)
         self._thread.join(timeout=2.0)

@@ -35,7 +35,7 @@ MAX_NAME = 100
 
 
 def converse(connection: socket.socket, order: Open | None) -> Report:
-    """Read which exercise to check, judge it, and send the notebook its verdict.
+    """Read which exercise the notebook asks for, judge it, and send the notebook the verdict.
 
     Args:
         connection: The socket to the notebook.

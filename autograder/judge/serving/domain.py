@@ -31,14 +31,14 @@ program runs (RobustExclusiveLock.hpp). Segments for ports have other names. The
 them.
 """
 AGE = 60.0
-"""The age in seconds from which an unlocked lock file counts as abandoned. The owner of a younger one may still be
-about to lock it.
+"""The age in seconds from which an unlocked lock file counts as abandoned. A younger lock file may be unlocked because
+its owner has only just created it.
 """
 
 
 @contextlib.contextmanager
 def lease(*, alone: bool = False) -> Iterator[int]:
-    """Reserve a free domain id while the block runs. It becomes free when the process ends, even by a crash.
+    """Reserve a free domain id while the block runs. If the process crashes, the id becomes free, too.
 
     Shared memory that killed programs of earlier checks left behind is removed first.
 
@@ -68,7 +68,7 @@ def remove_abandoned(folder: Path = FOLDER, age: float = AGE) -> None:
 
     Args:
         folder: The folder with the segments and their lock files.
-        age: Younger segments stay; in seconds.
+        age: The minimum age in seconds of the segments to remove.
     """
     with contextlib.suppress(OSError):
         for lock in folder.glob(_LOCKS):

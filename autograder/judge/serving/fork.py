@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _ENDINGS = (signal.SIGINT, signal.SIGTERM)
 LAST_WORDS = 2.0
-"""After the time limit of a check, the seconds of wall time that the judge has for its verdict before it is killed."""
+"""Seconds of wall time that a judge gets for its verdict after the time limit of the check. Then it is killed."""
 
 
 @dataclass(frozen=True)
@@ -58,9 +58,9 @@ class Child:
         self._received = bytearray()
         self.reading, writing = os.pipe()
         parent = os.getpid()
-        # Block signals while forking, for two reasons. Python drops an exception, and so a Ctrl-C, that a signal
-        # handler raises inside a fork hook. And a signal that arrives before the child has set its handlers would kill
-        # the child.
+        # Block signals while forking, for two reasons. If a signal handler raises an exception inside a fork hook,
+        # Python drops the exception, so a Ctrl-C would be lost. And a signal that arrives before the child has set its
+        # handlers would kill the child.
         mask = signal.pthread_sigmask(signal.SIG_BLOCK, {*_ENDINGS, SIGNAL})
         self.pid = os.fork()
         if self.pid == 0:
@@ -109,7 +109,7 @@ class Child:
         if os.WIFEXITED(status) and os.WEXITSTATUS(status) == 0 and self._received:
             return ChildResult(bytes(self._received))
         how = f"signal {os.WTERMSIG(status)}" if os.WIFSIGNALED(status) else f"code {os.WEXITSTATUS(status)}"
-        return ChildResult(None, f"the judge's process ended with {how} before it had a verdict")
+        return ChildResult(None, f"the judge's process ended with {how} before it reached a verdict")
 
     def done(self) -> bool:
         """Return True if the child has ended. A child whose time limit is over is killed first."""
@@ -133,7 +133,7 @@ class Child:
 
 
 def _leave(*_: object) -> NoReturn:
-    """Exit without a verdict, because nobody waits for it. First end everything that the subject has started."""
+    """End everything that the subject has started, then exit without a verdict."""
     end_descendants(LEFTOVERS)
     os._exit(1)
 

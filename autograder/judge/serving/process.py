@@ -53,7 +53,7 @@ connected socket for the grader's orders; the caller closes both.
 
 
 class JudgeProcess:
-    """A judge that the grader controls. Grades come only from :meth:`close`, never from what the notebook received."""
+    """A judge that the grader controls. Only verdicts that :meth:`close` returns become grades."""
 
     def __init__(self, socket_path: Path, *, seed: str, start: Start | None = None) -> None:
         """Prepare a judge. Entering the context starts it.
@@ -61,7 +61,7 @@ class JudgeProcess:
         Args:
             socket_path: The path of the Unix socket at which the student's kernel reaches the judge, at most 107 bytes
                 (unix(7)).
-            seed: The seed of all random inputs. Each exercise derives its own seed from it.
+            seed: The seed of all random inputs. The seed of each exercise is derived from it.
             start: Starts the judge; by default as a plain child process.
         """
         self.socket_path = socket_path

@@ -27,13 +27,15 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 REFUSE_LIMIT = 0.5
-"""Seconds to wait for the request of a notebook before it is refused."""
+"""Seconds to wait for a notebook's request before the notebook is refused."""
 CLOSE_LIMIT = 10.0
-"""Seconds that a check may still take after its cell has ended. Usually the kernel has ended, too, or ends soon."""
+"""Seconds that a check may still take after its cell has ended. This is short, because then the kernel usually ends,
+too.
+"""
 
 
 class JudgeServer:
-    """A judge that listens on a Unix socket. If a grader controls it, it runs each opened check only once."""
+    """A judge that listens on a Unix socket. If a grader controls it, it runs only checks that the grader opens."""
 
     def __init__(self, listener: socket.socket, *, controlled: bool) -> None:
         """Prepare to serve on a listening Unix socket; ``controlled`` says whether a grader sends orders."""

@@ -1,1 +1,1 @@
-"""Turn the evidence of a check into a verdict, and record the reference output with which evidence is compared."""
+"""Turns the evidence of a check into a verdict, and records the reference outputs to which evidence is compared."""

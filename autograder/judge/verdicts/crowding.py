@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 TOO_BUSY = (
-    "The machine is too busy: so many programs want its processors that the judge cannot tell whether yours is slow "
-    "or wrong. Close some, or wait a little, and check again."
+    "The machine is too busy: so many programs want its processors that the judge cannot tell whether your program is "
+    "slow or wrong. Close some programs, or wait a little, and check again."
 )
 SEEN_SO_FAR = "So far the judge saw this, and it may be due to the busy machine: “{}”"
 """A sentence for the student, which quotes the diagnosis of a look that may be wrong because of the load."""
@@ -75,7 +75,7 @@ class Crowding:
 
     @property
     def too_busy(self) -> bool:
-        """True if, on average, more threads wanted a processor than the judge's limits allow for."""
+        """True if, on average, so many threads wanted a processor that the judge's time limits were too short."""
         mean = sum(self._counts) / len(self._counts)
         return slowness(mean, self._processors) >= SLOWEST
 

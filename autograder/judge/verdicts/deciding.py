@@ -1,7 +1,7 @@
 """Limits the time in which the judge computes a verdict from a subject's output and messages.
 
-A student's program wrote the output, and a criterion may need almost forever to read it. The limit is in processor
-time, so it has the same effect on a busy machine as on an idle one.
+The output comes from a student's program, and some output would keep a criterion busy almost forever. The limit is in
+processor time, so it has the same effect on a busy machine as on an idle one.
 """
 
 from __future__ import annotations
@@ -50,9 +50,9 @@ def limited(seconds: float = LIMIT) -> Iterator[None]:
         seconds: Limit in seconds of processor time.
 
     Raises:
-        Undecided: The time is over, or the parent process has sent ``SIGNAL``. In its first second of processor time
-            the block ignores the signal: then the check is late for another reason, and no verdict is better than a
-            wrong one.
+        Undecided: The time is over, or the parent process has sent ``SIGNAL``. The block ignores the signal in its
+            first second of processor time: then the subject's output is not what makes the check late, and the check
+            must end without a verdict.
     """
     if threading.current_thread() is not threading.main_thread():
         yield  # only the main thread can handle signals, so elsewhere there is no limit

@@ -12,8 +12,8 @@ import socket
 from autograder.judge.bench.wire import JudgeFailed
 
 NOT_DELIVERED = (
-    "This machine delivers no more messages at the moment, since other programs fill the memory of its sockets, so the "
-    "judge cannot tell whether your node sent any. Close some, or wait a little, and check again."
+    "This machine delivers no messages at the moment, because other programs fill the memory of its sockets. So the "
+    "judge cannot tell whether your node sent any. Close some programs, or wait a little, and check again."
 )
 _DATAGRAMS, _BYTES = 16, 4096
 """The number of datagrams to send, and the bytes in each. Together they are less than half of what a socket normally

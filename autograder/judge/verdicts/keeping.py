@@ -1,7 +1,7 @@
 """Pack the evidence of a check into bytes of limited size, and unpack it unchanged.
 
 The format is JSON, compressed with gzip, with one line for each event. Evidence that is too long is cut and marked as
-cut, so that nobody derives a verdict from a part of it.
+cut, because no verdict may be derived from a part of it.
 """
 
 from __future__ import annotations
@@ -30,8 +30,7 @@ if TYPE_CHECKING:
 MAX_BYTES = 400_000
 """The maximum size of the evidence of one check, in compressed bytes."""
 MAX_RAW_BYTES = 8_000_000
-"""The maximum size in bytes before compression. Without it, endless repetition would pass, because it compresses well.
-"""
+"""The maximum size in bytes before compression. This limit is for endless repetition, which compresses well."""
 _GZIP = 31
 """The value of zlib's ``wbits`` for a gzip header with the largest window."""
 _FLOAT = "$float"

@@ -1,4 +1,4 @@
-"""Finds endpoints to which a subject gave a wrong name, so that the wrong name fails one criterion and not all."""
+"""Finds endpoints to which a subject gave a wrong name, so that a wrong name fails only one criterion."""
 
 from __future__ import annotations
 

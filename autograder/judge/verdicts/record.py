@@ -65,8 +65,8 @@ def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference
     if wrong is not None:
         return wrong
     raise NotRecordable(
-        f"{exercise.id}: the reference solution did not follow the clock, or asked to cancel at another moment in "
-        "each run: wait until the machine is less busy, and record again"
+        f"{exercise.id}: the reference solution did not follow the simulated clock, or canceled at a different time in "
+        "each run. Wait until the machine is less busy, and record again."
     )
 
 
@@ -99,7 +99,7 @@ def _interface(exercise: Exercise, subject: Subject, domain_id: int) -> dict[str
 
 
 def _programs(exercise: Exercise) -> list[tuple[str, ...]]:
-    """Return the arguments that select each of the exercise's programs; one empty tuple if it has only one subject."""
+    """Return a tuple of arguments for each program of the exercise; one empty tuple if it has only one subject."""
     runner = exercise.runner
     return [(name,) for name in runner.programs] if isinstance(runner, RunsPrograms) else [()]
 

@@ -150,7 +150,7 @@ def _began(event: Event) -> bool:
 
 
 def _without_echoes(events: Iterable[Event]) -> Iterator[Event]:
-    """Yield all events except echoes: the judge's own messages on topics to which the judge also subscribes."""
+    """Yield all events except the judge's own messages that its own subscription has received."""
     on_their_way: Counter[str] = Counter()
     for event in events:
         if event.kind in ("sent", "message"):
@@ -164,7 +164,7 @@ def _without_echoes(events: Iterable[Event]) -> Iterator[Event]:
 
 
 def _under_real_names(part: Part) -> Iterator[Event]:
-    """Yield the events, without echoes, with the names that the subject gave to topics, services and actions."""
+    """Yield the events with the names that the subject gave to topics, services and actions."""
     real = {event.name: event.data["real"] for event in part.of("misnamed")}
     for event in _without_echoes(part.events):
         yield replace(event, name=real[event.name]) if event.name in real else event
@@ -228,8 +228,8 @@ def _astray(part: Part, reference: Reference, title: str, start: float | None) -
 def _missed(part: Part, reference: Reference, title: str, start: float | None) -> Iterator[Moment]:
     """Yield the reference solution's first messages that the subject did not send, if the part has the same inputs.
 
-    Times are counted from the subject's first message, or else from its first log line, because the task asks only
-    for intervals.
+    A task asks only for intervals. So times are counted from the subject's first message or, if there is none, from the
+    first log line.
     """
     known = next(
         (one for one in reference.parts if one.name == part.name and one.inputs == part.inputs), None
@@ -290,7 +290,7 @@ def _fields(data: Mapping[str, Any]) -> str:
 
 
 def _goal(data: Mapping[str, Any]) -> str:
-    """Return the label of a goal. It names a single field, because ``goal 5`` would look like the fifth goal."""
+    """Return a goal's label, such as ``goal, order 5``: ``goal 5`` would look like the fifth goal."""
     fields = data.get("fields", {})
     name = next(iter(fields), "") if len(fields) == 1 else ""
     return f"goal, {name} {_fields(data)}" if name else f"goal {_fields(data)}"

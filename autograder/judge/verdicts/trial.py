@@ -91,7 +91,7 @@ def check(
     Raises:
         ExerciseFailed: The exercise's own code raised an exception.
         TooBusy: The machine was too busy to decide, or a student has waited for a long time on a busy machine.
-        NotDelivered: The subject did not pass, nothing proves a mistake, and this machine lost messages.
+        NotDelivered: The subject did not pass, nothing proves a mistake, and this machine may have lost messages.
     """
     with of_exercise(exercise):
         return _check(exercise, subject, reference, seed, domain_id, marks_crowded)
@@ -158,7 +158,7 @@ def _check(
 def _is_explained(
     exercise: Exercise, evidence: Evidence, verdict: Verdict, names: Mapping[str, object]
 ) -> bool:
-    """Return True if a certain mistake explains the failure. Wrong names explain only one failed criterion each."""
+    """Return True if a mistake is certain. If there are wrong names, they must also explain all failed criteria."""
     failed = sum(not criterion.passed for criterion in verdict.criteria)
     return is_certain(exercise, evidence) and not (names and failed > len(names))
 
@@ -219,7 +219,7 @@ def look(
 
 
 def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
-    """Return the verdict that follows from the evidence, with no limit on the time that this takes."""
+    """Return the verdict that follows from the evidence. The caller has to limit the time."""
     lost = {event.data["costs"]: event for part in evidence for event in part.of("misnamed")}
     criteria = tuple(
         CriterionResult(c.name, c.title, c.points, finding.passed, _cut(finding.expected), _cut(finding.seen))
