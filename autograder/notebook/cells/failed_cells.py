@@ -111,7 +111,7 @@ class FailedCells:
                 f"NameError: there is no {name} yet. {why} Fix that cell and run it, then run this one again."
             )
         first = f"NameError: there is no {name} yet. Run the cell that defines {name} first, then run this one again."
-        return f"{first} If you did, compare the two names letter by letter."
+        return f"{first} If you have run it, compare the names in both cells letter by letter."
 
 
 def _cell(info: Any) -> str:
@@ -169,7 +169,9 @@ def raise_if_stale(subject: Any) -> None:
         return
     if isinstance(subject, (str, Path)):
         if why := _cells.why_missing(_ENTRY_POINTS):
-            print(f"{why} So setup.py does not have them. Correct that cell and run it, then check again.")
+            print(
+                f"{why} So setup.py does not have its entry points. Correct that cell and run it, then check again."
+            )
         return
     for name in (getattr(subject, "__name__", ""), *sorted(_names_read(subject))):
         if why := _cells.why_missing(name):

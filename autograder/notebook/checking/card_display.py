@@ -37,7 +37,8 @@ VALIDATING = "NBGRADER_VALIDATING"
 SOON = 0.7
 """Seconds of wall time after which a running check shows its progress; also the time between two updates."""
 LONG = 30.0
-"""Seconds of wall time after which a running check also shows what the judge knows so far, and if the machine is busy.
+"""Seconds of wall time after which a running check also shows what the judge knows so far, and whether the machine is
+busy.
 """
 CROWDED = 4.0
 """The number of runnable processes per processor, over the last minute, above which a machine counts as busy."""

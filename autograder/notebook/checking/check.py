@@ -135,7 +135,7 @@ def converse(link: JudgeLink, exercise: str, subject: Any, card: CardPlace) -> V
     """
     link.say(messages.Check(exercise, kind=_kind(subject)))
     if is_live():
-        bundle.prepare()  # done here because the judge needs this time to make its node
+        bundle.prepare()  # prepare the card while the judge makes its node
     first = link.hear()
     if isinstance(first, messages.Collect):
         # A grader builds and runs workspaces and launch files itself, so only their sources are sent.
@@ -265,7 +265,7 @@ def what_to_pass(exercise: str, subject: Any, call: str = "check") -> str:
     names = getattr(notebook_shell(), "user_ns", {})
     if names.get(kind) is subject:
         return (
-            f"{kind} is an object now and not the class any more: a line of yours says {kind} = {kind}(...). Call the "
-            f"object something else there, as in node = {kind}(...), and run the cell that defines the class again."
+            f"{kind} is an object now, and not the class, because a line of yours says {kind} = {kind}(...). Give the "
+            f"object another name there, as in node = {kind}(...), and run the cell that defines the class again."
         )
     return f"{call}({exercise!r}, …) takes your class or function itself, without parentheses after it, not a {kind}"

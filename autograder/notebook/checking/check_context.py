@@ -107,7 +107,7 @@ class CheckContext:
             time.sleep(MEETING_POLL)
 
     def sees(self, there: Sequence[Endpoint], gone: Sequence[Endpoint], within: float) -> bool:
-        """Wait until this participant sees all endpoints in ``there`` and none in ``gone``. Return False if time is up.
+        """Wait until this participant sees all endpoints in ``there`` and none in ``gone``. Return False if too late.
 
         An endpoint and its node are announced separately. For an endpoint in ``there``, both must be known.
 

@@ -89,7 +89,9 @@ def send_sources(tell: Tell, subject: object) -> None:
     path, sent, trouble = "nothing", list[Source](), ""
     try:
         if not isinstance(subject, (str, Path)):
-            raise BadSources(f"check(...) takes the path of files here, not a {type(subject).__name__}")
+            raise BadSources(
+                f"check(...) takes the path of a workspace or launch file here, not a {type(subject).__name__}"
+            )
         file = Path(subject)
         if file.suffix and not file.is_dir():
             path, sent = collect_launch(file, workspace_of(file, (file.resolve().parent, Path.cwd())))

@@ -60,5 +60,5 @@ def _lines(verdicts: list[Verdict]) -> list[str]:
     if len(verdicts) > 1:
         score, possible = sum(one.score for one in verdicts), sum(one.max_score for one in verdicts)
         lines.append(f"The checks of this notebook so far: {wording.points_of(score, possible)}.")
-    lines.append(f'Its card is below the cell that says check("{last.exercise}", …).')
+    lines.append(f'The card of this check is below the cell with check("{last.exercise}", …).')
     return lines

@@ -260,14 +260,14 @@ class Spinning:
 
 
 def replace_named(name: str, keep: Collection[Node]) -> None:
-    """Stop the background with this name, if there is one, and destroy its nodes except those in ``keep``."""
+    """Stop the nodes that spin in the background under this name, and destroy them except those in ``keep``."""
     for background in running_backgrounds():
         if background.name == name:
             background.end(keep=keep)
 
 
 def running_backgrounds() -> list[Background]:
-    """Return all backgrounds, the oldest first."""
+    """Return the :class:`Background` of all nodes that spin in the background, the oldest first."""
     with _lock:
         return list(_running)
 

@@ -68,7 +68,7 @@ class CallbackFailedError(PlainlyShownError, RuntimeError):
 
 
 class CallbackErrors:
-    """Collects the errors of one background's callbacks, and shows each new one in the notebook."""
+    """Collects the errors in the callbacks of one :class:`.Background`, and shows each new error in the notebook."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -87,7 +87,7 @@ class CallbackErrors:
         if known is None:
             say(_report(seen, failure))
         elif _is_milestone(seen.count):
-            say(f"The same error has come {seen.count} times now: {_last_line(seen.error)}")
+            say(f"The same error has now happened {seen.count} times: {_last_line(seen.error)}")
 
     @property
     def all(self) -> tuple[CallbackError, ...]:

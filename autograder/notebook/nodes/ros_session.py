@@ -85,7 +85,7 @@ def _check_fields_of_imported_messages() -> None:
 
 
 def start_ros() -> RosSession:
-    """Start ROS in this kernel. If ROS already runs, change nothing. Return the domain.
+    """Start ROS in this kernel. If ROS already runs, change nothing. Return how ROS was started.
 
     The ROS domain is taken from ``ROS_DOMAIN_ID``. If this variable is not set, a free domain is chosen, reserved until
     the kernel ends, and written to the variable, so that processes started from the notebook use the same domain. ROS

@@ -49,10 +49,10 @@ _MAX_FAILED_WAITS = 10
 
 
 class CallbackBrokenOff(BaseException):
-    """Interrupts a callback that does not return although its node must stop."""
+    """Raised inside a callback that does not return when its node has to stop, to interrupt the callback."""
 
     def __str__(self) -> str:
-        return "the callback did not return when its node was told to stop; it was broken off here"
+        return "the callback did not return when its node was stopped, so it was interrupted here"
 
 
 class Ending(Enum):

@@ -62,7 +62,7 @@ def check_threads(threads: Any) -> None:
         SettingError: The number is not a whole number of at least 1.
     """
     if not isinstance(threads, int) or isinstance(threads, bool) or threads < 1:
-        raise SettingError(f"threads must be a whole number from 1 on, not {threads!r}")
+        raise SettingError(f"threads must be a whole number of at least 1, not {threads!r}")
 
 
 def _check_is_node(caller: str, thing: Any) -> None:

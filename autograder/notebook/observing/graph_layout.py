@@ -96,7 +96,7 @@ def lay_out(sizes: Mapping[str, Point], arrows: Sequence[tuple[str, str]], gap: 
 
 
 def _push_apart(places: Sequence[list[float]]) -> None:
-    """Move the boxes of a column apart, by at least one unit, because igraph does not always do so."""
+    """Move the boxes of a column at least one unit apart, because igraph does not always keep this distance."""
     last: dict[int, float] = {}
     for place in sorted(places):
         column = round(place[1])

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 PERIOD = 1.0
 """Seconds between two queries of the graph."""
 AGAIN = 10.0
-"""Seconds after which a picture with moving lines is shown again, even without a change. Its animation lasts only a
+"""Seconds after which a picture with moving lines is shown again, even without a change. The animation lasts only a
 little longer, so the lines stop soon after the kernel has ended.
 """
 _DARK = '<style>[data-jp-theme-light="false"] .ros-graph { filter: invert(0.93) hue-rotate(180deg); }</style>'

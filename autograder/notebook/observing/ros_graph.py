@@ -132,7 +132,7 @@ def _reader() -> Iterator[Node]:
 
 
 def hidden_node(name: str) -> Node:
-    """Return a new node for observing. If its name begins with an underscore, ``ros2 node list`` hides it."""
+    """Return a new node that only observes. ``ros2 node list`` hides nodes whose names begin with an underscore."""
     return rclpy.create_node(name, enable_rosout=False, start_parameter_services=False)
 
 

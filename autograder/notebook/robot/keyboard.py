@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 NAME = "keyboard"
 """The name of the node that publishes the commands. ``draw_graph`` shows it next to the robot."""
 _DISCOVERY = 1.0
-"""Time limit in seconds for discovering a robot. After that, there is none."""
+"""If no robot is discovered within this time, in seconds, no robot is running."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Scenes for the labs: the robot reports its position on a topic, or walks an arc for each number of an action."""
+"""Scenes for the labs: the robot reports its position, or walks an arc for each number in an action's feedback."""
 
 from __future__ import annotations
 

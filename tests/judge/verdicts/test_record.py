@@ -77,7 +77,7 @@ def test_no_look_follows_when_the_time_of_a_check_is_over(monkeypatch: pytest.Mo
 
 
 def test_what_was_doubtful_each_time_is_not_recorded(monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(record.NotRecordable, match="wait until the machine is less busy"):
+    with pytest.raises(record.NotRecordable, match="Wait until the machine is less busy"):
         _record(monkeypatch, _Looks(*(None,) * record.LOOKS))
 
 

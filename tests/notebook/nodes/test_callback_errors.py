@@ -38,7 +38,7 @@ def test_it_is_shown_once_on_stdout_counted_and_raised_at_the_end(
     assert printed.out.count("Traceback") == 1
     assert "Error in ticker, in the callback of its timer (every 0.005 s):" in printed.out
     assert 'raise RuntimeError("no such robot")' in printed.out
-    assert printed.out.count("The same error has come 10 times now") == 1
+    assert printed.out.count("The same error has now happened 10 times") == 1
     assert "rclpy/" not in printed.out, "only the student's own frames"
     assert "spin_threads" not in printed.out
     (error,) = raised.value.errors

@@ -126,7 +126,7 @@ def test_a_node_that_got_busy_between_spinning_and_with(nodes: Any) -> None:
 
 @pytest.mark.parametrize("threads", [0, -1, 1.5, "two", True, None])
 def test_impossible_numbers_of_threads(nodes: Any, threads: Any) -> None:
-    with pytest.raises(SettingError, match="whole number from 1 on"):
+    with pytest.raises(SettingError, match="whole number of at least 1"):
         spinning(nodes.Ticker(), threads=threads)
 
 
