@@ -122,7 +122,7 @@ ROWS = (
         r"TypeError: Node\.create_(?:publisher|subscription)\(\) got an unexpected keyword argument "
         r"'(?P<name>queue_size|latch|tcp_nodelay|buff_size|data_class|callback_args)'",
         "{name}= belongs to ROS 1, and this course uses ROS 2.",
-        "Write first the type, then the name, and the depth as a plain number: create_publisher(String, "
+        "First the type, then the name, and the depth as a plain number at the end: create_publisher(String, "
         "'chatter', 10), create_subscription(String, 'chatter', self.on_message, 10).",
     ),
     Elsewhere(

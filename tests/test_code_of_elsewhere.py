@@ -48,7 +48,7 @@ SAYS = {
     "rclpy.Rate(2)": "self.create_timer(0.5, self.tick)",
     "node.loginfo('hello')": "self.get_logger().info",
     "node.get_logger().logerr('hello')": "self.get_logger().info",
-    "node.create_publisher('chatter', String, queue_size=10)": "Write first the type, then the name, and the depth",
+    "node.create_publisher('chatter', String, queue_size=10)": "First the type, then the name, and the depth",
     "node.create_publisher(String, 'chatter', 10, latch=True)": "latch= belongs to ROS 1",
     "node.create_publisher('chatter', String, 10)": "create_publisher(String, 'chatter', 10)",
     "node.create_subscription('chatter', String, on_message, 10)": "The type String is where the name belongs",

@@ -127,7 +127,7 @@ def test_another_reference_output_is_told(file: Path) -> None:
     [
         (
             lambda c: c["seen"].update(cut="the last 9 lines are missing"),
-            "no verdict follows from a part of it",
+            "no verdict follows from it",
         ),
         (lambda c: c["seen"].update(looks=[]), "the judge saw nothing in this check"),
         (lambda c: c["seen"]["verdict"].update(exercise="lab_1_2.talkr"), "did you mean lab_1_2.talker"),
