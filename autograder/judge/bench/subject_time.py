@@ -183,8 +183,8 @@ class SimulatedClock(NodeClock):
         """Make the node follow simulated time.
 
         Returns:
-            True if the node accepted, receives the clock, and answers. This does not yet prove that its timers
-            follow; :meth:`stands_still` does.
+            True if the node accepted, receives the clock, and answers. This does not yet prove that the node's timers
+            follow the clock; :meth:`stands_still` proves it.
         """
         if not (self.follow(True) and self.is_heard()):
             return False

@@ -20,7 +20,7 @@ from autograder import code_of_elsewhere, course
 from autograder.notebook.cells.cell_output import last_student_line, notebook_shell, student_frames
 
 _ENTRY_POINTS = "entry_points"
-"""The list that a cell passes to ``package_files.add_entry_points``."""
+"""The name of the list that a cell passes to ``package_files.add_entry_points``."""
 _DEFINED = re.compile(rf"^(?:(?:class|(?:async\s+)?def)\s+(\w+)|({_ENTRY_POINTS})\s*=)", re.MULTILINE)
 """Matches definitions, also in a cell that Python cannot parse."""
 _CHECKED = r"^[^#\n]*\b(?:check|watch)\(.*\b{}\b"

@@ -50,7 +50,7 @@ class ToldCalls:
         self._looks = 0
 
     def begin_run(self) -> None:
-        """Begin to count the subject's looks for a server from zero again, for the next run."""
+        """Reset the count of reported looks for a server, before the next run."""
         self._looks = 0
 
     def __enter__(self) -> Self:

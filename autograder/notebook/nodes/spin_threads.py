@@ -44,7 +44,8 @@ _LAST_GRACE = 1.0
 """Seconds for a callback to end after it was interrupted."""
 _ATTEMPTS = 3
 _LONG_WAIT = 1.0
-"""If a service call has waited for its answer longer than these seconds when its node is stopped, it counts as hung."""
+"""When a node is stopped, a service call that has waited for its answer longer than this, in seconds, counts as hung.
+"""
 _MAX_FAILED_WAITS = 10
 
 
