@@ -114,6 +114,7 @@ def execute_all(
             scratch.path,
             jobs,
             on_start=lambda task: progress.started(task.label),
+            boxed=False,
         )
         with contextlib.closing(running):
             for done in running:

@@ -44,9 +44,12 @@ def local(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[E
     from autograder.grading.running import engine, sandboxing
 
     sandboxing.require(directory)
+    boxed = not sandboxing.switched_off(directory)
 
     def execute(tasks: Iterable[Task], on_start: Callable[[Task], None]) -> Generator[Done, None, None]:
-        return engine.execute_all(tasks, scratch.path, jobs, on_start=on_start, judge=judge or JUDGE)
+        return engine.execute_all(
+            tasks, scratch.path, jobs, on_start=on_start, judge=judge or JUDGE, boxed=boxed
+        )
 
     with HeldFolder(directory.scratch_prefix) as scratch:
         yield execute

@@ -51,6 +51,7 @@ def execute_all(
     *,
     on_start: Callable[[Task], None] = lambda _: None,
     judge: str = JUDGE,
+    boxed: bool = True,
 ) -> Generator[Done, None, None]:
     """Execute tasks in parallel, and yield results as they are ready.
 
@@ -63,11 +64,12 @@ def execute_all(
             returns.
         on_start: Called in another thread when a task begins.
         judge: The class of the judge, as ``module:class``.
+        boxed: True if the tasks are executed in boxes.
     """
     slots = workers or at_once(cores(), psutil.virtual_memory().available)
     results: queue.SimpleQueue[Done | BaseException | None] = queue.SimpleQueue()
-    with ThisMachine(scratch, slots) as machine:
-        dispatcher = Dispatcher(machine, "", judge=judge, boxed=True, tell=lambda _: None)
+    with ThisMachine(scratch, slots, boxed=boxed) as machine:
+        dispatcher = Dispatcher(machine, "", judge=judge, boxed=boxed, tell=lambda _: None)
 
         def dispatch() -> None:
             """Dispatch in a separate thread, so that no slot is empty while the caller stores a result."""

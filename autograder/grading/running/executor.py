@@ -1,8 +1,8 @@
 """Executes orders on this machine, each in a thread: in the executor process of a batch, or in a Dask worker.
 
 A thread only starts the processes of a notebook and reads checked messages from them. The kernel, its desk and the
-judge are forked from fork servers, which are started at the first order and kept. As a program, this module is the
-executor process: it exchanges lines of JSON with the dispatcher over the socket on its standard input.
+judge are forked from fork servers, which are kept from order to order. As a program, this module is the executor
+process: it exchanges lines of JSON with the dispatcher over the socket on its standard input.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class Executor:
                 running.end()
         try:
             execution = execute(
-                task, self._scratch, order.judge, self._addresses(boxed=task.boxed), running.began
+                task, self._scratch, order.judge, self.fork_servers(boxed=task.boxed), running.began
             )
             answer = msgspec.json.encode(execution)
         except Exception as error:
@@ -113,8 +113,8 @@ class Executor:
             for kept in self._fork_servers.values():
                 kept.stop()
 
-    def _addresses(self, *, boxed: bool) -> Addresses:
-        """Return the addresses of the fork servers. Start those that do not run.
+    def fork_servers(self, *, boxed: bool) -> Addresses:
+        """Return the addresses of the fork servers. Start those that do not run, without waiting for their imports.
 
         Args:
             boxed: True to include the fork server for the boxes' supervisors.
@@ -161,11 +161,15 @@ def main(arguments: list[str]) -> None:
     """Execute orders until the grader closes the connection.
 
     Args:
-        arguments: The scratch folder, and the number of notebooks to execute at the same time.
+        arguments: The scratch folder, the number of notebooks to execute at the same time, and "boxed" if they will
+            be executed in boxes.
     """
     raise_own()
     adopt_orphans()
     executor, grader = Executor(Path(arguments[0])), Lines.with_parent()
+    executor.fork_servers(
+        boxed="boxed" in arguments[2:]
+    )  # they import while the grader prepares the first order
     offer = msgspec.json.encode(Offer("", int(arguments[1]), ""))
     with contextlib.suppress(Hangup):
         grader.say_json(msgspec.json.encode(Joined(ADDRESS, ADDRESS, offer)))

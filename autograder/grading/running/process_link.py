@@ -148,12 +148,14 @@ class ThisMachine(ProcessLink):
     Args:
         scratch: The folder in which submissions run.
         slots: The number of notebooks to execute at the same time.
+        boxed: True if they will be executed in boxes.
     """
 
     _cleans_up = True
 
-    def __init__(self, scratch: Path, slots: int) -> None:
-        super().__init__("autograder.grading.running.executor", str(scratch), str(slots))
+    def __init__(self, scratch: Path, slots: int, *, boxed: bool) -> None:
+        words = [str(scratch), str(slots), *(["boxed"] if boxed else [])]
+        super().__init__("autograder.grading.running.executor", *words)
         self._scratch = scratch
 
     def _starts_again(self, reason: str) -> bool:

@@ -49,7 +49,7 @@ class FakeMachine:
         self.seen: list[tuple[str, bool, int]] = []
         """Of each execution: the student, whether it had its share of memory only, how many ran with it."""
 
-    def __call__(self, scratch: Path, slots: int) -> FakeMachine:
+    def __call__(self, scratch: Path, slots: int, **_: object) -> FakeMachine:
         self._news.put(Joined(ADDRESS, ADDRESS, msgspec.json.encode(Offer("", slots, ""))))
         return self
 
