@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import contextlib
-import io
 import json
 import os
 import sys
-import tarfile
 import tempfile
 import threading
 from pathlib import Path
@@ -22,6 +20,7 @@ from autograder.messages import workspaces as messages
 from autograder.messages.lines import Hangup, Lines
 from autograder.workspaces import packages, service, session, sources
 from autograder.workspaces.builds import colcon_in_class, own_builds
+from autograder.workspaces.builds.artefacts import Entry, Kind
 from autograder.workspaces.builds.install_folder import LIBRARY
 from autograder.workspaces.running.jobs import BuildOrder, Built, ProgramJob
 from autograder.workspaces.running.plain_jobs import PlainProgram
@@ -81,12 +80,12 @@ class FakeJobs:
         return PlainProgram(["/bin/sh", "-c", self.script], job.environment, job.sources)
 
 
-def _packed(*names: str) -> bytes:
-    file = io.BytesIO()
-    with tarfile.open(fileobj=file, mode="w") as tar:
-        for name in names:
-            tar.addfile(tarfile.TarInfo(name))
-    return file.getvalue()
+def _packed(*names: str, **links: str) -> bytes:
+    """A packed install folder with empty files, and links with their targets."""
+    files = [Entry(name.encode(), Kind.FILE) for name in names]
+    return msgspec.msgpack.encode(
+        [*files, *(Entry(a.encode(), Kind.LINK, b.encode()) for a, b in links.items())]
+    )
 
 
 class FakeJudge:
@@ -241,20 +240,12 @@ def test_no_link_that_a_build_has_made_leads_to_a_pipe_of_the_host(
 ) -> None:
     """Read as text it stays inside; followed, its second part leads to the top of the folder, and on from there."""
     os.mkfifo(tmp_path / "pipe")
-    deep, file = "/".join("d" * 17), io.BytesIO()
-    with tarfile.open(fileobj=file, mode="w") as tar:
-        for name, target in (
-            ("my_robot_pkg/share/x", ""),
-            (f"my_robot_pkg/{LIBRARY}/z.egg-info/{deep}/b", "../" * 21),
-            (
-                f"my_robot_pkg/{LIBRARY}/z.egg-info/entry_points.txt",
-                f"{deep}/b/" + "../" * 17 + f"{tmp_path}/pipe"[1:],
-            ),
-        ):
-            link = tarfile.TarInfo(name)
-            link.type, link.linkname = (tarfile.SYMTYPE if target else tarfile.REGTYPE), target
-            tar.addfile(link)
-    jobs.built = Built(0, b"", file.getvalue())
+    deep, info = "/".join("d" * 17), f"my_robot_pkg/{LIBRARY}/z.egg-info"
+    links = {
+        f"{info}/{deep}/b": "../" * 21,
+        f"{info}/entry_points.txt": f"{deep}/b/" + "../" * 17 + f"{tmp_path}/pipe"[1:],
+    }
+    jobs.built = Built(0, b"", _packed("my_robot_pkg/share/x", **links))
     judge = FakeJudge(sockets)
     judge.check(lab)
     told = reports(judge.run())[-1]

@@ -1,39 +1,39 @@
-"""Packs the files that a build made, and unpacks them safely: only as regular files and folders.
+"""The result of a build, accepted only as data: regular files and folders, nothing else.
 
-A build runs a student's code, so its archive may contain anything. A link in the archive (such as `libx.so`, which
-leads to `libx.so.1`) is replaced by a copy of its target, so that no later reader of the folder follows a link.
+Outside a box, files that were made in a box must be nothing but bytes. So the box packs its install folder as a list of
+typed entries, and every entry is checked before it is written here. A link (a library has one, from its name to the
+name with its version) becomes a copy of its target, so that no later reader of the folder follows a link.
+
+In a box, this module is a program that prints the packed folder: ``python -m autograder.workspaces.builds.artefacts
+FOLDER``.
 """
 
 from __future__ import annotations
 
 import errno
-import io
 import os
 import shutil
-import tarfile
+import stat
+import sys
+from enum import StrEnum
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING
+
+import msgspec
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
 MAX_FILES = 5_000
 MAX_BYTES = 64_000_000
 BLOCK = 4_096
-"""The number of bytes that is added for each file and folder, so that thousands of empty files also reach the limit."""
+"""Bytes that each file and folder counts in addition to its content, so that thousands of empty ones count, too."""
 MAX_NAME = 240
 """The maximum length of one part of a path, in bytes."""
 MAX_DEPTH = 24
 """The maximum number of parts of a path."""
 MAX_LINKS = 8
-"""The maximum number of links to follow, one after the other, until a file is reached."""
-MAX_PAX = 2_000
-"""The maximum size in bytes of a pax header of a tar archive; a header with a long path has some hundred bytes.
-
-The limit is needed because Python searches the header in quadratic time: a few megabytes of digits would take hours.
-"""
-
-
+"""The maximum number of links in a chain."""
 _OF_THIS_MACHINE = (
     errno.ENOSPC,
     errno.EDQUOT,
@@ -43,88 +43,112 @@ _OF_THIS_MACHINE = (
     errno.EIO,
     errno.EROFS,
 )
-"""Error numbers (errno) of faults of this machine, such as a full disk, for which the archive is not to blame."""
+"""Errors of this machine that no build can cause: a full disk, an exhausted quota, too many open files."""
 
 
 class BadArtefacts(ValueError):
-    """The archive is invalid, or contains something that no build of a workspace makes."""
+    """The packed folder is invalid, or contains something that no build of a workspace makes."""
 
 
-class _ShortHeaders(tarfile.TarInfo):
-    """An entry of a tar file, read with a limit on the size of its headers."""
+class Kind(StrEnum):
+    """What a path of an install folder is."""
 
-    @classmethod
-    def frombuf(cls, buf: bytes | bytearray, encoding: str, errors: str) -> Self:
-        found = super().frombuf(buf, encoding, errors)
-        is_pax = found.type in (tarfile.XHDTYPE, tarfile.XGLTYPE, tarfile.SOLARIS_XHDTYPE)
-        if is_pax and not 0 <= found.size <= MAX_PAX:
-            raise BadArtefacts(
-                f"the archive has a header of more than {MAX_PAX} bytes, or one of a negative size"
-            )
-        return found
+    FILE = "file"
+    PROGRAM = "program"
+    FOLDER = "folder"
+    LINK = "link"
+    OTHER = "other"
+
+
+class Entry(msgspec.Struct, frozen=True, array_like=True):
+    """One file, folder or link.
+
+    Attributes:
+        path: The path inside the install folder, as the system has it.
+        kind: What it is. A program is a file that its owner may execute.
+        data: The content of a file, or the target of a link.
+    """
+
+    path: bytes
+    kind: Kind
+    data: bytes = b""
 
 
 def pack(install: Path) -> bytes:
-    """Return an install folder as a tar archive; empty if the folder is missing or too large."""
-    file, size = io.BytesIO(), 0
-
-    def bounded(member: tarfile.TarInfo) -> tarfile.TarInfo:
-        nonlocal size
-        size += member.size
-        if size > MAX_BYTES:
-            raise BadArtefacts("the result of the build is too large to be packed")
-        return member
-
+    """Return an install folder as a list of :class:`Entry`, in MessagePack; empty if it is missing or too large."""
+    entries, size = [], 0
     try:
-        with tarfile.open(fileobj=file, mode="w") as tar:
-            tar.add(install, arcname=".", filter=bounded)
-    except (OSError, RecursionError, BadArtefacts):
+        for path in _below(install):
+            entries.append(_entry(path, install))
+            size += len(entries[-1].data)
+            if size > MAX_BYTES:
+                return b""
+    except (OSError, RecursionError):
         return b""
-    return file.getvalue()
+    return msgspec.msgpack.encode(entries)
 
 
-def unpack(archive: bytes, folder: Path, most: int = MAX_BYTES) -> None:
-    """Unpack the archive of an install folder into a new folder.
+def _below(folder: Path) -> Iterator[Path]:
+    for entry in sorted(os.scandir(folder), key=lambda entry: entry.name):
+        path = Path(entry.path)
+        yield path
+        if entry.is_dir(follow_symlinks=False):
+            yield from _below(path)
+
+
+def _entry(path: Path, install: Path) -> Entry:
+    name, mode = os.fsencode(path.relative_to(install)), path.lstat().st_mode
+    if stat.S_ISDIR(mode):
+        return Entry(name, Kind.FOLDER)
+    if stat.S_ISLNK(mode):
+        return Entry(name, Kind.LINK, os.fsencode(path.readlink()))
+    if not stat.S_ISREG(mode):
+        return Entry(name, Kind.OTHER)
+    return Entry(name, Kind.PROGRAM if mode & stat.S_IXUSR else Kind.FILE, path.read_bytes())
+
+
+def unpack(packed: bytes, folder: Path, most: int = MAX_BYTES) -> None:
+    """Write the packed install folder into a new folder.
 
     Args:
-        archive: A tar file. It may contain anything, because the code that was built could have written it.
+        packed: A list of :class:`Entry`. It may contain anything, because the code that was built could have written
+            it.
         folder: The folder to create. It must not exist yet.
         most: The maximum size in bytes of all files and folders together.
 
     Raises:
-        BadArtefacts: The archive has entries that lead out of the folder, links to anything but its own files, devices,
-            or too many files or bytes. Files written before the error stay.
+        BadArtefacts: There are entries that lead out of the folder, links to anything but its own files, devices, or
+            too many files or bytes. Files written before the error stay.
         OSError, MemoryError: The disk, memory or open files of this machine are used up, which is not the build's
             fault.
     """
-    if not archive:
+    if not packed:
         raise BadArtefacts("the result of the build could not be packed")
     folder.mkdir(mode=0o755)
-    number = size = 0
-    made: set[PurePosixPath] = set()
-    links: dict[PurePosixPath, PurePosixPath] = {}
     try:
-        with tarfile.open(fileobj=io.BytesIO(archive), mode="r:", tarinfo=_ShortHeaders) as tar:
-            for member in tar:
-                number += 1
-                size += max(member.size, 0)
-                place = PurePosixPath(*_parts(member.name))
-                made.update((place, *place.parents))
-                check_room(size + len(made) * BLOCK, most, number)
-                if member.issym():
-                    links[place] = _target(member)
-                else:
-                    _take(tar, member, folder)
-        for link in links:
-            size += _copy(link, links, folder)
-            check_room(size + len(made) * BLOCK, most, number)
-    except (tarfile.TarError, OSError, ValueError, RecursionError, MemoryError, OverflowError) as error:
-        if (
-            isinstance(error, (BadArtefacts, MemoryError))
-            or getattr(error, "errno", None) in _OF_THIS_MACHINE
-        ):
+        _write(msgspec.msgpack.decode(packed, type=list[Entry]), folder, most)
+    except (msgspec.MsgspecError, OSError) as error:
+        if getattr(error, "errno", None) in _OF_THIS_MACHINE:
             raise
         raise BadArtefacts(f"the result of the build cannot be read: {error}") from error
+
+
+def _write(entries: list[Entry], folder: Path, most: int) -> None:
+    size = 0
+    made: set[PurePosixPath] = set()
+    links: dict[PurePosixPath, PurePosixPath] = {}
+    for number, entry in enumerate(entries, 1):
+        place = _place(entry.path)
+        size += 0 if entry.kind is Kind.LINK else len(entry.data)
+        made.update((place, *place.parents))
+        check_room(size + len(made) * BLOCK, most, number)
+        if entry.kind is Kind.LINK:
+            links[place] = _target(place, entry)
+        else:
+            _take(entry, folder / place)
+    for link in links:
+        size += _copy(link, links, folder)
+        check_room(size + len(made) * BLOCK, most, len(entries))
 
 
 def check_room(size: int, most: int, number: int = 0) -> None:
@@ -144,44 +168,43 @@ def check_room(size: int, most: int, number: int = 0) -> None:
         )
 
 
-def _take(tar: tarfile.TarFile, member: tarfile.TarInfo, folder: Path) -> None:
-    place = folder.joinpath(*_parts(member.name))
-    if member.isdir():
+def _take(entry: Entry, place: Path) -> None:
+    if entry.kind is Kind.FOLDER:
         place.mkdir(parents=True, exist_ok=True)
         return
     if os.path.lexists(place):
-        raise BadArtefacts(f"{member.name!r} is there twice")
+        raise BadArtefacts(f"{os.fsdecode(entry.path)!r:.80} is there twice")
+    if entry.kind is Kind.OTHER:
+        raise BadArtefacts(f"{os.fsdecode(entry.path)!r:.80} is neither a file nor a folder")
     place.parent.mkdir(parents=True, exist_ok=True)
-    if member.type not in (tarfile.REGTYPE, tarfile.AREGTYPE):
-        raise BadArtefacts(f"{member.name!r} is neither a file nor a folder")
-    source = tar.extractfile(member)
-    assert source is not None
-    place.write_bytes(source.read())
-    place.chmod(0o755 if member.mode & 0o100 else 0o644)
+    place.write_bytes(entry.data)
+    place.chmod(0o755 if entry.kind is Kind.PROGRAM else 0o644)
 
 
-def _parts(name: str) -> tuple[str, ...]:
-    path = PurePosixPath(name)
+def _place(name: bytes) -> PurePosixPath:
+    """Return the path of an entry inside the install folder."""
+    path = PurePosixPath(os.fsdecode(name))
     parts = path.parts
     if (
-        path.is_absolute()
-        or "\0" in name
+        not parts
+        or path.is_absolute()
+        or b"\0" in name
         or ".." in parts
         or len(parts) > MAX_DEPTH
-        or any(len(os.fsencode(p)) > MAX_NAME for p in parts)
+        or any(len(os.fsencode(part)) > MAX_NAME for part in parts)
     ):
-        raise BadArtefacts(f"{name[:80]!r} is not a path inside the install folder")
-    return parts
+        raise BadArtefacts(f"{os.fsdecode(name)!r:.80} is not a path inside the install folder")
+    return path
 
 
-def _target(member: tarfile.TarInfo) -> PurePosixPath:
+def _target(place: PurePosixPath, link: Entry) -> PurePosixPath:
     """Return the target of a link as a path inside the install folder.
 
     The target is computed from text alone. This is correct because the folder on the disk never contains links.
     """
-    inside = os.path.normpath(PurePosixPath(*_parts(member.name)).parent / member.linkname)
+    inside = os.path.normpath(place.parent / os.fsdecode(link.data))
     if inside.startswith(("..", "/")) or "\0" in inside:
-        raise BadArtefacts(f"{member.name!r} leads out of the install folder")
+        raise BadArtefacts(f"{os.fsdecode(link.path)!r:.80} leads out of the install folder")
     return PurePosixPath(inside)
 
 
@@ -198,3 +221,7 @@ def _copy(link: PurePosixPath, links: Mapping[PurePosixPath, PurePosixPath], fol
     place.parent.mkdir(parents=True, exist_ok=True)
     shutil.copy(source, place)
     return place.stat().st_size
+
+
+if __name__ == "__main__":
+    sys.stdout.buffer.write(pack(Path(sys.argv[1])))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import shlex
 import shutil
 import time
 from dataclasses import replace
@@ -17,9 +16,10 @@ from autograder.boxes.limits import BUILD_LIMITS, Ended, Limits
 from autograder.boxes.mounts import HOME, WORK
 from autograder.boxes.sandbox import Bind, Enclosure
 from autograder.temporary_folders import fresh_folder
-from autograder.workspaces.builds import cache
+from autograder.workspaces.builds import artefacts, cache
 from autograder.workspaces.program_plans import ros2
 from autograder.workspaces.running.jobs import BUILD_SECONDS, MAX_ARCHIVE_BYTES, MAX_LOG_BYTES, Built
+from environment.python_child import python_child
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -120,9 +120,8 @@ class BoxedJobs:
                 if returncode != 0:
                     needs_room = limits.beside and guard.reason() is Ended.OUT_OF_MEMORY
                     return Built(returncode, output, late=BUILD_SECONDS if late else 0.0), needs_room
-                packing = f"exec tar -cf - -C {shlex.quote(str(place / 'install'))} . 2>/dev/null"
                 packed = enclosure.run(
-                    ["/bin/sh", "-c", packing],
+                    python_child("-m", artefacts.__name__, str(place / "install")).command,
                     limit=PACK_SECONDS,
                     cwd=Path("/"),
                     output_bytes=MAX_ARCHIVE_BYTES,

@@ -68,8 +68,9 @@ class Built:
     Attributes:
         returncode: colcon's exit code; None if the build was stopped, at a limit or because it was no longer needed.
         output: The output of the build.
-        archive: The install folder as a tar file, made when no process of the build was alive any more. It is empty
-            if it could not be packed, and None if the build failed or was made in the cache entry itself.
+        archive: The install folder, packed (:func:`autograder.workspaces.builds.artefacts.pack`) when no process of
+            the build was alive any more. It is empty if it could not be packed, and None if the build failed or was
+            made in the cache entry itself.
         late: The number of seconds after which the build was stopped as too long, perhaps because the machine was
             busy; else 0.
     """

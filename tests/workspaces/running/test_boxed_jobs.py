@@ -230,7 +230,7 @@ def test_an_install_folder_may_hold_nothing_but_files(builds: GradedBuilds, work
         workspace,
         "\nimport os\npipe = '/home/student/ros2_ws/install/pipe'\nos.path.exists(pipe) or os.mkfifo(pipe)\n",
     )
-    assert (build.ok, build.line) == (False, "'./pipe' is neither a file nor a folder")
+    assert (build.ok, build.line) == (False, "'pipe' is neither a file nor a folder")
 
 
 def test_whoever_makes_interfaces_does_not_find_those_of_the_course(
