@@ -1,1 +1,1 @@
-"""Commands for authors: new exercises, their answers, recordings and messages; and executing all notebooks."""
+"""Commands for authors: make, try and record exercises, execute all notebooks, build the website."""

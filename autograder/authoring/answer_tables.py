@@ -1,11 +1,11 @@
-"""The tables of the bank. They describe each answer, and contain the answers that are stored as edits of a right one.
+"""The tables of the bank. They describe each answer, and contain each answer that is stored as an edit.
 
 A folder of answers contains two folders, ``right`` and ``wrong``, with programs and tables (``*.toml``). An entry of
 a table is named after the file of its answer::
 
-    "while_loop_sleep.py" = { why = "a loop with time.sleep keeps the rate" }      a file of the folder
+    "while_loop_sleep.py" = { why = "a loop with time.sleep keeps the rate" }      the file exists
 
-    ["counter_start.py"]                                  no file: what it changes in a file of the folder right
+    ["counter_start.py"]                                  no file: the entry changes a file of the folder right
     diagnosis = "counter_start"
     why = "the first text has the number 1"
     base = "usual.py"
@@ -15,7 +15,7 @@ a table is named after the file of its answer::
     +        self.i = 1
     '''
 
-    ["not_logged.workspace"]                              what it changes in the workspace of all answers of the folder
+    ["not_logged.workspace"]                              no file: the entry changes the folder's workspace
     diagnosis = "not_logged"
     why = "nothing in the log"
     change = '''
@@ -23,8 +23,8 @@ a table is named after the file of its answer::
     -        self.get_logger().info("Hello, ROS 2! From SimpleNode.")
     '''
 
-``shows`` is the first line of the resulting program (by default ``Wrong: `` and ``why``). ``change`` has the format
-of ``autograder.authoring.edits``.
+``shows`` is the first line of the resulting program. By default, this line is ``Wrong: `` followed by ``why``. The
+module ``autograder.authoring.edits`` describes the format of ``change``.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 KINDS = ("right", "wrong")
 WORKSPACE = ".workspace"
-"""The suffix of the name of an answer that is a whole workspace."""
+"""An answer whose name ends with this suffix is a workspace, not a single program."""
 
 
 class BadTable(ValueError):
@@ -57,15 +57,16 @@ class AnswerEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes:
         why: Why the answer is right, or how its mistake shows.
-        diagnosis: The key in ``docs/mistakes.md`` that helps most; empty for a right answer.
-        also: Other keys that are accepted.
+        diagnosis: The diagnosis that the judge should give, as a key in ``docs/mistakes.md``; empty for a right
+            answer.
+        also: Other diagnoses that are accepted, as keys.
         says: Words that the answer's card must contain, if the key alone does not identify the mistake.
-        command: The command that runs the answer, if it differs from the folder's.
-        base: The right answer that this one changes, a file in the folder ``right``. Empty for a whole program, and
-            for a workspace, which changes the folder's workspace.
-        shows: The first line of the program, without the characters that make it a docstring or comment. Empty for
-            ``Wrong: `` (or ``Right: ``) and ``why``.
-        change: The changes to the base.
+        command: The command that runs the answer; empty for the usual command of the folder.
+        base: For a program that is stored as an edit, the file in the folder ``right`` that the edit changes. Empty
+            for a program in a file of its own, and for a workspace: its base is the workspace in ``settings.toml``.
+        shows: The first line of the program, without the characters that make it a docstring or comment. If empty,
+            this line is ``Wrong: `` or ``Right: ``, followed by ``why``.
+        change: The edit of the base; empty for a program in a file of its own.
     """
 
     why: str
@@ -83,7 +84,7 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes:
         command: The command that runs an answer, with placeholders ``{file}`` and ``{workspace}``.
-        base: The workspace that answers named ``*.workspace`` change, as a path relative to the folder.
+        base: The workspace that every answer named ``*.workspace`` edits, as a path relative to the folder.
     """
 
     command: tuple[str, ...] = ("python3", "{file}")
@@ -106,11 +107,11 @@ class Listed:
 
     @property
     def base(self) -> Path | None:
-        """Return the right answer that this one changes; None for an answer stored whole, and for a workspace."""
+        """The path of the right answer that this answer edits; None if it is stored in a file, or is a workspace."""
         return self.file.parents[1] / KINDS[0] / self.entry.base if self.entry.base else None
 
     def text(self) -> str:
-        """Return the text of the program; for a workspace, the text with its changes.
+        """Return the text of the program. For a workspace, return its first line and its edit.
 
         Raises:
             BadTable: The edit does not fit the base.
@@ -127,16 +128,15 @@ class Listed:
             like = difflib.get_close_matches(self.base.name, there, 1)
             hint = f"did you mean {like[0]}?" if like else f"there are {', '.join(there)}"
             raise self._bad(
-                f"its base {self.base.name} is not a file of {self.base.parent}; {hint}"
+                f"{self.base.parent} has no file {self.base.name}, which is the entry's base; {hint}"
             ) from None
         try:
             changed = edited(text, self.entry.change)
         except CannotEdit as error:
-            raise self._bad(f"its change does not fit {self.base.name}: {error}") from None
+            raise self._bad(f"the edit does not fit {self.base.name}: {error}") from None
         if not text.startswith(("#", '"""')):
-            return (
-                f"# {shows}\n{changed}"  # the base begins with code, which is kept below the new first line
-            )
+            # The base begins with code, not with a comment to replace.
+            return f"# {shows}\n{changed}"
         _, _, rest = changed.partition("\n")
         return (f"# {shows}" if text.startswith("#") else f'"""{shows}"""') + f"\n{rest}"
 
@@ -145,7 +145,7 @@ class Listed:
 
 
 def usual_first_line(kind: str, why: str) -> str:
-    """Return the first line of a program whose entry does not give one."""
+    """Return the default first line of a program: ``Wrong: `` or ``Right: ``, followed by the reason."""
     return f"{kind.capitalize()}: {why}"
 
 
@@ -156,7 +156,7 @@ def listed(folder: Path) -> Iterator[Listed]:
         folder: A folder that contains the folders ``right`` and ``wrong``.
 
     Raises:
-        BadTable: A table cannot be read, or an entry is incomplete, has too much, or is listed twice.
+        BadTable: A table cannot be read; or an entry is listed twice, lacks a needed field, or has a forbidden one.
     """
     names = set()
     for kind in KINDS:
@@ -169,19 +169,19 @@ def listed(folder: Path) -> Iterator[Listed]:
 
 
 def _look_at(answer: Listed, *, twice: bool) -> None:
-    """Raise an error if an entry is invalid."""
     file, entry = answer.file, answer.entry
     workspace = file.suffix == WORKSPACE
     needed = (entry.change,) if workspace else (entry.base, entry.change)
     given = (entry.base, entry.shows, entry.change)
     troubles = {
-        "it is listed twice": twice,
+        "the answer is listed twice": twice,
         "a wrong answer needs a diagnosis": file.parent.name != KINDS[0] and not entry.diagnosis,
-        "a right answer has no diagnosis": file.parent.name == KINDS[0]
+        "a right answer must not have a diagnosis": file.parent.name == KINDS[0]
         and bool(entry.diagnosis or entry.also),
-        "an edit needs base and change": any(given) and not all(needed),
-        "a workspace needs no base: it changes that of the folder": workspace and bool(entry.base),
-        f"it is an edit, and {file} is there as well: remove one of them": any(given) and file.exists(),
+        "an edit needs the fields base and change": any(given) and not all(needed),
+        "remove base: settings.toml sets the base of all workspaces": workspace and bool(entry.base),
+        f"the entry is an edit, but the file {file} exists: remove one of the two": any(given)
+        and file.exists(),
         f"the file {file} does not exist, and the entry is not an edit": not any(given) and not file.exists(),
     }
     for what, holds in troubles.items():

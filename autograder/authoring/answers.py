@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 _PROGRAMS = {name: str(installed_program(name)) for name in ("python3", "ros2")}
-"""The programs of this Python environment that run the answers."""
+"""The paths of the programs that run the answers, in the Python environment of this process."""
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,9 @@ class Answer:
         exercise: The exercise's id.
         file: The program; if it is stored as an edit, the path that the program would have.
         command: The command that runs the program, with placeholders ``{file}`` and ``{workspace}``.
-        diagnoses: The accepted keys of mistakes; empty for a right answer.
-        base: The workspace that the answer changes; None for a program.
-        edit: The answer's entry in a table, if the program is stored there.
+        diagnoses: The accepted diagnoses, as keys of mistakes; empty for a right answer.
+        base: The workspace that the answer edits; None for a program.
+        edit: The answer's entry in a table, if the answer is stored there as an edit.
         says: Words that the diagnosis has to contain.
     """
 
@@ -57,7 +57,7 @@ class Answer:
 
     @property
     def text(self) -> str:
-        """Return the text of the program; for a workspace, the text with its changes.
+        """The text of the program. For a workspace, its first line and its edit.
 
         Raises:
             BadTable: The edit does not fit the base.
@@ -65,7 +65,7 @@ class Answer:
         return self.edit.text() if self.edit else self.file.read_text(encoding="utf-8")
 
     def unpack(self, folder: Path) -> list[str]:
-        """Write those files of the answer that cannot run in their stored form into a folder.
+        """Write the program or workspace into a folder if the answer is stored as an edit.
 
         Args:
             folder: An empty folder.
@@ -85,7 +85,7 @@ class Answer:
         return [part.format(file=file, workspace=workspace) for part in self.command]
 
     def checked(self, seed: str) -> tuple[Verdict, Checked | None]:
-        """Judge the answer in this process. Return the verdict and, unless the judge itself failed, the evidence."""
+        """Judge the answer in this process. Return the verdict, and the evidence unless the judge itself failed."""
         from autograder.judge.subjects.command import checked_here
 
         exercise = exercises.get(self.exercise)
@@ -97,7 +97,7 @@ class Answer:
         return to_json(self.checked(seed)[0])
 
     def objection(self, verdict: Verdict) -> str:
-        """Return in words how a verdict differs from the expected one; empty if it does not."""
+        """Return in words how a verdict differs from the expected one; empty if it is as expected."""
         if verdict.state == State.NOT_CHECKED:
             why = verdict.diagnosis.text if verdict.diagnosis and not verdict.detail else verdict.detail
             return f"could not be checked: {why}"
@@ -112,11 +112,11 @@ class Answer:
         if key not in self.diagnoses:
             return f"diagnosed as {key}, not as {' or '.join(self.diagnoses)} ({missed})"
         words = f"{verdict.diagnosis.text} {verdict.diagnosis.next_step}" if verdict.diagnosis else ""
-        return "" if self.says in words else f"its card does not say “{self.says}”, but: {words}"
+        return "" if self.says in words else f"the card does not contain “{self.says}”, but: {words}"
 
 
 def answers(of: Sequence[str] = ()) -> Iterator[Answer]:
-    """Yield the answers to exercises, in the order of their tables.
+    """Yield the bank's answers to exercises, in the order of the tables.
 
     Args:
         of: Ids of exercises; all exercises if empty.
@@ -152,5 +152,5 @@ def folder_of(exercise_id: str) -> Path:
 
 
 def longest_first(wanted: Iterable[Answer]) -> list[Answer]:
-    """Return answers with the slow ones first, so that none of them runs alone at the end."""
+    """Sort answers so that slow ones start first. Otherwise a slow answer could run alone at the end."""
     return sorted(wanted, key=lambda answer: -exercises.get(answer.exercise).limit)

@@ -1,6 +1,6 @@
-"""Texts that are stored as their changes to another text, the base.
+"""Applies an edit to a base, for example to a right answer, and returns the new text or writes a new workspace.
 
-The format is that of a diff without line numbers::
+An edit looks like a diff without line numbers::
 
          self.publisher = self.create_publisher(String, 'chatter', 10)
     -        self.i = 0
@@ -9,17 +9,17 @@ The format is that of a diff without line numbers::
     -        self.i += 1
     +        self.i += 2
 
-A line that begins with ``-`` is removed from the base, and one with ``+`` is added. A line that begins with a space
-is in the base and stays; it identifies the place if the other lines occur several times. An empty line is an empty
-line that stays. ``...`` separates two places.
+A line that begins with ``-`` is removed from the base. A line that begins with ``+`` is added. A line that begins
+with a space stays unchanged: it shows where the edit belongs, in case the removed lines occur several times. An
+empty line stands for an unchanged empty line. ``...`` separates two places of the base.
 
-A workspace is stored as its changes to a base that all answers to an exercise share. The first line says what the
-answer shows. After it come sections:
+The edit of a workspace begins with a line that says what the answer shows. Sections follow, each for a file or
+folder:
 
     === src/my_robot_pkg/setup.py              the whole file, up to the next section
-    === src/my_robot_pkg/setup.py (changed)    what is changed in it, in the form above
+    === src/my_robot_pkg/setup.py (changed)    the edit of the file, as above
     === src/my_robot_pkg/setup.py (removed)
-    === src/my_robot_pkg -> src/robot          a folder or file under another name
+    === src/my_robot_pkg -> src/robot          a renamed folder or file
 """
 
 from __future__ import annotations
@@ -29,22 +29,23 @@ import shutil
 from pathlib import Path
 
 SEPARATOR = "..."
-"""The line that separates two places of a change."""
+"""The line in an edit that separates two places of the base."""
 
 
 class CannotEdit(ValueError):
-    """A change does not fit its base. The message names the lines, and says what to do."""
+    """An edit does not fit its base. The message names the lines of the edit, and says what to do."""
 
 
 def edited(base: str, change: str) -> str:
-    """Return a text after applying a change.
+    """Return the base after applying an edit.
 
     Args:
         base: The original text.
-        change: The changes, in the format above.
+        change: The edit, in the format that this module describes.
 
     Raises:
-        CannotEdit: Lines of the change occur in the base not at all, or several times; or the text is not a change.
+        CannotEdit: A place of the edit occurs in the base not at all, or several times; or ``change`` is not an
+            edit.
     """
     lines = base.split("\n")
     places = []
@@ -62,28 +63,29 @@ def edited(base: str, change: str) -> str:
 
 
 def _sides(block: str) -> tuple[list[str], list[str]]:
-    """Return the lines of one place, before and after the change."""
+    """Return the lines of one place of the base, before and after the edit."""
     old, new = [], []
     for line in block.split("\n"):
         if line[:1] not in ("", " ", "-", "+"):
-            raise CannotEdit(f"{line!r} begins with neither -, + nor a space")
+            raise CannotEdit(f"{line!r} does not begin with -, + or a space")
         if line[:1] != "+":
             old.append(line[1:])
         if line[:1] != "-":
             new.append(line[1:])
     if old == new:
         raise CannotEdit(
-            f"nothing is changed by {block!r}: put - in front of what goes and + in front of what comes"
+            f"{block!r} changes nothing: put - in front of each line to remove and + in front of each line to add"
         )
     if not old:
         raise CannotEdit(
-            f"the place of {block!r} is unknown: add the unchanged line before or after it, with a space in front"
+            f"{block!r} does not say where to add its lines: also write the unchanged line before or after them, "
+            "with a space in front"
         )
     return old, new
 
 
 def _place(lines: list[str], old: list[str]) -> int:
-    """Return the index of the only place at which these lines occur."""
+    """Return the index of the only place in ``lines`` at which the lines ``old`` occur."""
     found = [at for at in range(len(lines) - len(old) + 1) if lines[at : at + len(old)] == old]
     if len(found) == 1:
         return found[0]
@@ -91,25 +93,25 @@ def _place(lines: list[str], old: list[str]) -> int:
     if found:
         numbers = ", ".join(str(at + 1) for at in found)
         raise CannotEdit(
-            f"{text!r} stands in the base {len(found)} times (lines {numbers}): add the line before or after it, "
+            f"{text!r} occurs in the base {len(found)} times (lines {numbers}): add the line before or after it, "
             "with a space in front"
         )
     missing = next((line for line in old if line not in lines), None)
     if missing is not None:
         raise CannotEdit(f"{missing!r} is not a line of the base")
-    raise CannotEdit(f"each line of {text!r} is in the base, but they do not follow each other there")
+    raise CannotEdit(f"each line of {text!r} is in the base, but there the lines do not follow each other")
 
 
 _SECTION = re.compile(r"^=== (?P<path>\S+)(?: -> (?P<to>\S+)| \((?P<what>changed|removed)\))?$")
 
 
 def unpack(answer: str, base: Path, folder: Path) -> None:
-    """Write the workspace that an answer describes.
+    """Copy the base workspace into a new folder and apply an answer's edit there.
 
     Args:
-        answer: The text of the answer.
-        base: The workspace that it changes.
-        folder: The folder of the new workspace.
+        answer: The first line and the edit, in the format that this module describes.
+        base: The workspace to copy.
+        folder: The new folder.
 
     Raises:
         CannotEdit: A section of the answer does not fit the base.

@@ -1,4 +1,4 @@
-"""``autograder execute``: runs every notebook of the course, and reports what is wrong."""
+"""``autograder execute``: runs every notebook of the course, and reports each problem."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from autograder.execution.cells import Cell, Execution
 
 REPORTS = "execution-reports"
-"""The folder of the course for pages about notebooks that failed."""
+"""The name of the folder, in the course's top folder, for pages about failed notebooks."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ def execute_command(
     reports: Path | None = None,
     console: Console | None = None,
 ) -> int:
-    """Execute the notebooks of a course and print what is wrong.
+    """Execute the notebooks of a course and print the problems of each.
 
     Args:
         root: The top folder of the course, which contains ``solutions`` and ``chapters``.
@@ -104,7 +104,7 @@ def execute_all(
     """
     of_task = {id(item.task): item for item in planned}
     results: dict[int, Executed] = {}
-    # The prefix is short, because the paths of Unix sockets begin with it.
+    # The prefix is short, because Unix sockets are made in this folder, and their paths may not be long.
     with (
         HeldFolder("autograder-run-") as scratch,
         BatchProgress(console, len(planned), doing="executing", did="executed") as progress,
@@ -128,7 +128,7 @@ def execute_all(
 
 
 def _longest_first(planned: Sequence[Planned]) -> list[Planned]:
-    """Return the notebooks with the longest first, so that no core waits long for the last one."""
+    """Sort notebooks so that long ones start first. Otherwise one core could be busy long after the others."""
     return sorted(planned, key=lambda item: -sum(_weight(cell) for cell in item.task.cells))
 
 

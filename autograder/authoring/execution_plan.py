@@ -1,4 +1,4 @@
-"""The notebooks to execute, with their expected results: full marks for a master, no error for a chapter."""
+"""The notebooks to execute, and their expected results: full marks for a master, no points for a student's notebook."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 LIMITS = Limits(cell_seconds=180.0, notebook_seconds=900.0)
-"""Limits that are more generous than for a submission, because a cell may build a workspace, and several notebooks
-share the machine.
+"""Time limits of a cell and a notebook, longer than for a submission: a cell may build a workspace, and several
+notebooks share the machine.
 """
 
 
@@ -30,9 +30,9 @@ class NotebookKind(StrEnum):
     """The kind of a notebook, which decides its expected result."""
 
     MASTER = "master"
-    """The notebook has to earn full marks."""
+    """The master, which contains the solutions, has to earn full marks."""
     CHAPTER = "chapter"
-    """The notebook has to earn no marks and raise no error."""
+    """The notebook as students get it has to earn no points and raise no error."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Planned:
     """A notebook that will be executed.
 
     Attributes:
-        kind: Whether it is a master or a chapter.
+        kind: Whether the notebook is a master, or as students get it.
         notebook: The notebook in format 4.5, without outputs.
         task: The same notebook as a task for execution.
     """
@@ -56,20 +56,20 @@ class Planned:
 
 
 class NothingToExecuteError(LookupError):
-    """The notebook does not exist, or a chapter has not been built or is damaged. The message says what to do."""
+    """A notebook does not exist, was not built, or is damaged. The message says what to do."""
 
 
 def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
-    """Return the notebooks of a course, each as a master and as a chapter.
+    """Return two notebooks for each lab of a course: the master, and the one that students get.
 
-    For a chapter, the file that students open is executed, not a newly built one.
+    The second is the file in ``chapters`` that students open, not a newly built notebook.
 
     Args:
         root: The top folder of the course, which contains ``solutions`` and ``chapters``.
         only: Names such as ``"lab_1_2"``; all notebooks if empty.
 
     Raises:
-        NothingToExecuteError: A name does not exist, or a chapter is missing or not a notebook.
+        NothingToExecuteError: A name does not exist; or a file in ``chapters`` is missing or not a notebook.
         autograder.masters.master_errors.MasterError: A master cannot be used.
     """
     found = masters(root)
@@ -88,7 +88,7 @@ def plan(root: Path, only: Sequence[str] = ()) -> list[Planned]:
             raise NothingToExecuteError(f"{chapter.relative_to(root)} does not exist: run `{COMMAND} build`.")
         try:
             built = nbformat_nodes.read(chapter.read_text(encoding="utf-8"))
-        except Exception as error:  # nbformat passes on any error of the libraries that it uses
+        except Exception as error:  # nbformat may raise any error of the libraries that it uses
             raise NothingToExecuteError(
                 f"{chapter.relative_to(root)} is not a notebook: run `{COMMAND} build`."
             ) from error
@@ -106,7 +106,7 @@ def _planned(kind: NotebookKind, name: str, notebook: NotebookNode) -> Planned:
         seed=f"execute {name}",
         course="",
         limits=LIMITS,
-        # No isolation: these are the course's own notebooks, on the author's machine.
+        # No sandbox is needed, because these are the course's own notebooks.
         boxed=False,
     )
     return Planned(kind, notebook, task)

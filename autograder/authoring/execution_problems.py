@@ -1,4 +1,4 @@
-"""The problems of an executed notebook, and a page that shows these problems above all cells."""
+"""Finds the problems of an executed notebook, and writes a page that shows the notebook with its problems."""
 
 from __future__ import annotations
 
@@ -26,9 +26,8 @@ if TYPE_CHECKING:
 
 TRACEBACK = "Traceback (most recent call last)"
 _SHELL = re.compile(r"^\s*(%%|!)", re.MULTILINE)
-"""Matches a cell that runs programs.
-
-The standard error of programs such as colcon and ros2 may contain more than errors.
+"""Matches a cell that runs programs. Such a cell may write to standard error without any problem: colcon and ros2
+do.
 """
 
 _HOW_IT_ENDED = {
@@ -74,7 +73,8 @@ def _of_cell(kind: NotebookKind, cell: Cell, run: CellRun, verdict: Verdict | No
     elif any(TRACEBACK in _text(output) for output in run.outputs):
         yield "shows a stray traceback"
     if not _SHELL.search(cell.source) and any(output.get("name") == "stderr" for output in run.outputs):
-        # nbgrader gives no points to a graded cell that writes to stderr, and students take such output for an error.
+        # nbgrader gives no points to a graded cell that writes to stderr, and students think that such output is an
+        # error.
         yield "writes to standard error"
     if cell.check is not None and run.ended is Ended.DONE:
         yield from _of_check(kind, cell.check.points, run, verdict)
@@ -86,7 +86,7 @@ def _of_check(kind: NotebookKind, points: float, run: CellRun, verdict: Verdict 
         yield "has no verdict"
         return
     if verdict.score != wanted:
-        yield f"earns {verdict.score:g} of {points:g} points, and should earn {wanted:g}{_why(verdict)}"
+        yield f"earns {verdict.score:g} of {points:g} points instead of {wanted:g}{_why(verdict)}"
     values = [
         output["data"].get("text/plain")
         for output in run.outputs
@@ -129,7 +129,7 @@ def write_report(folder: Path, planned: Planned, execution: Execution, found: Se
     """
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{planned.task.notebook}-{planned.kind}.html"
-    # By default, nbconvert also searches the current folder for templates, and runs what it finds there.
+    # By default, nbconvert also searches the current folder for templates, which may run code.
     exporter = HTMLExporter(extra_template_basedirs=[])
     exporter.anchor_link_text = ""
     page, _ = exporter.from_notebook_node(

@@ -1,4 +1,4 @@
-"""The house rules for every master of the course, including new ones."""
+"""Checks a master against the house rules for masters, such as a limit on the words before the first task."""
 
 from __future__ import annotations
 
@@ -17,21 +17,22 @@ if TYPE_CHECKING:
     from autograder.masters.source import NamedCell
 
 HEAD, BEFORE_A_TASK, SOLUTION = 150, 400, 8
-"""Maximum numbers: words before the first code cell, words before the first task, and lines that a student writes in
-one cell.
+"""Three limits of a master: the words before the first code cell, the words before the first task, and the lines that
+a student writes in one cell.
 """
 _MINUTES = re.compile(r"^\*\d+ minutes · for ", re.MULTILINE)
 _PICTURE = re.compile(r"!\[[^\]]*\]\([^)]*\)")
-"""Matches a figure, whose alternative text does not count, because it is for readers who cannot see the figure."""
+"""Matches a figure. The figure's alternative text does not count as words of the master, because it replaces the
+figure for readers who cannot see it.
+"""
 PREDICTION = "**Before you run it:**"
-"""The beginning of a question that students answer before they run a demonstration."""
+"""The words with which a question begins that students answer before they run a demonstration."""
 _PARAGRAPH = re.compile(r"\n\s*\n|\n(?=\d+\. |- )")
 _CODE = re.compile(r"`[^`]*`|\]\([^)]*\)")
-"""Matches code and links, because parentheses in them do not count."""
+"""Matches code and the address of a link. Parentheses there do not count as parentheses of a text."""
 _PARENTHESIS = re.compile(r"\([^)]*\)")
 _FOLD = re.compile(r"<details>.*?</details>", re.DOTALL)
-"""Matches folded text. It does not count as text before the first task, because students open it only if they want to.
-"""
+"""Matches folded text. Its words do not count, because students open it only if they want to."""
 _SELF_CHECK = re.compile(
     r"\*\*Check yourself:\*\*.*?\n\n(?P<choices>(?:<details>.*?</details>\s*)*)", re.DOTALL
 )
@@ -39,7 +40,7 @@ _REPLY = re.compile(r"</summary>\s*(\S)")
 
 
 def broken_rules(master: Path) -> list[str]:
-    """Return the house rules that a master breaks, each with its name and what to write.
+    """Return a line for each house rule that a master breaks. A line contains the rule's name and what to write.
 
     Args:
         master: The path of a file ``lab.md``.
@@ -50,7 +51,7 @@ def broken_rules(master: Path) -> list[str]:
     copying = {cell.line for cell in parse_master(master) if COPY.search(cell.source)}
     cells = [
         one for one in named_cells(master) if one.cell.line
-    ]  # without the last cell, which links to the neighboring labs
+    ]  # the last cell, which links to the neighboring labs, is left out
     return [
         *_beginning(cells),
         *_solutions(one for one in cells if one.cell.line not in copying),
@@ -65,12 +66,15 @@ def broken_rules(master: Path) -> list[str]:
 def _beginning(cells: list[NamedCell]) -> Iterator[str]:
     head = list(itertools.takewhile(_is_text, cells))
     if _words(head) > HEAD:
-        yield f"begin by doing: {_words(head)} words before the first cell of code, and {HEAD} are enough"
+        yield f"begin by doing: {_words(head)} words before the first code cell; at most {HEAD} are allowed"
     if not head or not _MINUTES.search(head[0].cell.source):
-        yield "minutes: the first text says how long it takes and for whom, such as *20 minutes · for beginners*"
+        yield (
+            "minutes: write in the first text how long the lab takes and for whom, such as *20 minutes · for "
+            "beginners*"
+        )
     task = next((place for place, one in enumerate(cells) if one.cell.kind is CellRole.SOLUTION), 0)
     if (before := _words(filter(_is_text, cells[:task]))) > BEFORE_A_TASK:
-        yield f"the first task comes soon: {before} words before it, and {BEFORE_A_TASK} are enough"
+        yield f"the first task comes soon: {before} words before the first task; at most {BEFORE_A_TASK} are allowed"
 
 
 def _solutions(cells: Iterable[NamedCell]) -> Iterator[str]:
@@ -79,8 +83,8 @@ def _solutions(cells: Iterable[NamedCell]) -> Iterator[str]:
             written = sum(bool(line.strip()) for line in find_region(one.cell.source).answer)
             if not 1 <= written <= SOLUTION:
                 yield (
-                    f"a task is small: the cell {one.name} (line {one.cell.line}) asks for {written} lines, and "
-                    f"{SOLUTION} are enough; give the rest, or make two cells of it"
+                    f"a task is small: the cell {one.name} (line {one.cell.line}) asks for {written} lines; at most "
+                    f"{SOLUTION} are allowed: give students the other lines, or split the cell in two"
                 )
 
 
@@ -88,7 +92,7 @@ def _introductions(cells: list[NamedCell]) -> Iterator[str]:
     for before, one in itertools.pairwise(cells):
         said = [line for line in before.cell.source.splitlines() if line.strip() and not line.startswith("#")]
         if not _is_text(one) and not (_is_text(before) and said):
-            yield f"a cell of code needs text that introduces it: there is none before line {one.cell.line}"
+            yield f"a code cell is introduced: write a sentence before the code cell at line {one.cell.line}"
 
 
 def _predictions(cells: list[NamedCell]) -> Iterator[str]:
@@ -97,8 +101,8 @@ def _predictions(cells: list[NamedCell]) -> Iterator[str]:
         shows = one.cell.source.startswith("%%bash") or "print(" in one.cell.source
         if one.cell.kind is CellRole.DEMONSTRATION and shows and PREDICTION not in before.cell.source:
             yield (
-                f"a demonstration is predicted: write '{PREDICTION} …?' before line {one.cell.line}, and the answer "
-                "in a <details>"
+                f"a demonstration is predicted: write a question '{PREDICTION} …?' before line {one.cell.line}, "
+                "and its answer in a <details>"
             )
 
 
@@ -108,8 +112,8 @@ def _tasks(cells: list[NamedCell]) -> Iterator[str]:
             for paragraph in _PARAGRAPH.split(_FOLD.sub("", before.cell.source)):
                 if len(_PARENTHESIS.findall(_CODE.sub("", paragraph))) > 1:
                     yield (
-                        f"a task is plain: more than one parenthesis in a paragraph before line {one.cell.line}; write "
-                        "sentences, or a list 'What counts' below the task"
+                        f"a task is plain: a paragraph before line {one.cell.line} has more than one "
+                        "parenthesis: write sentences, or a list 'What counts' below the task"
                     )
 
 
@@ -119,14 +123,14 @@ def _self_checks(texts: Iterable[NamedCell]) -> Iterator[str]:
             replies = _REPLY.findall(found["choices"])
             if set(replies) != {"✓", "✗"} or replies.count("✓") > 1:
                 yield (
-                    f"a self-check is answered by a click: the one in the text at line {one.cell.line} needs a "
-                    "<details> for each choice, whose reply begins with ✓ for one choice, and with ✗ for the others"
+                    f"a self-check is answered by a click: in the text at line {one.cell.line}, write a <details> for "
+                    "each choice. Its reply begins with ✓ for the right choice and with ✗ for the others"
                 )
 
 
 def _end(cells: list[NamedCell]) -> Iterator[str]:
     if not cells or "https://docs.ros.org/en/jazzy/" not in cells[-1].cell.source:
-        yield "closing link: the last text says where to read on, in https://docs.ros.org/en/jazzy/"
+        yield "closing link: add a link for further reading to the last text, such as https://docs.ros.org/en/jazzy/..."
 
 
 def _is_text(one: NamedCell) -> bool:

@@ -1,4 +1,4 @@
-"""Judges many answers in parallel, each in a fork of a process that has made the common imports."""
+"""Judges many answers in parallel, each in a fork of a process that has already imported the slow modules."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ LIMIT = 240.0
 
 
 class Judgeable(Protocol):
-    """Something that can be judged: an answer, or a mutated answer."""
+    """Something that can be judged: an answer of the bank, or an automatically changed copy (a mutant)."""
 
     @property
     def name(self) -> str:
-        """The name for use in messages."""
+        """The name that messages use."""
         ...
 
     def verdict(self, seed: str) -> bytes:
-        """Judge the answer in this process, which was forked for that. Return the verdict as JSON."""
+        """Judge the answer in the process that calls this method. Return the verdict as JSON."""
         ...
 
 
@@ -35,10 +35,10 @@ T = TypeVar("T", bound=Judgeable)
 
 @dataclass(frozen=True)
 class Turn(Generic[T]):
-    """A single judging of one subject.
+    """An order to judge an answer once, with one seed.
 
     Attributes:
-        subject: The answer, or mutated answer, to judge.
+        subject: The answer to judge.
         seed: The seed of the random inputs.
     """
 
@@ -53,15 +53,15 @@ def judge_all(
     done: Callable[[Turn[T], Verdict], None],
     failed: Callable[[Turn[T], str], None],
 ) -> None:
-    """Judge subjects, in this order, in forks of this process. The process must have no other threads.
+    """Judge answers, in the given order, in forks of this process. The process must have no other threads.
 
-    A subject that got no verdict is judged once more at the end, alone.
+    If an answer gets no verdict, it is judged again at the end, when no other answer is judged.
 
     Args:
-        turns: The subjects to judge, each with a seed.
-        jobs: The number of subjects to judge at the same time.
+        turns: The answers to judge, each with a seed.
+        jobs: The number of answers to judge at the same time.
         done: Called with each verdict when it is ready.
-        failed: Called with each subject that got no verdict, and the reason.
+        failed: Called with each answer that got no verdict, even alone, and the reason.
     """
     again: list[Turn[T]] = []
     for turn, verdict, _ in _judged(turns, jobs):
@@ -77,7 +77,7 @@ def judge_all(
 
 
 def _judged(turns: Iterable[Turn[T]], jobs: int) -> Iterator[tuple[Turn[T], Verdict | None, str]]:
-    """Judge several subjects at the same time. Yield each with its verdict, or with the reason why there is none."""
+    """Judge several answers at the same time. Yield each with its verdict, or with the reason for having none."""
     from autograder.judge.serving.fork import Child
 
     waiting = deque(turns)
@@ -95,13 +95,13 @@ def _judged(turns: Iterable[Turn[T]], jobs: int) -> Iterator[tuple[Turn[T], Verd
 
 
 def _verdict_in_child(turn: Turn[T]) -> bytes:
-    # The standard output of the parent is used for verdicts, so the child must not print there.
+    # The parent writes verdicts to its standard output, so the child must not write there.
     private_stdout().close()
     return turn.subject.verdict(turn.seed)
 
 
 def warm_up() -> None:
-    """Import in this process what every fork needs."""
+    """Import the modules that every fork needs, so that no fork has to import them."""
     from autograder.judge import settings
 
     settings.prepare_judge()

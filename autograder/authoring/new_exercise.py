@@ -1,4 +1,4 @@
-"""``new-exercise``: makes the folder of a working lab, copied from a recipe's example, for its author to change."""
+"""``new-exercise``: copies the example of a recipe into a new lab folder, which its author then changes."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 EXAMPLES = Path(__file__).with_name("examples")
-"""A course of examples. Each of its labs is the example for the recipe with the same name."""
+"""The folder of a course that contains only examples. Each lab is the example for the recipe with the same name."""
 LEFT_OUT = shutil.ignore_patterns("__pycache__", f"*{exercises.REFERENCE}")
-"""Files that are not copied, because they will be made again."""
+"""Ignores files that must not be copied from an example, because commands generate them."""
 
 DEFINITIONS = {"msg": 0, "srv": 1, "action": 2}
-"""The kinds of interfaces, each with the number of lines ``---`` that separate its parts."""
+"""For each kind of interface, the number of lines ``---`` that separate the parts of a definition."""
 
 _INTERFACE = re.compile(
     r"(?P<package>[a-z][a-z0-9_]*)/(?P<kind>msg|srv|action)/(?P<name>[A-Z][A-Za-z0-9]*)", re.ASCII
@@ -60,8 +60,8 @@ def new_exercise(
         The new files, in order.
 
     Raises:
-        CannotMake: The id, the chapter or an interface is not a valid name, the lab already exists, or the recipe
-            does not exist.
+        CannotMake: The id, the chapter or an interface is not valid; the lab already exists; or the recipe does not
+            exist.
     """
     lab = _lab_of(exercise_id)
     example = _example(recipe)
@@ -81,15 +81,15 @@ def new_exercise(
 
 
 def _described(chapter: Path) -> list[Path]:
-    """Make the folder of a new chapter, with a description that its author has to complete. Return the new files."""
+    """Make the folder of a new chapter with an incomplete ``chapter.toml``. Return the new files."""
     if chapter.is_dir():
         return []
     chapter.mkdir(parents=True)
     description = chapter / course.CHAPTER
     title = chapter.name.lstrip("0123456789_-").replace("_", " ").capitalize() or chapter.name
     description.write_text(
-        f'title = "{title}"\n\n# The folders of the labs, in the order in which they are read. One that is not named '
-        "here comes last.\nlabs = []\n",
+        f'title = "{title}"\n\n# The folders of the labs, in the order in which they are read. A lab that is '
+        "not listed here comes last.\nlabs = []\n",
         encoding="utf-8",
     )
     return [description]
@@ -108,19 +108,19 @@ def _interface_of(root: Path, chapter: Path, interface: str) -> re.Match[str]:
         for one in course.chapters(root)
         if package in one.interfaces and one.folder != chapter
     ]
-    # Once the package is built, it can also be imported, so this is checked first.
+    # A package of this chapter can be imported once it is built, so look for its folder before trying an import.
     own = (chapter / course.INTERFACES / package).is_dir()
     taken = not own and (_is_a_module(package) or package in _listed(chapter))
     if elsewhere or taken:
         place = f"chapter {elsewhere[0]}" if elsewhere else "installation of ROS or of the course"
         raise CannotMake(
-            f"the {place} has a package {package} already: use the types that it has, or choose another name"
+            f"the {place} already has a package {package}: use its types, or choose another name for your package"
         )
     return found
 
 
 def _listed(chapter: Path) -> list[str]:
-    """Return the interface packages that a chapter's description lists."""
+    """Return the interface packages that a chapter's ``chapter.toml`` lists."""
     description = chapter / course.CHAPTER
     if not description.is_file():
         return []
@@ -128,7 +128,7 @@ def _listed(chapter: Path) -> list[str]:
 
 
 def _defined(chapter: Path, interface: re.Match[str]) -> list[Path]:
-    """Write a definition of an interface type, for its author to complete, and list its package in the chapter."""
+    """Write a sample definition of an interface type, and list its package in ``chapter.toml``."""
     package, kind, name = interface.group("package", "kind", "name")
     definition = chapter / course.INTERFACES / package / kind / f"{name}.{kind}"
     if definition.exists():
@@ -173,7 +173,8 @@ def _chapter(root: Path, name: str | None) -> Path:
     if name is None:
         if not there:
             raise CannotMake(
-                f"{root / course.SOLUTIONS} has no chapter yet: name a new one, --chapter 01_my_chapter"
+                f"{root / course.SOLUTIONS} has no chapter yet: add a name for a new one, such as --chapter "
+                "01_my_chapter"
             )
         return there[-1].folder
     if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_-]*", name, re.ASCII):
@@ -184,17 +185,17 @@ def _chapter(root: Path, name: str | None) -> Path:
 
 
 def _refuse_what_is_there(root: Path, folder: Path) -> None:
-    # Two labs with one name would be the same Python package, and the same notebook for nbgrader.
+    # Two labs with the same name would be one Python package, and one notebook for nbgrader.
     others = [lab for chapter in course.chapters(root) for lab in chapter.labs if lab.name == folder.name]
     for lab in (folder, *others):
         if lab.exists():
             raise CannotMake(
-                f"{lab.relative_to(root)} is there already: choose another name, or add the exercise to that lab by "
-                "hand (a file of its own beside lab.md, and a check cell in it)"
+                f"{lab.relative_to(root)} already exists: choose another name, or add the exercise to that lab by "
+                "hand (a new Python file next to lab.md, and a check cell in lab.md)"
             )
     if _is_a_module(folder.name):
         raise CannotMake(
-            f"Python has a module {folder.name} already, which would hide the lab: choose another name for the lab"
+            f"Python already has a module {folder.name}, which would hide the lab: choose another name for the lab"
         )
 
 
@@ -203,7 +204,7 @@ def _is_a_module(name: str) -> bool:
 
 
 def _rename(made: Path, old: str, new: str) -> None:
-    """Replace the old id by the new one in a copied lab: in its texts and in the names of its files."""
+    """Replace the example's id by the new id in the copied lab, in the contents and names of its files."""
     old_name, new_name = old.partition(".")[2], new.partition(".")[2]
     for path in sorted(made.rglob("*")):
         if path.is_file():

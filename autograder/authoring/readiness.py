@@ -1,4 +1,4 @@
-"""Tells an author early which faults of a new exercise the tests and linters would report."""
+"""Lists for an author the faults of an exercise that the project's tests and linters would report."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from autograder.kit.model import Exercise
 
 ENOUGH = {"right": 5, "wrong": 8}
-"""The minimum number of answers, right and wrong, to judge an exercise by. With fewer the exercise works, but its
-fairness is unknown.
+"""The minimum numbers of right and wrong answers that an exercise needs in the bank. An exercise with fewer answers
+works, but nobody knows whether its judge is fair.
 """
 MISTAKES = "docs/mistakes.md"
-"""The page on which students read about each diagnosis. The key of a diagnosis is a heading there."""
+"""The page that explains each diagnosis to students. The key of the diagnosis is the heading of its paragraph."""
 _PACKAGE = Path(course.__file__).resolve().parents[1]
 _SETTINGS = _PACKAGE / "pyproject.toml"
 
@@ -36,7 +36,7 @@ def still_to_do(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
 
     Args:
         exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
-        listed: All answers to the exercise.
+        listed: All answers to the exercise in the bank.
 
     Raises:
         autograder.exercises.UnknownExercise: The exercise does not exist.
@@ -56,12 +56,15 @@ def _of_answers(listed: Sequence[Answer]) -> Iterator[str]:
     few = [f"{there[kind]} {kind}" for kind, enough in ENOUGH.items() if there[kind] < enough]
     if few:
         yield (
-            f"answers: so far there are {' and '.join(few)} ones; a new exercise should have {ENOUGH['right']} right "
+            f"answers: the bank has only {' and '.join(few)} ones; a new exercise should have {ENOUGH['right']} right "
             f"ones in different styles and {ENOUGH['wrong']} wrong ones before students meet it"
         )
     for answer in listed:
         if answer.diagnoses and not answer.file.name.startswith(answer.diagnoses[0]):
-            yield f"answers: {answer.short_name} is named after its diagnosis, {answer.diagnoses[0]}"
+            yield (
+                f"answers: rename {answer.short_name}, so that its name begins with its diagnosis, "
+                f"{answer.diagnoses[0]}"
+            )
 
 
 def _of_mistakes(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
@@ -74,32 +77,34 @@ def _of_mistakes(exercise_id: str, listed: Sequence[Answer]) -> Iterator[str]:
 
 
 def _of_text(exercise_id: str, master: Path) -> Iterator[str]:
-    """Yield a line for each fault in the exercise's table of sentences and the criteria that judge them."""
+    """Yield a line for each fault in ``Exercise.text``, which maps sentences of the lab to criteria."""
     exercise = exercises.get(exercise_id)
     if not exercise.text:
-        yield "text: the exercise does not say which words of the task are behind which criterion"
+        yield "text: map words of the task to the criteria that judge them (the argument text of the exercise)"
         return
     said = "\n".join(one.cell.source for one in named_cells(master))
     yield from (f"text: {fault}" for fault in faults_of_text(exercise, said))
 
 
 def faults_of_text(exercise: Exercise, said: str) -> Iterator[str]:
-    """Yield the faults of ``Exercise.text``: sentences that are not in the lab; criteria that are missing or unknown.
+    """Yield the faults of ``Exercise.text``: sentences that the lab does not contain, missing or unknown criteria.
 
     Args:
         exercise: The exercise.
-        said: All texts of the lab.
+        said: All texts of the lab, in one string.
     """
     whole = " ".join(said.split())
     yield from (f"{course.LAB} does not say “{words}”" for words in exercise.text if words not in whole)
     judged = {name for names in exercise.text.values() for name in names.split()}
     known = {criterion.name for criterion in exercise.criteria}
-    yield from (f"no words of the task are behind the criterion {name}" for name in sorted(known - judged))
+    yield from (
+        f"the criterion {name} is not mapped to any words of the task" for name in sorted(known - judged)
+    )
     yield from (f"the criterion {name} does not exist" for name in sorted(judged - known))
 
 
 def _of_linters(lab: Path) -> Iterator[str]:
-    """Yield what ruff and mypy report about the files of a lab, or that a linter is not installed."""
+    """Yield what ruff and mypy report about a lab's files, and a line for each linter that is not installed."""
     if not _SETTINGS.is_file():
         return
     programs = {name: installed_program(name) for name in ("ruff", "mypy")}

@@ -1,7 +1,6 @@
-"""Records reference outputs. Each master's own solution is watched by the same judge as any answer.
+"""Records reference outputs: a judge watches the solution in each master, as it watches a student's answer.
 
-A reference output is made only from the master, so the expected behavior is never written down a second time. After a
-change of the solution, record again, and the grader expects the new behavior.
+The grader expects of students what the recorded solution did. After a change of a solution, record it again.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 RUN_LIMIT = 600.0
-"""Time limit in seconds of wall time for running one reference solution, which may build a workspace twice."""
+"""Time limit in seconds for running one reference solution, which may build a workspace twice."""
 
 _CALL = """
 
@@ -38,7 +37,7 @@ check({exercise!r}, {subject})
 
 
 class CannotRecord(RuntimeError):
-    """A reference solution could not be run, or fails its own criteria."""
+    """A reference solution could not be run, or does not meet the criteria of its exercise."""
 
 
 def record(wanted: Sequence[str], *, only_check: bool, tell: Callable[[str], object]) -> list[str]:
@@ -46,14 +45,14 @@ def record(wanted: Sequence[str], *, only_check: bool, tell: Callable[[str], obj
 
     Args:
         wanted: Exercise ids; all exercises if empty.
-        only_check: True to write nothing.
+        only_check: True to compare with the stored reference outputs, and to store nothing.
         tell: Called with one line for each exercise.
 
     Returns:
-        The ids of exercises whose reference output is new, or differs from the stored one.
+        The ids of the exercises whose new reference output differs from the stored one, or has no stored one.
 
     Raises:
-        CannotRecord: A solution could not be recorded. Those before it are stored.
+        CannotRecord: A solution could not be recorded. The reference outputs recorded before it are stored.
     """
     changed = []
     for exercise_id in wanted or exercises.all_ids():
@@ -72,10 +71,10 @@ def record(wanted: Sequence[str], *, only_check: bool, tell: Callable[[str], obj
 
 
 def recording(exercise_id: str) -> str:
-    """Return the reference output of an exercise, as text.
+    """Record the reference output of an exercise, and return it as text.
 
     Raises:
-        CannotRecord: No master has the exercise, or the solution fails the exercise's own criteria.
+        CannotRecord: No master has the exercise, or the solution does not meet the criteria of the exercise.
     """
     try:
         exercise = exercises.get(exercise_id)
@@ -84,7 +83,7 @@ def recording(exercise_id: str) -> str:
     report, output = _judged(exercise.id, program(exercise.id), record=True)
     if report.reference is None or report.verdict is None:
         raise CannotRecord(
-            f"{exercise.id}: {report.trouble or 'the solution never asked to be checked'}\n{output}".strip()
+            f"{exercise.id}: {report.trouble or 'the solution never called check'}\n{output}".strip()
         )
     if not report.verdict.passed:
         missed = "; ".join(f"{c.title} ({c.seen})" for c in report.verdict.criteria if not c.passed)
@@ -95,7 +94,7 @@ def recording(exercise_id: str) -> str:
 
 
 def unsolved(exercise_id: str) -> Verdict | None:
-    """Return the verdict on the notebook as students get it; None if the notebook ends before its check.
+    """Judge the notebook without a solution, as students get it. Return None if it ends before its check.
 
     Raises:
         CannotRecord: No master checks the exercise, or its master cannot be used.
@@ -117,13 +116,11 @@ def _judged(exercise_id: str, text: str, *, record: bool) -> tuple[Report, str]:
         except JudgeDied as error:
             raise CannotRecord(f"{exercise_id}: {error}") from error
         except subprocess.TimeoutExpired as error:
-            raise CannotRecord(
-                f"{exercise_id}: the notebook was not seen to its end in {RUN_LIMIT:g} s"
-            ) from error
+            raise CannotRecord(f"{exercise_id}: the notebook did not end within {RUN_LIMIT:g} s") from error
 
 
 def program(exercise_id: str, *, solved: bool = True) -> str:
-    """Return the program to record: the master's solution, or what students get in its place; then its check.
+    """Return a notebook's code up to and including the check of an exercise, as one program.
 
     Raises:
         CannotRecord: No master checks the exercise, or its master cannot be used.
@@ -139,10 +136,10 @@ def program(exercise_id: str, *, solved: bool = True) -> str:
 
 
 def _run(file: Path, socket: Path) -> str:
-    """Run the program. Return its output, which is shown if it fails."""
+    """Run the program. Return its output for an error message."""
     done = subprocess.run(
         [str(installed_program("python3")), str(file)],
-        # A solution that consists of files writes them into its working folder.
+        # A solution that consists of files writes these files into the current folder.
         cwd=file.parent,
         env=os.environ | {SOCKET_VARIABLE: str(socket)},
         stdin=subprocess.DEVNULL,

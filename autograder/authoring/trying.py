@@ -26,7 +26,9 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 JOBS = 4
-"""The maximum number of answers that are judged at the same time. Each judgment mostly waits."""
+"""The default number of answers to judge at the same time. It may exceed the number of cores, because judging mostly
+waits.
+"""
 
 
 class NothingToTry(LookupError):
@@ -60,7 +62,7 @@ class Transcribed(Answer):
     folder: Path = Path()
 
     def verdict(self, seed: str) -> bytes:
-        """Judge the answer in this process. Return the verdict as JSON."""
+        """Judge the answer in this process, and write its evidence into the file. Return the verdict as JSON."""
         verdict, found = self.checked(seed)
         if found is not None:
             file = self.folder / f"{self.short_name}.txt"
@@ -91,15 +93,15 @@ def try_exercise(
 ) -> bool:
     """Try an exercise: check its recording, judge the answers, and print surprises and what is left to do.
 
-    Edits that do not fit are reported before anything runs. The notebook as students get it must earn no points. If
-    there is no reference output, it is recorded. If the stored one differs from what the solution does now, it is
-    left unchanged and no answer is judged, because what is expected of students must not change unasked.
+    Edits that do not fit are reported before anything runs. If the exercise has no reference output yet, it is
+    recorded. If the stored reference output differs from a new recording, the author has to decide: it stays
+    unchanged, and no answer is judged. The notebook as students get it must earn no points.
 
     Args:
         exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
-        only: Parts of names. If given, only answers whose name contains one of them are judged; all if empty.
+        only: Parts of names. Only answers whose name contains one of these parts are judged; all answers if empty.
         jobs: The number of answers to judge at the same time.
-        repeat: The number of times that each answer is judged, each time with different random inputs.
+        repeat: The number of times to judge each answer, each time with different random inputs.
         transcript: The folder for the evidence of each answer from its last run; None to write none.
         tell: Called with each line or card for the author.
 
@@ -140,7 +142,7 @@ def chosen(exercise_id: str, only: Sequence[str] = ()) -> list[Answer]:
 
     Args:
         exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
-        only: Parts of the answers' names; all answers if empty.
+        only: Parts of names. Only answers whose name contains one of these parts are returned; all answers if empty.
 
     Raises:
         NothingToTry: No answer has a name with one of these parts.
@@ -148,13 +150,13 @@ def chosen(exercise_id: str, only: Sequence[str] = ()) -> list[Answer]:
     found = list(answers([exercise_id]))
     if not found:
         raise NothingToTry(
-            f"{exercise_id} has no answers yet: write some in {folder_of(exercise_id)}/right and wrong, "
+            f"{exercise_id} has no answers yet: write some in the folders right and wrong of {folder_of(exercise_id)}, "
             "as docs/adding-an-exercise.md shows"
         )
     wanted = [answer for answer in found if not only or any(part in answer.short_name for part in only)]
     if not wanted:
         raise NothingToTry(
-            f"no answer to {exercise_id} has {' or '.join(only)} in its name. There are: "
+            f"no answer to {exercise_id} has {' or '.join(only)} in its name. The answers are: "
             + ", ".join(answer.short_name for answer in found)
         )
     return wanted
@@ -172,7 +174,8 @@ def judged(
         tell: Called with a line for each result.
 
     Returns:
-        The surprises, in the order of the answers. Each answer has at most one, the first.
+        The answers with an unexpected verdict, in the given order. Each is returned once, with its first unexpected
+        verdict.
     """
     turns = [Turn(answer, f"try {lap}" if lap else "try") for lap in range(repeat) for answer in wanted]
     surprises: dict[str, Surprise] = {}
@@ -202,10 +205,10 @@ def judged(
 
 
 def _fit(wanted: Sequence[Answer]) -> None:
-    """Unpack each answer once, to see whether every edit fits.
+    """Unpack each answer once, to find edits that do not fit their bases.
 
     Raises:
-        BadTable: Edits do not fit their bases. The message has a line for each.
+        BadTable: An edit does not fit its base. The message has a line for each such edit.
     """
     troubles = []
     for answer in wanted:
@@ -215,28 +218,31 @@ def _fit(wanted: Sequence[Answer]) -> None:
             except BadTable as error:
                 troubles.append(str(error))
             except CannotEdit as error:
-                troubles.append(f"{answer.short_name}: its change does not fit: {error}")
+                troubles.append(f"{answer.short_name}: the edit does not fit: {error}")
     if troubles:
         raise BadTable("\n".join(troubles))
 
 
 def _given(exercise_id: str) -> Iterator[str]:
-    """Yield the criteria that pass for the notebook as students get it. Given code must not earn points."""
+    """Yield a line for each criterion for which the notebook earns points as students get it, without their work."""
     verdict = recording.unsolved(exercise_id)
     for one in verdict.criteria if verdict is not None else ():
         if one.passed:
-            yield f"{one.points:g} for “{one.title}”. Give less, or let it be judged by what is not given"
+            yield (
+                f"{one.points:g} for “{one.title}”. Give students less code, or change this criterion so that "
+                "the given code fails"
+            )
 
 
 def _is_in_step(exercise_id: str, tell: Callable[[str], object]) -> bool:
-    """Return True if the reference output matches what the solution does now. A missing one is recorded."""
+    """Return True if the stored reference output equals a new recording. If none is stored, store the new one."""
     there = exercises.reference_path(exercise_id).exists()
     changed = recording.record([exercise_id], only_check=there, tell=tell)
     if not (there and changed):
         return True
     tell(
-        "The recording is of another solution or another scenario. "
-        f"If the change is meant, run `{COMMAND} record {exercise_id}`, "
+        "The solution or the scenario has changed since the reference output was recorded. "
+        f"If the change is intended, run `{COMMAND} record {exercise_id}`, "
         "look at the difference, and try again."
     )
     return False

@@ -1,7 +1,7 @@
-"""The ``autograder`` command. Each of its commands calls the part of the package that does the work.
+"""The command line ``autograder``, with its subcommands.
 
-Exit codes: 0 for success; 1 if the answer is no (a failed check, notebooks out of date); 2 if the command could not
-be done (bad input, or an error of the grader). Imports are inside the commands, so that ``check`` starts fast.
+Exit codes: 0 for success; 1 for a negative result, such as a failed check; 2 if the command could not do its work, for
+example after a wrong option. Each command makes its imports itself, so that ``check`` starts fast.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ GROUPS = {
     "Instructors, its results": (*reports.COMMANDS, *appeals.COMMANDS),
     "Authors": authors.COMMANDS,
 }
-"""The commands grouped by the people who type them, in the order in which the help lists them."""
+"""The commands, grouped by the people who use them, in the order of the help page."""
 _HERE = (instructors.new_class, instructors.hand_out, students.lab, students.progress, students.reset)
 IN_A_COURSE = {str(command.name) for command in (*_HERE, *authors.COMMANDS)}
-"""The commands that work on the course around the current folder, in addition to `check` for one's own program. Every
-other command is for a class and uses the course that `new-class` recorded, because students' work could contain a
-course of their own.
+"""The names of the commands that use the course that contains the current folder. The command `check` uses it as well,
+except with --box. The other commands never do, because the current folder may contain students' work with a changed
+copy of a course. They use the course of a class, which `new-class` recorded.
 """
 
 
 class _Groups(click.Group):
-    """A command whose help lists its subcommands grouped by the people who type them."""
+    """A command whose help page groups the subcommands by the people who use them."""
 
     def format_commands(self, _ctx: click.Context, formatter: click.HelpFormatter) -> None:
         for title, commands in GROUPS.items():

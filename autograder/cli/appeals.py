@@ -1,4 +1,4 @@
-"""The commands about one student's checks: list them, save one, judge it again, and save its messages."""
+"""The commands for an appeal: list a student's results, save one check with its evidence, and judge it again."""
 
 from __future__ import annotations
 
@@ -23,15 +23,13 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 _MAX_COLUMNS = 4_000
-"""The maximum length of a printed line, in characters. The longest usual line, with an expected and a seen text in
-full, has half of that.
-"""
+"""The maximum length of a printed line, in characters. Lines about ordinary appeals have at most half as many."""
 _MAX_LINES = 100
-"""The maximum number of printed differences, and of printed notes. No exercise has a third as many criteria."""
+"""The maximum number of differences to print, and of notes. Exercises have far fewer criteria."""
 
 
 def _fail(message: str) -> NoReturn:
-    """End the command with a message that may contain text written by another person."""
+    """End the command with a message that may quote text from a student's file."""
     fail(_shown(message))
 
 
@@ -68,8 +66,8 @@ def attempts(folder: Path, student: str, as_json: bool) -> None:
 def appeal(folder: Path, student: str, exercise: str, output: Path | None) -> None:
     """Save everything about the check of EXERCISE by STUDENT in the class FOLDER.
 
-    The student's code, the expected output, the judge's evidence and verdict, and the course's version. The file is
-    JSON to read, and `replay` judges it again.
+    The file contains the student's code, the expected output, the judge's evidence and verdict, and the course's
+    version, as readable JSON. The command `replay` judges the check again from this file.
     """
     from autograder.grading.appeal import write_appeal
 
@@ -78,7 +76,7 @@ def appeal(folder: Path, student: str, exercise: str, output: Path | None) -> No
 
 
 def _shown(line: str) -> str:
-    """Return a line in a form that is safe to print, because the file may contain any text of any length."""
+    """Return a line that is safe to print: shortened, and without characters that control a terminal."""
     return printable(line if len(line) <= _MAX_COLUMNS else f"{line[:_MAX_COLUMNS]}…")
 
 
@@ -87,20 +85,23 @@ def _shown(line: str) -> str:
 @click.option(
     "--mcap",
     type=click.Path(path_type=Path),
-    help="Also write the messages that the judge saw, for Foxglove and other programs that open MCAP.",
+    help="Also write the messages that the judge saw into this file, for Foxglove and other programs that open MCAP.",
 )
 @click.option(
-    "--bag", type=click.Path(path_type=Path), help="Also write the messages of topics, for ros2 bag play."
+    "--bag",
+    type=click.Path(path_type=Path),
+    help="Also write the messages of topics into this file, for ros2 bag play.",
 )
 @as_json_option
 def replay(file: Path, mcap: Path | None, bag: Path | None, as_json: bool) -> None:
-    """Judge the check in an appeal FILE again, from what was seen then and with the course as it is now.
+    """Judge the check in an appeal FILE again, from its evidence and with the present version of the course.
 
-    No code of the student is run, and no ROS node is started.
+    This runs no code of the student, and starts no ROS node.
 
-    A file proves nothing by itself, because any person can write one. Have `appeal` write it from the class.
+    The file itself proves nothing, because any person can write such a file. For proof, have `appeal` write the file
+    from the class.
 
-    Exit code 0: the same verdict; 1: a different one; 2: it cannot be judged again.
+    Exit code 0: the verdict is the same; 1: the verdict differs; 2: the check cannot be judged again.
     """
     from autograder.appeals import appeal_file, replaying
 
@@ -117,10 +118,10 @@ def replay(file: Path, mcap: Path | None, bag: Path | None, as_json: bool) -> No
         lines = list(_lines(appeal, again))
     except (appeal_file.BadAppeal, replaying.CannotReplay) as error:
         _fail(str(error))
-    except Exception as error:  # the file may contain anything, so anything may be raised
+    except Exception as error:  # a damaged file may cause any kind of error
         _fail(
-            f"{file} is not a valid appeal file ({type(error).__name__}: {error}). It was edited, or comes from "
-            "a different version of the course: use that version."
+            f"{file} is not a valid appeal file ({type(error).__name__}: {error}). The file was edited, or comes from "
+            "a different version of the course: use the version that wrote it."
         )
     if as_json:
         print_json({"student": appeal.student, "course": appeal.course, "replay": again})
@@ -131,13 +132,13 @@ def replay(file: Path, mcap: Path | None, bag: Path | None, as_json: bool) -> No
 
 
 def check_name(path: Path) -> None:
-    """End with exit code 2 if the name of a file for messages does not end in .mcap."""
+    """End the command with exit code 2 if the name of a file for messages does not end in .mcap."""
     if path.suffix != ".mcap":
         _fail(f"the name of a file for messages must end in .mcap, such as check.mcap; {path.name} does not")
 
 
 def save_messages(seen: Kept, path: Path) -> str:
-    """Write the messages of a check as MCAP, and return a line about the file. If that fails, end with exit code 2."""
+    """Write the messages of a check as MCAP, and return a line about the file. On failure, end with exit code 2."""
     from autograder.appeals.messages_seen import write_messages
 
     try:
@@ -149,10 +150,7 @@ def save_messages(seen: Kept, path: Path) -> str:
 
 
 def save_bag(seen: Kept, path: Path) -> str:
-    """Write the messages of topics for ``ros2 bag play``, and return a line about the file.
-
-    If that fails, end with exit code 2.
-    """
+    """Write the messages of topics for ``ros2 bag play``. Return and fail in the same way as ``save_messages``."""
     from autograder.appeals.messages_seen import write_bag
 
     try:
@@ -160,12 +158,14 @@ def save_bag(seen: Kept, path: Path) -> str:
             written, left_out = write_bag(seen, stream)
     except OSError as error:
         _fail(f"{path} cannot be written: {error.strerror}")
-    missing = f" ({left_out} more have a type that is not known here)" if left_out else ""
+    missing = (
+        f" ({left_out} more were left out, because their type is not installed here)" if left_out else ""
+    )
     return f"{path}: {written} messages of topics{missing}"
 
 
 def _lines(appeal: Appeal, again: Replay) -> Iterator[str]:
-    """Yield the result of a replay as lines. The first is the answer."""
+    """Yield the result of a replay as lines."""
     then = again.then
     at = datetime.fromtimestamp(appeal.seen.at, tz=UTC)
     yield f"{then.exercise} by {appeal.student}, checked {at:%Y-%m-%d %H:%M:%S} UTC with course {appeal.course[:8]}"
@@ -177,7 +177,7 @@ def _lines(appeal: Appeal, again: Replay) -> Iterator[str]:
     else:
         yield "the same verdict, points and diagnosis"
     yield from (f"note: {note}" for note in again.notes[:_MAX_LINES])
-    yield f"note: a file proves nothing, any person can write one; `{COMMAND} appeal` writes it from the class"
+    yield f"note: any person can write such a file; for proof, have `{COMMAND} appeal` write it from the class"
 
 
 def _told(verdict: Verdict) -> str:

@@ -26,13 +26,15 @@ def build(only_check: bool) -> None:
 @click.option(
     "--jobs",
     type=click.IntRange(min=1),
-    help="Notebooks at once. The default is as many as processors and memory allow.",
+    help="The number of notebooks to run at the same time. The default is as many as processors and memory allow.",
 )
 @click.option(
-    "--reports", type=click.Path(path_type=Path), help="Keep the pages about failed notebooks in this folder."
+    "--reports",
+    type=click.Path(path_type=Path),
+    help="Write the pages about failed notebooks into this folder.",
 )
 def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) -> None:
-    """Run every notebook: masters must earn full marks, chapters none, without an error."""
+    """Run every notebook: masters must earn full marks; students' notebooks no points, without an error."""
     from autograder import course
     from autograder.authoring.executing import execute_command
     from autograder.authoring.execution_plan import NothingToExecuteError
@@ -47,9 +49,14 @@ def execute(notebooks: tuple[str, ...], jobs: int | None, reports: Path | None) 
 
 @click.command()
 @click.argument("exercises", nargs=-1, metavar="[EXERCISE]...")
-@click.option("--check", "only_check", is_flag=True, help="Write nothing; fail if a recording differs.")
+@click.option(
+    "--check",
+    "only_check",
+    is_flag=True,
+    help="Write nothing; fail if a solution now does something different from its recording.",
+)
 def record(exercises: tuple[str, ...], only_check: bool) -> None:
-    """Record what the reference solutions do on the wire. The grader compares answers with it."""
+    """Record what the reference solutions do on the wire. The grader compares answers with the recordings."""
     from autograder.authoring import recording
 
     need_ros()
@@ -62,17 +69,24 @@ def record(exercises: tuple[str, ...], only_check: bool) -> None:
 
 @click.command("new-exercise")
 @click.argument("exercise")
-@click.option("--recipe", default="publisher", show_default=True, help="The kind of subject that it judges.")
-@click.option("--chapter", help="The folder of its chapter in solutions/. The default is the last one.")
+@click.option(
+    "--recipe",
+    default="publisher",
+    show_default=True,
+    help="The kind of program or notebook code that the exercise judges.",
+)
+@click.option(
+    "--chapter", help="The folder of the exercise's chapter in solutions/. The default is the last chapter."
+)
 @click.option(
     "--interface",
     "interfaces",
     multiple=True,
     metavar="PACKAGE/KIND/TYPE",
-    help="A type of the chapter's own that the nodes need; may be given several times.",
+    help="A new interface type that the chapter has to define; may be given several times.",
 )
 def new_exercise(exercise: str, recipe: str, chapter: str | None, interfaces: tuple[str, ...]) -> None:
-    """Make the folder of a new lab with one EXERCISE that works, for you to change.
+    """Make the folder of a new lab with one working EXERCISE, which you then change.
 
     \b
     new-exercise lab_8_1.battery --recipe publisher
@@ -93,7 +107,9 @@ def new_exercise(exercise: str, recipe: str, chapter: str | None, interfaces: tu
 @click.command("try-exercise")
 @click.argument("exercise")
 @click.option(
-    "--only", multiple=True, help="Only answers with this in their names; may be given several times."
+    "--only",
+    multiple=True,
+    help="Judge only answers whose names contain this text; may be given several times.",
 )
 @click.option("--jobs", type=click.IntRange(min=1), default=4, show_default=True, help="Answers at once.")
 @click.option(
@@ -105,12 +121,12 @@ def new_exercise(exercise: str, recipe: str, chapter: str | None, interfaces: tu
 @click.option(
     "--transcript",
     type=click.Path(path_type=Path, file_okay=False),
-    help="Write the evidence of each answer into this folder.",
+    help="Write what the judge saw of each answer into this folder.",
 )
 def try_exercise(
     exercise: str, only: tuple[str, ...], jobs: int, repeat: int, transcript: Path | None
 ) -> None:
-    """Record EXERCISE if it is new, judge its right and wrong answers, and show unexpected results."""
+    """Record EXERCISE if it is new, judge its sample answers, right and wrong, and show unexpected results."""
     from autograder import exercises
     from autograder.authoring import recording, trying
     from autograder.authoring.answer_tables import BadTable
@@ -144,17 +160,19 @@ def try_exercise(
     type=click.Choice(["self", "class"]),
     default="self",
     show_default=True,
-    help="self: for learning alone, solutions are folded; class: without solutions.",
+    help="self: for learners on their own, with folded solutions; class: without solutions.",
 )
 @click.option(
     "--to",
     "folder",
     type=click.Path(path_type=Path, file_okay=False),
-    help="The folder of the pages. The default is site/.",
+    help="The folder to write the pages to. The default is site/.",
 )
-@click.option("--quick", is_flag=True, help="Do not execute the notebooks: the pages have no outputs.")
+@click.option(
+    "--quick", is_flag=True, help="Do not execute the notebooks, so that the pages show no outputs."
+)
 def site(edition: str, folder: Path | None, quick: bool) -> None:
-    """Make the course, its guides and known mistakes one book of HTML pages, which needs no server and no network."""
+    """Make a website of the labs, guides and known mistakes, as HTML files that need no server and no network."""
     from autograder import course
     from autograder.authoring.site.building import build_site
     from autograder.student.handing_out import CannotHandOut
@@ -162,7 +180,7 @@ def site(edition: str, folder: Path | None, quick: bool) -> None:
     root = course.root()
     folder = (folder or root / "site").absolute()
     if folder.exists() and any(folder.iterdir()) and not (folder / "searchindex.js").is_file():
-        fail(f"{folder} is not empty and is not a site: name another folder with --to")
+        fail(f"{folder} contains other files than a site: choose another folder with --to FOLDER")
     try:
         problems = build_site(root, folder, edition, outputs=not quick, tell=click.echo)
     except CannotHandOut as error:

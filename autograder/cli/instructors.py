@@ -13,13 +13,13 @@ from environment.installation import COMMAND
 
 class_folder = click.argument("folder", type=click.Path(path_type=Path))
 only_assignments = click.option(
-    "--assignment", "assignments", multiple=True, help="Only this assignment; may be given several times."
+    "--assignment", "assignments", multiple=True, help="Use only this assignment; may be given several times."
 )
 only_sections = click.option(
     "--section",
     "sections",
     multiple=True,
-    help="Only students with this in the column section of students.csv.",
+    help="Use only students with this value in the column section of students.csv.",
 )
 
 
@@ -38,10 +38,11 @@ def _known_zone(_context: click.Context, _option: click.Parameter, name: str) ->
 @click.option(
     "--with-solutions",
     is_flag=True,
-    help="Show the reference solution on cards with full marks. Students can find it earlier, in the folder exercises.",
+    help="Show the reference solution on cards with full marks. Students could then also read it "
+    "earlier, in the folder exercises.",
 )
 def hand_out(place: Path, assignments: tuple[str, ...], as_zip: bool, with_solutions: bool) -> None:
-    """Make in PLACE the hand-out for a class: notebooks and judge, without solutions, answers and grader."""
+    """Make a hand-out for students in PLACE: notebooks and judge, without solutions, answers and grader."""
     from autograder import course
     from autograder.student import handing_out
 
@@ -52,7 +53,7 @@ def hand_out(place: Path, assignments: tuple[str, ...], as_zip: bool, with_solut
     except (handing_out.CannotHandOut, OSError) as error:
         fail(str(error))
     click.echo(
-        f"{made.place}: {made.files} files, {made.size / 1e6:.1f} MB. Try it: {COMMAND} lab, in that folder"
+        f"{made.place}: {made.files} files, {made.size / 1e6:.1f} MB. To try it, type in that folder: {COMMAND} lab"
     )
 
 
@@ -80,7 +81,7 @@ def new_class(folder: Path, assignments: tuple[str, ...], timezone: ZoneInfo | N
 @class_folder
 @only_assignments
 def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
-    """Update the sources of the class FOLDER to the present course; the old ones are kept."""
+    """Update the source notebooks of the class FOLDER to the present course, and keep copies of the old ones."""
     from autograder import course
     from autograder.grading.classes.new_class import renew
 
@@ -93,14 +94,16 @@ def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
 @class_folder
 @click.argument("files", nargs=-1, type=click.Path(path_type=Path))
 @click.option(
-    "--assignment", default="", help="The assignment of all files. The default is what cells and names say."
+    "--assignment",
+    default="",
+    help="The assignment to which all files belong. The default is the one that cells and file names show.",
 )
 @click.option(
     "--timezone",
     default="",
     callback=_known_zone,
     metavar="Europe/Berlin",
-    help="The time zone of times in file names and in lists of an LMS. The default is that of the class.",
+    help="The time zone of times in file names and in lists of an LMS. The default is the time zone of the class.",
 )
 @click.option(
     "--from",
@@ -109,20 +112,20 @@ def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
         ["moodle", "canvas", "blackboard", "brightspace", "google", "github", "gradescope", "sakai", "ilias"]
     ),
     default=None,
-    help="The system of the download, if names do not show it. Google Classroom and ILIAS need it.",
+    help="The system from which the files come, if file names do not show it. Needed for Google Classroom and ILIAS.",
 )
 @click.option(
     "--names",
     default="",
     metavar="'{id}-{last}_{assignment}'",
-    help="The pattern of names, with id, email, login, number, name, first, last, assignment, time, file, any, or "
+    help="The pattern of file names, with id, email, login, number, name, first, last, assignment, time, file, any, or "
     "a column of students.csv.",
 )
 @click.option(
     "--handed-in",
     default="",
     metavar="2026-01-31T12:00",
-    help="The time of submissions whose time nothing else says.",
+    help="The submission time of files for which no list and no file name gives one.",
 )
 @as_json_option
 def collect(
@@ -135,12 +138,12 @@ def collect(
     handed_in: str,
     as_json: bool,
 ) -> None:
-    """Put FILES that an LMS let you download into the class directory FOLDER.
+    """Put FILES that you downloaded from an LMS into the class directory FOLDER.
 
     FILES are zips, folders and notebooks of Moodle, Canvas, Blackboard, Brightspace, Gradescope, Google Classroom or
-    GitHub Classroom, and lists (.csv) that come with them. The file students.csv in FOLDER maps them to students.
+    GitHub Classroom, and the lists (.csv) that come with them. The file students.csv in FOLDER maps files to students.
 
-    Exit code 0: everything has its place; 2: the lines say which files wait, and why.
+    Exit code 0: every file was put into a submission; 2: some were not, and the printed lines say which and why.
     """
     from autograder.grading.collecting import collect as collecting
     from autograder.grading.collecting.reading.lms_file_names import read_time
@@ -163,19 +166,21 @@ def collect(
 @click.command()
 @class_folder
 @only_assignments
-@click.option("--student", "students", multiple=True, help="Only this student; may be given several times.")
+@click.option(
+    "--student", "students", multiple=True, help="Grade only this student; may be given several times."
+)
 @only_sections
 @click.option("--again", is_flag=True, help="Run unchanged submissions again.")
 @click.option(
     "--jobs",
     type=click.IntRange(min=1),
-    help="Notebooks at once. The default is as many as processors and memory allow.",
+    help="The number of notebooks to run at the same time. The default is as many as processors and memory allow.",
 )
 @as_json_option
 @click.option(
     "--unsafe-no-sandbox",
     is_flag=True,
-    help="If no sandbox is possible, run submissions with all your rights. They could change any grade.",
+    help="If no sandbox is possible on this machine, run submissions with all your rights. They could change grades.",
 )
 @click.option(
     "--scheduler",
@@ -185,7 +190,7 @@ def collect(
 @click.option(
     "--dry-run",
     is_flag=True,
-    help="Change no grade: run what has changed and show whose points would change.",
+    help="Change no grade: run submissions that are new or changed, and show whose points would change.",
 )
 def grade(
     folder: Path,
@@ -204,7 +209,9 @@ def grade(
     from autograder.grading.running import sandboxing
 
     if scheduler is not None and jobs is not None:
-        fail(f"--jobs is for this machine; each worker of a cluster has its own: {COMMAND} worker --jobs")
+        fail(
+            f"--jobs is only for this machine. In a cluster, set it for each worker: {COMMAND} worker --jobs"
+        )
     if scheduler is None:
         need_ros()
     if unsafe_no_sandbox:
@@ -223,7 +230,8 @@ def grade(
             )
     except KeyboardInterrupt:
         click.echo(
-            "autograder: stopped. What was graded is kept; the same command goes on from there.", err=True
+            "autograder: stopped. Finished grades are stored; type the same command to grade the rest.",
+            err=True,
         )
         sys.exit(INTERRUPTED)
     if as_json:
@@ -240,16 +248,21 @@ def grade(
 @click.command()
 @click.argument("scheduler", required=False, metavar="[tcp://HOST:PORT]")
 @click.option(
-    "--jobs", type=click.IntRange(min=1), help="Submissions at once. The default is the number of cores."
+    "--jobs",
+    type=click.IntRange(min=1),
+    help="The number of submissions to run at the same time. The default is the number of cores.",
 )
-@click.option("--name", help="The name of this worker in messages. The default is host and process.")
+@click.option(
+    "--name",
+    help="The name of this worker in messages. The default consists of the host's name and the process id.",
+)
 @click.option(
     "--unsafe-no-sandbox",
     is_flag=True,
-    help="Work even if no sandbox is possible. Submissions then run with all your rights.",
+    help="Run submissions even if no sandbox is possible on this machine. They then have all your rights.",
 )
 def worker(scheduler: str | None, jobs: int | None, name: str | None, unsafe_no_sandbox: bool) -> None:
-    """Work for `grade --scheduler`, until Ctrl-C or until the scheduler ends."""
+    """Run submissions for `grade --scheduler`, until you press Ctrl-C or the scheduler ends."""
     from autograder.grading.cluster import connection
 
     with grading_errors():

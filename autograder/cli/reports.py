@@ -1,4 +1,4 @@
-"""The commands for instructors about graded work: one page, files for the LMS, similar answers, changed points."""
+"""The commands for instructors about graded work: report, export to the LMS, similar answers, changed points."""
 
 from __future__ import annotations
 
@@ -21,30 +21,32 @@ from autograder.kit.in_words import counted
         ["canvas", "moodle", "gradescope", "blackboard", "brightspace", "sakai", "ilias", "csv", "xlsx"]
     ),
     required=True,
-    help="The system that imports the files.",
+    help="The LMS that will import the files.",
 )
 @only_assignments
 @only_sections
 @click.option(
     "--into",
     type=click.Path(path_type=Path),
-    help="Fill in this list, as the system of --to has exported it.",
+    help="Fill in this list, which was exported from the LMS given by --to.",
 )
 @click.option(
     "--column",
     "columns",
     multiple=True,
     metavar="ASSIGNMENT=COLUMN",
-    help="The name of an assignment's column in --into; may be given several times.",
+    help="The column for an assignment in the list given by --into; may be given several times.",
 )
 @click.option(
     "--absent",
     type=click.Choice(["blank", "zero"]),
     default="blank",
-    help="The entry for students without a submission. The default is an empty cell.",
+    help="The value for students without a submission. The default is an empty cell.",
 )
 @click.option(
-    "--output", type=click.Path(path_type=Path), help="The folder to write to. The default is FOLDER/export."
+    "--output",
+    type=click.Path(path_type=Path),
+    help="The folder to write the files to. The default is FOLDER/export.",
 )
 @as_json_option
 def export(
@@ -89,7 +91,11 @@ def export(
 @click.command()
 @class_folder
 @only_sections
-@click.option("--without-names", is_flag=True, help="Call students by numbers, without links to their pages.")
+@click.option(
+    "--without-names",
+    is_flag=True,
+    help="Show numbers instead of students' names, and no links to their pages.",
+)
 @click.option(
     "--output", type=click.Path(path_type=Path), help="The page to write. The default is FOLDER/report.html."
 )
@@ -97,14 +103,16 @@ def export(
 def report(
     folder: Path, sections: tuple[str, ...], without_names: bool, output: Path | None, as_json: bool
 ) -> None:
-    """Write one page about the class FOLDER: points, mistakes, exercises and each student's progress."""
+    """Write a page about the class FOLDER: points, mistakes, exercises and each student's progress."""
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.report_page.page import write_report
     from autograder.grading.reporting.report import table_json
     from autograder.grading.table.class_table import read_table
 
     if as_json and without_names:
-        fail("--json has the ids of students: leave out --json or --without-names.")
+        fail(
+            "--json shows the ids of students, so it cannot be combined with --without-names: leave out one of the two."
+        )
     with grading_errors():
         page = write_report(folder, names=not without_names, to=output, sections=sections)
         if as_json:
@@ -121,11 +129,11 @@ def report(
 )
 @as_json_option
 def similar(folder: Path, assignment: str, output: Path | None, as_json: bool) -> None:
-    """Find pairs of submissions in the class FOLDER that are closer than the task explains.
+    """Find pairs of submissions in the class FOLDER with more similar code than their task explains.
 
-    A pair is a hint, not a proof. If ASSIGNMENT is named, only that one is compared.
+    A pair is a hint, not a proof. If ASSIGNMENT is given, only its submissions are compared.
 
-    Exit code 0: everything was compared; 2: the lines say what was not compared, and why.
+    Exit code 0: all submissions were compared; 2: some were not, and the printed lines say which and why.
     """
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.errors import clear_disk_errors
@@ -151,9 +159,9 @@ def similar(folder: Path, assignment: str, output: Path | None, as_json: bool) -
 @click.argument("after", required=False, default="")
 @as_json_option
 def compare(folder: Path, before: str, after: str, as_json: bool) -> None:
-    """Show whose points the last run of the class FOLDER has changed.
+    """Show whose points the last run of `grade` in the class FOLDER has changed.
 
-    BEFORE and AFTER are runs, by the times in the first line that this prints.
+    BEFORE and AFTER select two other runs by their times, written as in the first line that this command prints.
     """
     from autograder.grading.class_store import ClassStore
     from autograder.grading.classes.class_directory import ClassDirectory

@@ -1,4 +1,4 @@
-"""Prints the result of a command as JSON, and ends a command that fails with a clear line."""
+"""Prints the result of a command as JSON. Ends a command that fails with one line about the error."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 NO = 1
 CANNOT = 2
 INTERRUPTED = 130
-"""The exit code that a shell reports for a program that Ctrl-C ended: 128 plus the signal's number."""
+"""The exit code after Ctrl-C, as in a shell: 128 plus the number of the signal SIGINT."""
 as_json_option = click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object.")
 
 
 def print_json(value: Any) -> None:
-    """Print a value, or JSON in bytes, as one line of JSON without characters that affect a terminal."""
+    """Print a value as one line of JSON, without characters that control a terminal. Bytes must already be JSON."""
     import msgspec
 
     from autograder.cards.readable import printable_json
@@ -30,13 +30,13 @@ def print_json(value: Any) -> None:
 
 
 def fail(message: str) -> NoReturn:
-    """End the command with a clear error message and exit code 2."""
+    """Print an error message and end the command with exit code 2."""
     click.echo(f"autograder: {message}", err=True)
     sys.exit(CANNOT)
 
 
 def need_ros() -> None:
-    """Stop a command before it starts a judge, whose process would only fail.
+    """End a command with an error if ROS is missing, before the command starts a judge.
 
     Raises:
         ModuleNotFoundError: ROS cannot be imported. ``autograder/__main__.py`` then says what to type.
@@ -47,7 +47,7 @@ def need_ros() -> None:
 
 @contextmanager
 def grading_errors() -> Iterator[None]:
-    """Turn the grader's own errors in the block into a clear line and exit code 2."""
+    """If the block raises a ``GradingError``, print its message and end the command with exit code 2."""
     from autograder.grading.errors import GradingError
 
     try:

@@ -1,4 +1,4 @@
-"""The commands for students: check a program, open the course, show progress and what is missing."""
+"""The commands for students: check a program, open JupyterLab, show progress, reset a notebook, check the setup."""
 
 from __future__ import annotations
 
@@ -41,15 +41,17 @@ _notebooks = click.option(
 @click.argument("exercise", required=False)
 @click.argument("command", nargs=-1, type=click.UNPROCESSED)
 @as_json_option
-@click.option("--seed", help="The seed of the random inputs: the same seed gives the same inputs.")
+@click.option("--seed", help="The seed of the random inputs. The same seed gives the same inputs.")
 @click.option(
     "--box",
     "boxed",
     is_flag=True,
-    help="Run COMMAND in a sandbox, as a class does: it sees only this folder.",
+    help="Run COMMAND in a sandbox, as submissions of a class: it can read only this folder.",
 )
 @click.option(
-    "--mcap", type=click.Path(path_type=Path), help="Write the messages that the judge saw into this file."
+    "--mcap",
+    type=click.Path(path_type=Path),
+    help="Also write the messages that the judge saw into this file.",
 )
 def check(
     exercise: str | None,
@@ -62,7 +64,8 @@ def check(
     """Run a command as the subject of an exercise and print the verdict."""
     from autograder import course, exercises
 
-    if not boxed:  # in a sandbox, the program's folder belongs to a student, so it must not choose the course
+    # The folder of another person's program may contain a changed course, which must not judge the program.
+    if not boxed:
         course.use_the_one_around(Path.cwd())
     if exercise is None:
         list_exercises()
@@ -73,7 +76,7 @@ def check(
         fail(str(error))
     if not command:
         fail(
-            f"say which command to check, after two dashes: {COMMAND} check {exercise} -- python3 my_file.py"
+            f"no command to check: write it after two dashes, such as {COMMAND} check {exercise} -- python3 my_file.py"
             + (f" (it is called with {wanted.arguments})" if wanted.arguments else "")
         )
     if mcap is not None:
@@ -87,9 +90,8 @@ def check(
             verdict, evidence = check_and_keep(exercise, command, seed=seed, box=box)
     except CommandNotFound as error:
         fail(str(error))
-    if (
-        not boxed
-    ):  # a check in a sandbox is of another person's program, so it does not count as the user's progress
+    # With --box, the program is another person's, so its result does not count as the user's progress.
+    if not boxed:
         from autograder.student import journal
 
         journal.note_check(verdict)
@@ -150,7 +152,7 @@ def show(verdict: Verdict, *, as_json: bool) -> None:
 )
 @click.argument("arguments", nargs=-1, type=click.UNPROCESSED, metavar="[JUPYTERLAB'S OPTIONS]...")
 def lab(folder: Path | None, arguments: tuple[str, ...]) -> None:
-    """Open JupyterLab on the chapters, with a ROS domain of its own."""
+    """Open JupyterLab with the course's notebooks, in a free ROS domain."""
     from autograder import course
     from autograder.ros_domain import NoFreeDomainError
     from autograder.student.lab import NoSuchFolderError, open_lab
@@ -165,7 +167,7 @@ def lab(folder: Path | None, arguments: tuple[str, ...]) -> None:
 @as_json_option
 @_notebooks
 def progress(as_json: bool, folder: Path | None) -> None:
-    """Show which points you have reached, and where to go on. This is not a grade."""
+    """Show which points you have reached, and which task is next. This is not a grade."""
     from autograder import course, exercises
     from autograder.student import journal
     from autograder.student.course_page import standing_json, standing_text
@@ -184,7 +186,7 @@ def progress(as_json: bool, folder: Path | None) -> None:
 @click.argument("notebook")
 @_notebooks
 def reset(notebook: str, folder: Path | None) -> None:
-    """Reset NOTEBOOK, such as lab_1_2: restore the released one, and keep a copy of yours next to it."""
+    """Replace NOTEBOOK, such as lab_1_2, by the original, and keep a copy of yours next to it."""
     from autograder import course
     from autograder.student import resetting
 
@@ -194,13 +196,13 @@ def reset(notebook: str, folder: Path | None) -> None:
         done = resetting.reset(root, notebooks, notebook, kept)
     except (course.NoCourse, course.BrokenChapter, resetting.CannotReset) as error:
         fail(str(error))
-    click.echo(f"{done.notebook} is as it was released.")
+    click.echo(f"{done.notebook} is the original again.")
     if done.copy is not None:
-        click.echo(f"Yours is kept: {done.copy}")
+        click.echo(f"Your notebook was copied to {done.copy}")
 
 
 def _notebooks_and_journal(root: Path, folder: Path | None) -> tuple[Path, Path | None]:
-    """Return the folder that contains the notebooks, and the path of its journal."""
+    """Return the folder with the student's notebooks, and the path of the journal that records their checks."""
     from autograder import course
     from autograder.student import journal
     from autograder.student.lab import NOTEBOOKS_VARIABLE
@@ -214,7 +216,7 @@ def _notebooks_and_journal(root: Path, folder: Path | None) -> tuple[Path, Path 
 @click.command()
 @as_json_option
 def doctor(as_json: bool) -> None:
-    """Show what is installed, what is missing and how to get it."""
+    """Show what is installed, what is missing and how to install it."""
     from environment import doctor as probes
 
     sys.exit(probes.main(["--json"] if as_json else []))

@@ -42,7 +42,7 @@ def test_the_same_verdict_ends_with_0(file: Path) -> None:
         "then: passed, 10 of 10 points",
         "now:  passed, 10 of 10 points",
         "the same verdict, points and diagnosis",
-        "note: a file proves nothing, any person can write one; `./course appeal` writes it from the class",
+        "note: any person can write such a file; for proof, have `./course appeal` write it from the class",
     ]
 
 
@@ -223,7 +223,7 @@ def test_a_type_in_a_forged_file_imports_no_module(
     (tmp_path / "forged_msgs" / "msg.py").write_text("class String: pass\n", encoding="utf-8")
     monkeypatch.syspath_prepend(tmp_path)
     edit(file, lambda c: first_event(c)["data"].update(publisher={"/chatter": "forged_msgs/msg/String"}))
-    assert "have a type that is not known here" in run("replay", file, "--bag", tmp_path / "bag.mcap")[1]
+    assert "their type is not installed here" in run("replay", file, "--bag", tmp_path / "bag.mcap")[1]
     assert "forged_msgs" not in sys.modules
 
 

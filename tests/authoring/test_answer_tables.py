@@ -64,7 +64,7 @@ def test_a_base_without_a_comment_loses_nothing(folder: Path) -> None:
         pytest.param(
             '"usual.py"',
             '"usul.py"',
-            "its base usul.py is not a file of .*right; did you mean usual.py",
+            "right has no file usul.py, which is the entry's base; did you mean usual.py",
             id="base",
         ),
         pytest.param(
@@ -87,7 +87,7 @@ def test_an_edit_that_does_not_fit_is_named_when_it_is_used(
         pytest.param(
             'diagnosis = "counter_start"\n', "", "a wrong answer needs a diagnosis", id="no diagnosis"
         ),
-        pytest.param('base = "usual.py"\n', "", "an edit needs base and change", id="no base"),
+        pytest.param('base = "usual.py"\n', "", "an edit needs the fields base and change", id="no base"),
         pytest.param("shows", "show", "unknown field `show`", id="misspelt"),
         pytest.param("why =", "why", "Expected '='", id="no TOML"),
         pytest.param(
@@ -109,7 +109,7 @@ def test_a_workspace_is_told_by_what_it_changes(folder: Path) -> None:
     table.write_text(EDIT.replace(".py", ".workspace").replace('base = "usual.workspace"\n', ""))
     assert texts(folder)["counter_start.workspace"] == "Wrong: counts from 1.\n-i = 0\n+i = 1\n"
     table.write_text(EDIT.replace("counter_start.py", "counter_start.workspace"))
-    with pytest.raises(BadTable, match=r"counter_start\.workspace: a workspace needs no base"):
+    with pytest.raises(BadTable, match=r"counter_start\.workspace: remove base: settings"):
         list(listed(folder))
 
 
@@ -124,13 +124,13 @@ def test_a_folder_without_settings_holds_python_programs(folder: Path) -> None:
 
 def test_an_answer_is_told_once_and_either_whole_or_as_an_edit(folder: Path) -> None:
     (folder / "wrong" / "more.toml").write_text(EDIT)
-    with pytest.raises(BadTable, match=r"more\.toml: counter_start.py: it is listed twice"):
+    with pytest.raises(BadTable, match=r"more\.toml: counter_start.py: the answer is listed twice"):
         list(listed(folder))
     (folder / "wrong" / "more.toml").unlink()
     (folder / "wrong" / "counter_start.py").write_text(RIGHT)
-    with pytest.raises(BadTable, match="is there as well: remove one of them"):
+    with pytest.raises(BadTable, match="exists: remove one of the two"):
         list(listed(folder))
     (folder / "wrong" / "counter_start.py").unlink()
     (folder / "right" / "answers.toml").write_text('"usual.py" = { why = "counts", diagnosis = "crashed" }\n')
-    with pytest.raises(BadTable, match="a right answer has no diagnosis"):
+    with pytest.raises(BadTable, match="a right answer must not have a diagnosis"):
         list(listed(folder))

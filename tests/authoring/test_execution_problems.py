@@ -48,13 +48,13 @@ def test_full_marks_for_a_master_and_none_for_a_chapter_are_right() -> None:
 
 def test_a_master_that_misses_points_says_which_and_why() -> None:
     (text,) = found(NotebookKind.MASTER, HALF, "5.0")
-    assert text.startswith("earns 5 of 10 points, and should earn 10")
+    assert text.startswith("earns 5 of 10 points instead of 10")
     assert "topic_name: The topic is misspelt." in text
 
 
 def test_a_stub_that_earns_points_is_found() -> None:
     (text,) = found(NotebookKind.CHAPTER, HALF, "5.0")
-    assert text.startswith("earns 5 of 10 points, and should earn 0")
+    assert text.startswith("earns 5 of 10 points instead of 0")
 
 
 def test_a_check_nobody_asked_for_is_found() -> None:

@@ -90,9 +90,9 @@ def test_an_interface_of_the_chapter_s_own_is_defined_and_named(root: Path, desc
         ("SetLevel", "is not an interface"),
         ("power/srv/set_level", "is not an interface"),
         ("../power/srv/SetLevel", "is not an interface"),
-        ("std_msgs/msg/Text", "installation of ROS or of the course has a package"),
-        ("of_the_environment/msg/Text", "installation of ROS or of the course has a package"),
-        ("of_the_second/msg/Text", "chapter 02_second has a package"),
+        ("std_msgs/msg/Text", "installation of ROS or of the course already has a package"),
+        ("of_the_environment/msg/Text", "installation of ROS or of the course already has a package"),
+        ("of_the_second/msg/Text", "chapter 02_second already has a package"),
     ],
 )
 def test_an_interface_that_cannot_be_leaves_nothing_behind(root: Path, name: str, problem: str) -> None:
@@ -128,7 +128,7 @@ def test_an_example_has_at_most_a_hundred_lines(recipe: str) -> None:
         ("../lab.battery", "publisher", None, "is not an id"),
         ("lab_9_1.battery", "telepathy", None, "The recipes are: "),
         ("lab_9_1.battery", "publisher", "../elsewhere", "not a valid name for a chapter"),
-        ("json.battery", "publisher", None, "Python has a module json"),
+        ("json.battery", "publisher", None, "Python already has a module json"),
     ],
 )
 def test_a_bad_name_is_refused(
@@ -145,7 +145,7 @@ def test_a_lab_that_is_there_is_left_as_it_is(root: Path) -> None:
     lab.mkdir()
     (lab / "lab.md").write_text("mine")
     for chapter in ("01_first", "02_second"):
-        with pytest.raises(CannotMake, match="is there already"):
+        with pytest.raises(CannotMake, match="already exists"):
             new_exercise(root, "lab_9_1.other", "publisher", chapter=chapter)
     assert [path.name for path in lab.iterdir()] == ["lab.md"]
 
@@ -163,7 +163,7 @@ def test_the_command_says_what_to_do_next_and_refuses_with_exit_code_2(root: Pat
     assert f"./course try-exercise {ID}" in made.stdout
     again = autograder(root, "new-exercise", ID)
     assert (again.returncode, again.stdout) == (2, "")
-    assert "is there already" in again.stderr
+    assert "already exists" in again.stderr
 
 
 @pytest.mark.ros
@@ -223,7 +223,7 @@ def test_all_edits_that_fit_no_line_are_told_before_anything_runs(root: Path) ->
     table.write_text(table.read_text().replace("-        self.charge -= 1", "-        self.charge -= 7"))
     tried = autograder(root, "try-exercise", ID)
     assert tried.returncode == 2, tried.stdout + tried.stderr
-    assert tried.stderr.count("its change does not fit usual.py") == 2
+    assert tried.stderr.count("the edit does not fit usual.py") == 2
     assert "counter_step.py" in tried.stderr
     assert "counter_stuck.py" in tried.stderr
     assert not list(lab.glob("*.reference.json"))
@@ -270,7 +270,7 @@ def test_what_is_expected_does_not_change_unasked(root: Path) -> None:
     ("words", "said"),
     [
         (["lab_9_1.nothing"], "no exercise is called"),
-        ([ID, "--only", "nobody"], "There are: right/usual.py"),
+        ([ID, "--only", "nobody"], "The answers are: right/usual.py"),
     ],
 )
 def test_what_is_not_there_is_said(root: Path, words: list[str], said: str) -> None:

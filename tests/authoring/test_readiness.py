@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 ID = "lab_9_1.battery"
-FOR_ITS_AUTHOR = ("answers: so far there are ", "text: the exercise does not say ")
+FOR_ITS_AUTHOR = ("answers: the bank has only ", "text: map words of the task ")
 """What an example leaves to whoever copies it."""
 
 
@@ -100,14 +100,14 @@ def test_folded_text_does_not_delay_the_first_task(lab: Path) -> None:
             'battery.knows("counted_up", lambda *_: False, "", "")\nEXERCISE',
             "docs/mistakes.md: no paragraph about `counted_up`",
         ),
-        ("battery.py", '        "every 0.5 s": "rate",\n', "", "text: no words of the task are"),
+        ("battery.py", '        "every 0.5 s": "rate",\n', "", "text: the criterion rate is not mapped"),
         ("battery.py", '": "rate"', '": "rate volts"', "text: the criterion volts does not exist"),
         ("battery.py", '"every 0.5 s"', '"Cows"', "text: lab.md does not say “Cows”"),
         (
             "battery.answers/wrong/answers.toml",
             '["topic_name.py"]',
             '["odd.py"]',
-            "answers: wrong/odd.py is named ",
+            "answers: rename wrong/odd.py, ",
         ),
     ],
 )

@@ -78,6 +78,6 @@ def test_what_cannot_be_written_stays_as_it_is(folder: Path, monkeypatch: pytest
 def test_the_command_says_where_the_copy_is(folder: Path) -> None:
     (folder / NOTEBOOK).write_text("work")
     done = CliRunner().invoke(cli, ["reset", "lab_1_2", "--folder", str(folder)])
-    assert (done.exit_code, "Yours is kept: " in done.output) == (0, True)
+    assert (done.exit_code, "Your notebook was copied to " in done.output) == (0, True)
     refused = CliRunner().invoke(cli, ["reset", "lab_9", "--folder", str(folder)])
     assert (refused.exit_code, "no notebook is called 'lab_9'" in refused.output) == (2, True)

@@ -1,1 +1,1 @@
-"""``autograder site``: makes one book of HTML pages of the course, its guides and its known mistakes."""
+"""``autograder site``: makes a website of HTML pages from the labs, the guides and the list of mistakes."""

@@ -1,4 +1,4 @@
-"""Builds the book with Sphinx, from the sources alone, without a network."""
+"""Builds the course's website with Sphinx, without access to a network."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ LARGEST = 1_000_000
 """The maximum size of a page in bytes."""
 STYLE = "book.css"
 _ICON = re2.compile(r'(?:"?([\w-]+)"?):\[\d+,\d+,\[([^\]]*)\],"[0-9a-f]*",(?:"[^"]*"|\[[^\]]*\])\],?')
-"""One of the 2,000 icons in the theme's script: name, size, other names, code and drawing."""
+"""Matches one of the 2,000 icons in the theme's script: its name, size, other names, code and drawing."""
 _ICON_NAME = re2.compile(r"\bfa-([\w-]+)")
 SETTINGS: dict[str, Any] = {
     "author": "The maintainers of this course",
@@ -47,7 +47,7 @@ SETTINGS: dict[str, Any] = {
     "html_show_sphinx": False,
     "language": "en",
     "nb_execution_mode": "off",
-    # No page has widgets, and the scripts for widgets would be loaded from another host.
+    # Without this line, pages would load scripts for Jupyter widgets from another host. No page has such widgets.
     "nb_ipywidgets_js": {},
     "myst_enable_extensions": ["colon_fence", "html_image"],
     "myst_heading_anchors": 6,
@@ -57,13 +57,13 @@ SETTINGS: dict[str, Any] = {
 
 
 def build_site(root: Path, folder: Path, edition: str, *, outputs: bool, tell: Callable[[str], None]) -> int:
-    """Build the book of a course.
+    """Build the website of a course.
 
     Args:
         root: The top folder of the course.
         folder: The folder for the pages. Pages from an earlier build in it are replaced.
         edition: A value from ``autograder.authoring.site.pages.EDITIONS``.
-        outputs: True to execute the notebooks first.
+        outputs: True to execute the notebooks first and show their outputs.
         tell: Called with each line to print.
 
     Returns:
@@ -101,7 +101,7 @@ def build_site(root: Path, folder: Path, edition: str, *, outputs: bool, tell: C
 
 
 def _leave_out_what_no_page_needs(pages: Path) -> None:
-    """Delete the themes' templates and source maps, and the icons that no page shows: 1.5 MB for each first visit."""
+    """Delete templates, source maps and icons that no page uses. Without them a first visit loads 1.5 MB less."""
     for file in [*(pages / STATIC).glob("*macros.html"), *(pages / STATIC).rglob("*.map")]:
         file.unlink()
     script = pages / STATIC / "scripts" / "fontawesome.js"
@@ -116,7 +116,7 @@ def _leave_out_what_no_page_needs(pages: Path) -> None:
 
 
 def course_of(edition: str, root: Path, folder: Path) -> Path:
-    """Return the course whose cards an edition shows: for a class, a hand-out, because its cards offer no solution.
+    """Return the course to execute for an edition. For a class, make a hand-out: its cards do not offer solutions.
 
     Raises:
         autograder.student.handing_out.CannotHandOut: A notebook of the chapters contains the author's own work.
@@ -127,9 +127,10 @@ def course_of(edition: str, root: Path, folder: Path) -> Path:
 
 
 def _settle_what_is_elsewhere(app: Sphinx, tree: nodes.document) -> None:
-    """Replace pictures from other hosts by their text, and links to files of the repository by full addresses.
+    """Change what points outside the website: pictures on other hosts, and links to files of the repository.
 
-    If the repository has no address, such a link becomes plain text.
+    A picture is replaced by its alternative text. A link gets the file's full address; if the course knows no address
+    of its repository, the link becomes plain text.
     """
     for picture in list(tree.findall(nodes.image)):
         if str(picture["uri"]).startswith(("http:", "https:")):
@@ -149,11 +150,7 @@ def _settle_what_is_elsewhere(app: Sphinx, tree: nodes.document) -> None:
 def _let_the_keyboard_move_tables(
     _app: Sphinx, _page: str, _template: str, context: dict[str, Any], _tree: nodes.document | None
 ) -> None:
-    """Let readers scroll wide tables with the arrow keys.
-
-    On a phone, a table that is wider than the screen is scrolled sideways, which must be possible by keyboard as
-    well.
-    """
+    """Make tables focusable, so that readers can scroll a wide table with the arrow keys."""
     context["body"] = context.get("body", "").replace(
         '<table class="table"', '<table class="table" tabindex="0"'
     )

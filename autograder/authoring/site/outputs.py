@@ -1,7 +1,4 @@
-"""Runs the masters as a student would in JupyterLab, and keeps everything that their cells show.
-
-Moving pictures are kept as well.
-"""
+"""Executes the masters as a student would in JupyterLab. Returns them with their outputs, including animations."""
 
 from __future__ import annotations
 
@@ -31,14 +28,14 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 LIMIT = 600
-"""Time limit in seconds for one cell; the longest cell builds a workspace."""
+"""Time limit in seconds for one cell. The slowest cells build a workspace."""
 AT_ONCE = 3
 """The maximum number of notebooks that run at the same time."""
 MOST_FRAMES = 60
 FRAME_SECONDS = 0.25
 RECORDED = "Recorded while the notebook ran"
 MOVING = "moving_pictures"
-"""The key in a notebook's metadata that contains its moving pictures: SVG texts by name."""
+"""The key in a notebook's metadata for its animations: the texts of SVG files by the files' names."""
 _SVG_DATA = re2.compile(r'src="data:image/svg\+xml;base64,([A-Za-z0-9+/=]+)"')
 _STYLE = re2.compile(r"(?s)<style>(.*?)</style>")
 _INNER = re2.compile(r"(?s)^<svg([^>]*)>(.*)</svg>$")
@@ -46,11 +43,11 @@ _TITLE = re2.compile(r"(?s)<title>.*?</title>")
 
 
 def run_masters(masters: Sequence[Path], root: Path, tell: Callable[[str], None]) -> dict[str, NotebookNode]:
-    """Execute masters, each in a new kernel with its own folder and ROS domain.
+    """Execute masters, each in a new kernel with its own folder and ROS domain, and return them with outputs.
 
     Args:
         masters: The files of the masters.
-        root: The top folder of the course that the kernels and their judges use.
+        root: The top folder of the course whose exercises the kernels and judges use.
         tell: Called with a line about each notebook that is done.
 
     Returns:
@@ -70,12 +67,12 @@ def run_masters(masters: Sequence[Path], root: Path, tell: Callable[[str], None]
 
 
 def execute_in_new_kernel(client: NotebookClient, folder: Path, lines: Path, **variables: str) -> None:
-    """Execute a client's notebook as JupyterLab would: in a new kernel, with rclpy's log lines in the cells' output.
+    """Execute a client's notebook as JupyterLab would: in a new kernel, with rclpy's log lines in the outputs.
 
     Args:
-        client: The client of the notebook. Its limits and its kernel are set here.
+        client: nbclient's client of the notebook. This function sets its time limit and its kernel.
         folder: The working folder of the kernel.
-        lines: The path of the file that serves as the student's journal.
+        lines: The path of the journal, the file in which a student's checks are recorded.
         variables: More environment variables for the kernel.
 
     Raises:
@@ -86,9 +83,9 @@ def execute_in_new_kernel(client: NotebookClient, folder: Path, lines: Path, **v
     client.timeout, client.kernel_name = LIMIT, "python3"
     client.resources = {"metadata": {"path": str(folder)}}
     environment = {**os.environ, **variables, journal.VARIABLE: str(lines)}
-    # With this variable, ipykernel leaves rclpy's log lines out of the cells.
+    # If this variable is set, ipykernel does not show rclpy's log lines in the cells.
     environment.pop("PYTEST_CURRENT_TEST", None)
-    # The log lines also go to the kernel's own output, where no reader sees them.
+    # rclpy also writes the log lines to the kernel's standard output and error, where no reader sees them.
     client.execute(env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
@@ -102,7 +99,7 @@ def _run(notebook: NotebookNode, name: str, root: Path) -> NotebookNode:
         variables[course.VARIABLE] = str(root)
         variables["GIT_CONFIG_GLOBAL"] = (
             os.devnull
-        )  # otherwise a new package would contain the builder's address
+        )  # otherwise `ros2 pkg create` would write the builder's email address into a package
         try:
             execute_in_new_kernel(client, folder, held.path / "journal.jsonl", **variables)
         finally:
@@ -113,7 +110,7 @@ def _run(notebook: NotebookNode, name: str, root: Path) -> NotebookNode:
 
 
 class _Recorder(NotebookClient):
-    """A client that keeps each picture that a live picture shows, not only the last one."""
+    """A client that stores every frame of a live picture. nbclient's own client keeps only the last frame."""
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
@@ -127,7 +124,7 @@ class _Recorder(NotebookClient):
         return super().process_message(msg, cell, cell_index)
 
     async def _async_poll_output_msg(self, parent_msg_id: str, cell: NotebookNode, cell_index: int) -> None:
-        """Read a cell's messages, and what live pictures of earlier cells show meanwhile (nbclient drops those)."""
+        """Process a cell's messages, and new frames of live pictures in earlier cells, which nbclient would ignore."""
         assert self.kc is not None
         while True:
             msg = await ensure_async(self.kc.iopub_channel.get_msg(timeout=None))
@@ -142,7 +139,7 @@ class _Recorder(NotebookClient):
 
 
 def _put_moving_pictures(notebook: NotebookNode, name: str, frames: dict[str, list[str]]) -> None:
-    """Replace the last picture of each live picture by one that moves."""
+    """Replace the last frame of each live picture by an animation of all its frames."""
     pictures: dict[str, str] = {}
     for shown in frames.values():
         if len(set(shown)) < 3:
@@ -161,10 +158,10 @@ def _put_moving_pictures(notebook: NotebookNode, name: str, frames: dict[str, li
 
 
 def moving_picture(frames: Sequence[str]) -> str:
-    """Return one SVG that shows these SVGs one after the other, repeatedly; only the last one if motion is reduced.
+    """Return one SVG that shows the given SVGs in turn, repeatedly; the last one if the reader prefers no motion.
 
     Args:
-        frames: At least one picture. All have the same size and style.
+        frames: The texts of the SVGs, at least one. All have the same size and style.
     """
     step = -(-len(frames) // MOST_FRAMES)
     kept = [*frames[:-1:step], frames[-1]]
@@ -193,7 +190,7 @@ def moving_picture(frames: Sequence[str]) -> str:
 
 
 def show_as_a_students(notebook: NotebookNode, folder: str) -> None:
-    """Join what a cell printed in pieces, and replace the folder of the run, whose name varies, by a student's.
+    """Make a cell's outputs the same in every run: join printed pieces, and replace the temporary folder's path.
 
     Args:
         notebook: An executed notebook.

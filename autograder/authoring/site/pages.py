@@ -1,4 +1,4 @@
-"""The sources of the book: notebooks and Markdown pages, placed as in the course, so that links stay valid."""
+"""Writes the website's sources for Sphinx: notebooks and Markdown pages, in the folders that their links need."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 SELF, CLASS = "self", "class"
 EDITIONS = (SELF, CLASS)
-"""The editions of the book: for learners on their own, with solutions; and for classes, without."""
+"""The editions of the website: ``self`` for learners on their own, with solutions; ``class`` without solutions."""
 SUMMARY = "Solution (click to expand)"
 STATIC = "_static"
 _ATTACHMENT = re2.compile(r"\(attachment:([^)]+)\)")
@@ -38,14 +38,13 @@ _TARGET = re2.compile(r"\]\(([^)#:]+)[^)]*\)")
 
 
 def write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str, NotebookNode]) -> None:
-    """Write the sources of the book.
+    """Write the sources of the website.
 
     Args:
         root: The top folder of the course.
         folder: An empty folder.
         edition: A value from ``EDITIONS``.
-        executed: The executed source notebooks, by the names of the labs. A lab without one has no outputs in the
-            book.
+        executed: The executed source notebooks, by the names of the labs. The pages of other labs have no outputs.
     """
     (folder / STATIC).mkdir()
     if (root / "docs").is_dir():
@@ -54,7 +53,7 @@ def write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str,
     for page in root.glob("*.md"):
         name = "index.md" if page.name == "README.md" else page.name
         text = page.read_text(encoding="utf-8")
-        if name == "index.md" and edition == CLASS:  # the pictures in README may show how a task is solved
+        if name == "index.md" and edition == CLASS:  # the pictures in README may show a solution
             text = _README_PICTURE.sub("", text)
         (folder / name).write_text(text + _contents(root) if name == "index.md" else text, encoding="utf-8")
     for page in folder.rglob("*.md"):
@@ -82,18 +81,18 @@ def write_sources(root: Path, folder: Path, edition: str, executed: Mapping[str,
 
 
 def book_page(source: NotebookNode, edition: str, outcomes: tuple[str, ...] = ()) -> NotebookNode:
-    """Return the page of a notebook: each cell as students get it, with its solution folded below it or left out.
+    """Return a lab's page as a notebook with the cells that students get, and folded solutions for learners alone.
 
     Args:
         source: The source notebook, with or without outputs.
         edition: A value from ``EDITIONS``.
-        outcomes: What a reader can do after this notebook, as sentences.
+        outcomes: The learning outcomes of the lab, each completing the sentence "After this notebook you can".
     """
     page = nbformat.reads(release_text(source), as_version=4)
     secret = _lines_of_solutions(source, page) if edition == CLASS else frozenset[str]()
     cells = []
     for solved, cell in zip(source.cells, page.cells, strict=True):
-        # Left out: the book has its own links to the pages before and after, and a page is read, not run.
+        # Leave out the links between notebooks, because the website has its own, and the cell that prepares a kernel.
         if _WAYS.match(cell.source) or cell.get("id") == SET_UP_CELL:
             continue
         changed = solved.source != cell.source
@@ -120,7 +119,7 @@ def book_page(source: NotebookNode, edition: str, outcomes: tuple[str, ...] = ()
 
 
 def _lines_of_solutions(source: NotebookNode, page: NotebookNode) -> frozenset[str]:
-    """Return the lines that only the solutions contain: a cell may print a file that another cell has written."""
+    """Return the lines that only the solutions contain. An output that shows such a line gives a solution away."""
     solved, open_ = (
         {line.strip() for cell in notebook.cells for line in cell.source.split("\n")}
         for notebook in (source, page)
@@ -143,7 +142,7 @@ def _folded(solved: NotebookNode, outputs: list[NotebookNode]) -> NotebookNode:
 
 
 def _with_plain_anchors(text: str) -> str:
-    """Return a text with anchors in lower case, as the book writes the anchors of a notebook's headings."""
+    """Return a text whose links to headings of notebooks have anchors in lower case, as Sphinx writes them."""
 
     def plain(link: re2._Match[str]) -> str:
         anchor = re2.sub(r"[^\w\- ]", "", unquote(link[2]).lower()).replace(" ", "-")
@@ -153,7 +152,7 @@ def _with_plain_anchors(text: str) -> str:
 
 
 def _outcomes(root: Path) -> dict[str, tuple[str, ...]]:
-    """Return the rows of the page of learning outcomes, by the names of the labs."""
+    """Return the learning outcomes of each lab, from ``docs/learning-outcomes.md``, by the names of the labs."""
     found: dict[str, tuple[str, ...]] = {}
     page = root / "docs" / "learning-outcomes.md"
     for outcome, lab in _OUTCOME.findall(page.read_text(encoding="utf-8")) if page.exists() else ():
@@ -162,7 +161,7 @@ def _outcomes(root: Path) -> dict[str, tuple[str, ...]]:
 
 
 def _contents(root: Path) -> str:
-    """Return the tree of the book's pages: first the chapters, then the pages for each kind of reader."""
+    """Return the table of contents as Markdown: first the chapters, then the guides for each kind of reader."""
     trees = {}
     for chapter in course.chapters(root):
         trees[chapter.title] = [f"chapters/{chapter.folder.name}/{lab.name}" for lab in chapter.labs]
@@ -176,7 +175,7 @@ def _contents(root: Path) -> str:
 
 
 def _guides(root: Path) -> dict[str, list[Path]]:
-    """Return the pages by kind of reader, as listed in ``docs/README.md``. Pages that are not listed come last."""
+    """Return the guides by kind of reader, as listed in ``docs/README.md``. Pages that are not listed come last."""
     index = root / "docs" / "README.md"
     _, *parts = _READER.split(index.read_text(encoding="utf-8") if index.is_file() else "")
     left = {*root.glob("*.md"), *(root / "docs").rglob("*.md")} - {root / "README.md"}
