@@ -1,1 +1,1 @@
-"""How results get into nbgrader's gradebook, through a single writer."""
+"""Reads nbgrader's gradebook, and writes results into it, with one class (``Writer``) for all writing."""

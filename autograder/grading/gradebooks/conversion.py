@@ -1,7 +1,7 @@
 """Converts a graded submission: writes its notebooks to ``autograded/``, and makes its entry for the gradebook.
 
-The result equals that of nbgrader's conversion, in a twentieth of the time. nbgrader reads, validates and writes
-every notebook twice, and opens the gradebook a dozen times.
+The files and entries are the same as those of ``nbgrader autograde``. But this module takes a twentieth of the time:
+nbgrader reads, validates and writes every notebook twice, and opens the gradebook a dozen times.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def convert(
         The entries by notebook.
 
     Raises:
-        RuntimeError: A notebook was replaced while it was executed.
+        RuntimeError: A notebook in ``submitted`` changed while it was executed.
         OSError: A file could not be written.
     """
     folder.mkdir(parents=True)
@@ -77,7 +77,7 @@ def convert(
 
 
 def write_companions(submission: Submission, folder: Path) -> None:
-    """Copy nbgrader's own files about a submission, its timestamp and its secret, into a folder.
+    """Copy the files that nbgrader keeps about a submission (its timestamp and its secret) into a folder.
 
     Raises:
         OSError: A file could not be written.
@@ -92,13 +92,13 @@ def _graded(
     now, rebuilt = task_of(directory, submission, task.notebook)
     if now.key() != task.key():
         raise RuntimeError(
-            f"{task.label} was changed while it was graded: grade it again to take the new one"
+            f"{task.label} was changed while it was graded: grade it again to use the new file"
         )
     return _with_results(rebuilt, task, execution)
 
 
 def _text(notebook: NotebookNode) -> bytes:
-    """Return the notebook as nbformat would write it, but faster. Changes ``notebook``."""
+    """Return the JSON text of a notebook, equal to nbformat's but made faster. This changes ``notebook``."""
     split: Any = rwbase.split_lines
     strip: Any = rwbase.strip_transient
     encoded = msgspec.json.encode(strip(split(notebook)), order="sorted")
@@ -106,7 +106,7 @@ def _text(notebook: NotebookNode) -> bytes:
 
 
 def _entry(notebook: NotebookNode) -> NotebookEntry:
-    """Return the entry that nbgrader's SaveAutoGrades would make for the notebook."""
+    """Return the gradebook entry for a notebook, equal to the one that nbgrader's SaveAutoGrades would make."""
     scores: dict[str, float | None] = {}
     comments: dict[str, str | None] = {}
     for cell in notebook.cells:
@@ -128,7 +128,7 @@ def _write(path: Path, data: bytes) -> None:
 
 
 def _with_results(nb: NotebookNode, task: Task, execution: Execution) -> NotebookNode:
-    """Return the notebook with the outputs of its cells. A check cell gets the card and the points."""
+    """Return a rebuilt notebook with the outputs of its cells. A check cell shows the card and the points."""
     count = 0
     for index, (node, cell) in enumerate(zip(nb.cells, task.cells, strict=True)):
         if node.cell_type != "code":
@@ -142,7 +142,7 @@ def _with_results(nb: NotebookNode, task: Task, execution: Execution) -> Noteboo
         else:
             node.outputs = [nbformat_nodes.output(**output) for output in run.outputs]
             node.outputs += _remark(node, cell, run, task.limits) if execution.cells else []
-    # This is done here because formgrader shows ``autograded/`` without cleaning it.
+    # Scripts in outputs are removed here, because nbgrader's formgrader shows notebooks of `autograded/` unchanged.
     make_harmless(nb, range(len(nb.cells)) if execution.trouble else execution.as_typed)
     nb.cells = list(_with_rubrics(nb.cells))
     if not task.boxed:
@@ -151,7 +151,7 @@ def _with_results(nb: NotebookNode, task: Task, execution: Execution) -> Noteboo
 
 
 def _with_rubrics(cells: Sequence[NotebookNode]) -> Iterator[NotebookNode]:
-    """Yield the cells; below each question that a person grades, add the instructor's notes for grading."""
+    """Yield the cells, and below each answer that a person grades a cell with the instructor's notes for grading."""
     for cell in cells:
         known = cell.metadata.pop("autograder", {})
         yield cell
@@ -166,7 +166,7 @@ def _with_rubrics(cells: Sequence[NotebookNode]) -> Iterator[NotebookNode]:
 def _graded_outputs(
     check: CellCheck, verdict: Verdict, outputs: Sequence[Mapping[str, Any]]
 ) -> list[NotebookNode]:
-    """Return the outputs of a graded cell. The last one is the score, which nbgrader takes as the points."""
+    """Return the outputs of a graded cell: the card, the output of its tests, and last the points, for nbgrader."""
     score = points(check, verdict)
     card = nbformat_nodes.output(output_type="display_data", data=mimebundle(verdict), metadata={})
     return [
@@ -181,10 +181,9 @@ def _graded_outputs(
 
 
 def _of_tests(outputs: Sequence[Mapping[str, Any]]) -> Iterator[NotebookNode]:
-    """Yield the output and errors of tests in a form from which nbgrader does not take points.
+    """Yield the output and errors of a cell's tests as plain printed text, so that nbgrader ignores them.
 
-    nbgrader gives zero points for an error or a line on standard error, and takes the cell's first value as the
-    points.
+    Otherwise, nbgrader would give zero points for an error, and take the cell's first value as the points.
     """
     for one in outputs:
         if one["output_type"] == "error":

@@ -1,4 +1,4 @@
-"""Writes nbgrader's gradebook: sets points to zero, and enters points, comments, times and late penalties."""
+"""Writes to nbgrader's gradebook: sets points to zero, and enters points, comments, times and late penalties."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from sqlalchemy import Connection
 
 Scores = Mapping[str, float | None]
-"""The points by grade_id; None if the cell has no automatic score."""
+"""The points of cells by grade_id; None if a person has to give the points."""
 
 _GRADED = ("GradeCell", "TaskCell")
 _COMMENTED = ("SolutionCell", "TaskCell")
@@ -33,9 +33,8 @@ class NotebookEntry:
 
     Attributes:
         scores: The automatic points of each graded cell, by grade_id; None if a person has to give them.
-        comments: The automatic comment on each cell that can have one, by grade_id.
-        unchecked: The graded cells that could not be checked. As after :func:`reset`, their zero points say nothing
-            about the work.
+        comments: The automatic comments by grade_id, for each cell that may have a comment; None for no comment.
+        unchecked: The grade_ids of cells that could not be checked. They get zero points and are marked for review.
     """
 
     scores: Scores
@@ -44,10 +43,10 @@ class NotebookEntry:
 
 
 def reset(url: str, submissions: Iterable[tuple[str, str]]) -> None:
-    """Set the automatic grades of these submissions to zero, in one transaction.
+    """Set the automatic points of submissions to zero and mark their cells for review, in one transaction.
 
-    The cells are also marked for review. So if a later step fails, no earlier score is left. A grade that an
-    instructor gave by hand stays.
+    After that, a later failure cannot leave old points in the gradebook. Points that an instructor gave by hand are
+    not changed.
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
@@ -72,20 +71,20 @@ def enter(
     notebooks: Mapping[str, NotebookEntry],
     timestamp: datetime | None,
 ) -> bool:
-    """Enter the results of one submission, in one transaction. What a person entered stays.
+    """Enter the results of one submission, in one transaction. Points and comments by a person are not changed.
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
         assignment: The assignment's name.
         student: The student's id. An unknown student is added.
         notebooks: The results by notebook.
-        timestamp: The time of handing in, in UTC; None to keep the time that is in the gradebook.
+        timestamp: The submission time in UTC; None to keep the time that is in the gradebook.
 
     Returns:
         True if the assignment has a due date, so that nbgrader has to compute the late penalty.
 
     Raises:
-        LookupError: The gradebook does not contain the assignment or the notebook.
+        LookupError: The gradebook does not contain the assignment or one of its notebooks.
     """
     with opened(url) as book:
         found = book.execute(
@@ -108,7 +107,7 @@ def enter(
 
 @dataclass(frozen=True)
 class _Cells:
-    """The ids of a notebook and its cells in the gradebook. Cells are pairs of an id and a name."""
+    """The id of a notebook in the gradebook, and its cells: pairs of an id in the gradebook and a grade_id."""
 
     notebook: str
     graded: tuple[tuple[str, str], ...]
@@ -134,7 +133,7 @@ def _cells(book: Connection, assignment: str) -> dict[str, _Cells]:
 
 
 def _submission(book: Connection, assignment: str, student: str, timestamp: datetime | None) -> str:
-    """Return the id of a submission. Add a new submission first, with its timestamp in the form that nbgrader uses."""
+    """Return the id of a submission in the gradebook, after adding a missing submission and setting its time."""
     if not book.execute(sql("SELECT 1 FROM student WHERE id = :id"), {"id": student}).first():
         book.execute(sql("INSERT INTO student (id) VALUES (:id)"), {"id": student})
     found = book.execute(
@@ -158,7 +157,7 @@ def _submission(book: Connection, assignment: str, student: str, timestamp: date
 
 
 def enter_time(url: str, assignment: str, student: str, timestamp: datetime) -> None:
-    """Enter the time of handing in of a submission that is in the gradebook.
+    """Enter the submission time of a submission.
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
@@ -229,7 +228,8 @@ def _enter_scores(book: Connection, notebook: str, cells: _Cells, entry: Noteboo
             "n": notebook,
             "cell": cell,
             "score": scores.get(name, 0.0),
-            # As nbgrader's SaveAutoGrades does, mark a cell for review if a person gave it points or still has to.
+            # Mark a cell for review if a person gave points or still has to give them. nbgrader's SaveAutoGrades does
+            # the same.
             "look": by_hand.get(cell) is not None or scores.get(name, 0.0) is None or name in entry.unchecked,
         }
         for cell, name in cells.graded
@@ -271,7 +271,7 @@ def _enter_comments(
 
 
 def _put(book: Connection, rows: list[dict[str, object]], statement: str) -> None:
-    """Execute a statement once for each row. It need not use all fields of a row."""
+    """Execute a statement for each row, with the fields that the statement names as ``:field``."""
     if rows:
         names = _PARAMETER.findall(statement)
         book.execute(sql(statement), [{name: row[name] for name in names} for row in rows])

@@ -1,7 +1,7 @@
-"""Reads nbgrader's gradebook: connections for one transaction each, and the points and comments of submissions.
+"""Reads submissions with their points and comments from nbgrader's gradebook.
 
-It uses SQL on nbgrader's own tables (``nbgrader/api.py``, as of 0.9), because nbgrader's objects need a query for
-every cell, and importing them takes more than a second.
+This module uses SQL on nbgrader's tables (``nbgrader/api.py`` in version 0.9). nbgrader's own objects would be slow:
+they need a query for every cell, and importing them takes more than a second.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ SUBMITTED = """
     JOIN submitted_notebook sn ON sn.assignment_id = s.id
     JOIN notebook n ON n.id = sn.notebook_id
 """
-"""The joined tables of submitted notebooks, for use after FROM."""
+"""SQL for use after FROM: joins the tables of submissions, assignments, and submitted notebooks."""
 _FROM = "submitted_assignment s JOIN assignment a ON a.id = s.assignment_id"
 _CELLS = f"""
     SELECT s.student_id AS student, a.name AS assignment, n.name AS notebook, b.name AS cell,
@@ -42,7 +42,7 @@ _CELLS = f"""
         JOIN grade g ON g.notebook_id = sn.id JOIN base_cell b ON b.id = g.cell_id
         LEFT JOIN grade_cells gc ON gc.id = b.id LEFT JOIN task_cells tc ON tc.id = b.id
 """
-# In nbgrader, a question that a person grades consists of two cells with one name: one has the points, the other the
+# In nbgrader, a question that a person grades has two cells with the same name: one for the points, one for the
 # comment.
 _COMMENTS = f"""
     SELECT s.student_id AS student, a.name AS assignment, n.name AS notebook, b.name AS cell,
@@ -68,10 +68,10 @@ class CellEntry:
 
     Attributes:
         max_score: The maximum points for the cell.
-        judged: The points that were given automatically; None if there are none.
-        by_hand: The points that a person gave instead; None if no person did.
-        extra: The points that a person added.
-        waits: True if nbgrader says that a person still has to grade the cell.
+        judged: The automatic points; None if there are none.
+        by_hand: The points by a person, which replace the automatic points; None if there are none.
+        extra: Extra credit: points that a person added.
+        waits: True if the cell is marked for review, that is, a person has to grade it.
         comment: The comment of a person; if there is none, the automatic comment.
     """
 
@@ -93,8 +93,8 @@ class SubmissionEntry:
     """The gradebook's entry for one submission.
 
     Attributes:
-        handed_in: The time of handing in, in UTC; None if unknown.
-        due: The due date for this student, in UTC; None if there is none.
+        handed_in: The submission time in UTC; None if unknown.
+        due: The due date in UTC, with the student's extension; None if the assignment has no due date.
         penalties: The late penalty in points, by notebook.
         cells: The entries of the cells, by notebook and then by grade_id.
         name: The student's name; empty if the gradebook has none.
@@ -113,7 +113,7 @@ class SubmissionEntry:
 
     @property
     def penalty(self) -> float:
-        """The late penalties of all notebooks together, in points."""
+        """The sum of the late penalties of all notebooks, in points."""
         return sum(self.penalties.values())
 
     @property
@@ -123,11 +123,11 @@ class SubmissionEntry:
 
     @property
     def taken_off(self) -> float:
-        """The points that the late penalty really costs. As in nbgrader, no score becomes negative."""
+        """The points that the late penalty subtracts: at most all points, because no score becomes negative."""
         return min(self.penalty, max(0.0, self.raw))
 
     def why_late(self, zone: tzinfo) -> str:
-        """Return the reason for a late penalty, with times in this zone; empty if there is no penalty."""
+        """Return the submission time and the due date in a sentence, in a time zone; empty if there is no penalty."""
         if not self.taken_off:
             return ""
         # The due date may have been removed after the penalty was entered.
@@ -135,12 +135,12 @@ class SubmissionEntry:
         return ", ".join(f"{word} {in_zone(at.replace(tzinfo=UTC), zone)}" for word, at in times if at)
 
     def judged(self, notebook: str, cell: str) -> float | None:
-        """Return the points that a cell was given automatically; None if there are none."""
+        """Return the automatic points of a cell; None if there are none."""
         entry = self.cells.get(notebook, {}).get(cell)
         return entry.judged if entry else None
 
     def shown(self) -> str:
-        """Return a hash of everything about points and comments that a feedback page shows."""
+        """Return a hash of the whole entry. If it changes, the feedback page has to be made again."""
         return hashlib.sha256(msgspec.json.encode(self, order="deterministic")).hexdigest()
 
 
@@ -149,24 +149,24 @@ Entries = Mapping[tuple[str, str], SubmissionEntry]
 
 
 def opened(url: str) -> AbstractContextManager[Connection]:
-    """Open a connection for one transaction. It is closed at the end of the block."""
+    """Open a connection for one transaction. At the end of the block, the transaction is committed."""
     return _engine(url).begin()
 
 
 @functools.lru_cache(maxsize=8)
 def _engine(url: str) -> Engine:
-    """Return an engine that keeps no open connection, only SQLAlchemy's knowledge of the database."""
+    """Return SQLAlchemy's engine for a gradebook. The engine opens a new connection for each block."""
     return sqlalchemy.create_engine(url, poolclass=NullPool)
 
 
 @functools.lru_cache(maxsize=64)
 def sql(statement: str) -> TextClause:
-    """Return a parsed statement. Each statement is parsed only once."""
+    """Return a statement in the form that SQLAlchemy executes. Each text is parsed only once."""
     return sqlalchemy.text(statement)
 
 
 def gradebook_file(url: str) -> Path | None:
-    """Return the file of a gradebook; None if it is in a database server."""
+    """Return the path of a gradebook's SQLite file; None if the gradebook is on a database server."""
     address = sqlalchemy.make_url(url)
     return Path(address.database) if address.database and address.get_backend_name() == "sqlite" else None
 
@@ -203,8 +203,8 @@ def read_entries(url: str, *, student: str = "", assignment: str = "") -> Entrie
 
     Args:
         url: The address by which SQLAlchemy opens the gradebook.
-        student: Only this student's submissions; those of all students if empty.
-        assignment: Only submissions for this assignment; those for all assignments if empty.
+        student: Return only submissions of this student; of all students if empty.
+        assignment: Return only submissions for this assignment; for all assignments if empty.
     """
     names = {"student": student, "assignment": assignment}
     narrow = "(:student = '' OR s.student_id = :student) AND (:assignment = '' OR a.name = :assignment)"

@@ -1,4 +1,4 @@
-"""The only writer to gradebook, ``autograded/`` and ``feedback/``. If it fails, the submission has zero points."""
+"""Writes the results of a submission to the gradebook, ``autograded/`` and ``feedback/``. No other module does so."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 class NotWritten(RuntimeError):
-    """The points in the gradebook differ from the judge's, or could not be written. The message names the exercise."""
+    """The points could not be written to the gradebook, or differ there from the judge's. The message says where."""
 
 
 class Writer:
@@ -48,7 +48,7 @@ class Writer:
         self._pages = feedback.FeedbackPages(directory)
 
     def take_back(self, submissions: Sequence[Submission]) -> None:
-        """Remove what an earlier run wrote for these submissions: grades, converted notebooks, feedback."""
+        """Set the grades of submissions to zero, and remove their converted notebooks and feedback pages."""
         self._store.forget_entered(submissions)
         for submission in submissions:
             for step in ("autograded", "feedback"):
@@ -67,13 +67,12 @@ class Writer:
 
         Args:
             submission: The submission that was executed.
-            fingerprint: A hash of everything from which the results were made.
+            fingerprint: The hash of all files that influence the results, from :class:`Fingerprints`.
             results: Pairs of a task and its result, one for each notebook of the assignment.
             rows: The results as rows of the report.
 
         Raises:
-            NotWritten: Writing failed, or the gradebook then contains other points. In both cases the grades are
-                zero.
+            NotWritten: Writing failed, or the gradebook contains wrong points afterwards. The grades were set to zero.
             OSError: The disk is full.
         """
         try:
@@ -101,7 +100,8 @@ class Writer:
     def _convert_and_enter(self, submission: Submission, results: Sequence[tuple[Task, Execution]]) -> None:
         """Write the notebooks, then enter the grades.
 
-        The notebooks come first: if this is interrupted between the two steps, notebooks without grades have no effect.
+        The notebooks come first: if the grader is interrupted between the two steps, notebooks without grades do no
+        harm.
         """
         folder = self._folder("autograded", submission)
         _remove(folder)
@@ -114,11 +114,11 @@ class Writer:
             self._assign_penalties(submission)
 
     def enter_time(self, submission: Submission, at: datetime | None) -> None:
-        """Enter the time at which a graded submission was handed in, and the late penalty that follows.
+        """Enter a new submission time of a graded submission, and the late penalty for it.
 
         Args:
             submission: A graded submission. Its grades stay unchanged.
-            at: The time in UTC; None if the gradebook has the time already.
+            at: The time in UTC; None if the gradebook already has the time, so that only the penalty is computed.
         """
         names = submission.assignment, submission.student
         with quiet(self._directory.state):
@@ -138,7 +138,7 @@ class Writer:
         return read_entries(url, student=student, assignment=assignment)[student, assignment]
 
     def write_feedback(self, submission: Submission) -> bool:
-        """Make the HTML pages for the student. Return False if a page failed; the log then contains the reason.
+        """Write the feedback pages of a submission. Return False if that failed; the log then contains the reason.
 
         Raises:
             OSError: The disk is full.
@@ -167,7 +167,7 @@ class Writer:
 
 
 class _LogFile(logging.FileHandler):
-    """A log file that ignores its own write errors. On a full disk, the grader itself reports the problem once."""
+    """A log file that ignores errors when it is written. The grader itself reports a full disk, once."""
 
     def handleError(self, record: logging.LogRecord) -> None:  # noqa: N802  (logging's name)
         """Ignore the error."""
@@ -175,7 +175,7 @@ class _LogFile(logging.FileHandler):
 
 @contextlib.contextmanager
 def quiet(state: Path) -> Iterator[None]:
-    """During the block, send nbgrader's log to a file in the class, so that it does not break up the progress bar."""
+    """During the block, write nbgrader's log to a file of the class, not to the terminal with the progress bar."""
     logger = logging.getLogger("traitlets")
     handler = _LogFile(state / "nbgrader.log", delay=True)
     handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
@@ -184,7 +184,7 @@ def quiet(state: Path) -> Iterator[None]:
     logger.propagate = False
     try:
         with warnings.catch_warnings():
-            # nbgrader 0.9 was written for an older SQLAlchemy, which gave fewer warnings.
+            # SQLAlchemy warns about outdated calls in nbgrader 0.9, which was written for an older version.
             warnings.simplefilter("ignore")
             yield
     finally:

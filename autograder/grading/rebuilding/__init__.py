@@ -1,1 +1,1 @@
-"""From the file that a student handed in to a task: it is read, compared with the trusted master, and rebuilt."""
+"""Makes a task from a submitted notebook: reads it, compares it with the trusted master, and builds a new notebook."""

@@ -1,4 +1,4 @@
-"""A hash that changes whenever anything in the course changes that may influence a grade."""
+"""Computes a hash of all files of the course that may influence a grade."""
 
 from __future__ import annotations
 
@@ -16,23 +16,24 @@ if TYPE_CHECKING:
 
 _MADE_BY_PYTHON = "__pycache__"
 _MADE_BY_COLCON = frozenset({"build", "install", "log"})
-"""Folders that are generated from files that are already counted. colcon makes them next to a workspace's ``src``."""
+"""The folders that colcon makes next to a workspace's ``src``. The hash covers the files in ``src``, from which colcon
+makes them.
+"""
 _OF_CHAPTERS = (f"*/{course.CHAPTER}", "*/*/*.py", f"*/*/*{REFERENCE}")
-"""The files of the chapters that count: their descriptions, the exercises, and the reference outputs."""
+"""Patterns for the chapters' files that the hash covers: ``chapter.toml``, exercises, and reference outputs."""
 
 
 @functools.cache
 def course_version() -> str:
-    """Return a hash of everything in the course that runs and judges submissions, in hexadecimal.
+    """Return a hash of all files of the course that run or judge submissions, in hexadecimal.
 
-    The release number would not be enough: after an exercise is fixed, yesterday's results must not be reused.
-    Results are stored under this hash, a graded submission is checked again when it changes, and all machines of a
-    cluster must have the same hash.
+    Results are stored under this hash. When it changes, for example after a fix of an exercise, graded submissions are
+    run again. All machines of a cluster must have the same hash.
 
-    Every file of the package and of the environment counts, even one that seems to influence no grade, because a list
-    of exceptions would be wrong one day. In ``solutions/``, the exercises, their reference outputs, the chapters'
-    interfaces and the workspace count. The masters do not: a class has its own copy of them in ``source/``, which is
-    compared separately.
+    The hash covers every file of the folders ``autograder`` and ``environment``, without exceptions. Of
+    ``solutions/``, it covers the exercises, their reference outputs, the chapters' interfaces and the workspace. It
+    does not cover the masters, because a class is graded by its own copies in ``source/``, whose changes are found
+    separately.
     """
     digest = hashlib.sha256()
     for name, path in counted_files():
@@ -43,7 +44,7 @@ def course_version() -> str:
 
 
 def counted_files() -> Iterator[tuple[str, Path]]:
-    """Yield the files that count, always in the same order, with names that are the same on every machine."""
+    """Yield the files that the hash covers in a fixed order, each with a name that is the same on every machine."""
     root, package = course.root(), Path(course.__file__).parent
     solutions = root / "solutions"
     of_chapters = (*solutions.glob("*ws"), *solutions.glob(f"*/{course.INTERFACES}"))

@@ -1,14 +1,14 @@
-"""Cells that only show something. They are skipped when a class is graded, because no grade depends on them.
+"""Finds the cells to skip when a class is graded: those that only show something, such as a ``ros2`` command.
 
-A chapter shows the ``ros2`` command in some forty cells. Each of these starts processes that take half a second, and
-together they take longer than all student code and checks. A check runs its subject in a separate ROS domain, so such
-a cell cannot affect the check.
+The notebooks of a chapter contain about forty such cells. Each starts processes that take half a second. To run them
+would take longer than all student code and checks. No check depends on them, because a check runs its subject in a
+separate ROS domain.
 
-The master marks these cells with a tag. A cell that makes something, such as ``colcon build``, is not a demonstration,
+The master marks these cells with a tag. A cell that makes something, such as ``colcon build``, has no such tag,
 because a later check may need the result.
 
-Below the last cell with points, no check follows. There, notebooks write their nodes into a package, and build and run
-them as programs. So all cells with files and terminals are skipped there, too.
+After the last cell with points, there is no check. All cells that write files or run terminal commands are skipped
+there, too.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ LEFT_OUT = "[a demonstration of the notebook: left out while grading]"
 
 
 def is_demonstration(cell: NotebookNode) -> bool:
-    """Return True if a cell of a rebuilt notebook only shows something.
+    """Return True if a cell comes from the master, and the master marks it as a demonstration.
 
     Args:
-        cell: A cell of a rebuilt notebook. Only cells that come from the master have nbgrader's metadata there.
+        cell: A cell of a rebuilt notebook. In such a notebook, only cells from the master have nbgrader's metadata.
     """
     given = cell.cell_type == CellType.CODE and is_the_masters(cell) and not _marks(cell).get("grade")
     return given and CellRole.DEMONSTRATION in cell.metadata.get("tags", ())
@@ -64,5 +64,5 @@ def _is_file_or_terminal(cell: NotebookNode) -> bool:
 
 
 def are_run(directory: ClassDirectory) -> bool:
-    """Return True if the configuration of a class asks for demonstrations to be run."""
+    """Return True if demonstrations are run in this class (option ``demonstrations`` in its configuration)."""
     return bool(directory.config.WireExecute.get("demonstrations", False))

@@ -1,7 +1,8 @@
-"""Fingerprints of submissions, computed from their bytes. A run uses them to find submissions that have not changed.
+"""Computes a fingerprint of a submission from its files. A run skips submissions whose fingerprint is unchanged.
 
-Rebuilding a notebook would be a more exact test, but a class of a hundred students has a thousand notebooks, and in
-most runs few of them are new. A submission whose fingerprint has changed is compared again, cell by cell.
+To read files is much faster than to rebuild the notebooks: a class of a hundred students has a thousand notebooks, and
+in most runs few of them are new. If the fingerprint of a submission has changed, its notebooks are rebuilt and
+compared cell by cell.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class Fingerprints:
-    """Computes the fingerprints of a class in its current state.
+    """Computes the fingerprints of a class's submissions.
 
     Args:
         directory: The class.
@@ -34,7 +35,7 @@ class Fingerprints:
         self._directory = directory
 
     def of(self, submission: Submission) -> str:
-        """Return a hash of the submission, and of everything from which its grade, notebook and page are made."""
+        """Return a hash of all files that influence the grade and the feedback of a submission."""
         files = [submission.folder / f"{name}{SUFFIX}" for name in self._notebooks(submission.assignment)]
         return _digest(
             [
@@ -48,7 +49,7 @@ class Fingerprints:
 
     @functools.cache  # noqa: B019  (lives as long as one batch)
     def of_sources(self, assignment: str) -> str:
-        """Return a hash of an assignment's sources, the class's configuration and the code."""
+        """Return a hash of an assignment's source files, the class's configuration and the course's code."""
         folder = self._directory.path / "source" / assignment
         files = sorted(path for path in folder.rglob("*") if path.is_file())
         return _digest(
@@ -66,12 +67,12 @@ class Fingerprints:
 
 
 def _trusted(path: Path) -> str:
-    """Return a hash of one of the class's own files. Unlike a submitted file, it may be a link."""
+    """Return a hash of an instructor's file. It may be a link, unlike a submitted file."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def _content(path: Path) -> str:
-    """Return a hash of a submitted file or, if it cannot be read, of the reason."""
+    """Return a hash of a submitted file; if it cannot be read, return the reason."""
     try:
         return hashlib.sha256(read_bytes(path)).hexdigest()
     except UnreadableSubmission as error:

@@ -1,4 +1,4 @@
-"""The trusted master of a submission: the class's source notebook, with stubs instead of solutions."""
+"""Reads the trusted master of a submission: the class's source notebook, with stubs instead of solutions."""
 
 from __future__ import annotations
 
@@ -30,9 +30,8 @@ if TYPE_CHECKING:
 def read_master(source: Path, config: Config) -> NotebookNode:
     """Return the notebook that ``nbgrader generate_assignment`` would enter into the gradebook.
 
-    The master is made from the source and not read from ``release/``, because it has to contain hidden tests and no
-    solutions. All callers share one object, because copying it for each submission would take as long as reading it.
-    A caller that changes the object must copy it first.
+    The notebook in ``release/`` would not do, because it lacks the hidden tests. All callers share one object: copy it
+    before you change it.
 
     Args:
         source: The notebook in the class's ``source`` folder.
@@ -52,9 +51,9 @@ def read_master(source: Path, config: Config) -> NotebookNode:
 def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
     try:
         notebook = nbformat_nodes.read(data.decode())
-    except Exception as error:  # nbformat passes on all errors of its JSON and schema libraries
+    except Exception as error:  # nbformat may raise any error of its JSON and schema libraries
         raise MasterUnusable(
-            f"{source} is not a notebook: {error}. Make it again or put back a copy."
+            f"{source} is not a notebook: {error}. Make the notebook again, or restore a copy."
         ) from error
     resources: dict[str, Any] = {}
     rubrics, given = _rubrics(notebook), {grade_id(cell): _given_part(cell.source) for cell in notebook.cells}
@@ -63,7 +62,7 @@ def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
             notebook, resources = _step(step)().preprocess(notebook, resources)
         except (
             Exception
-        ) as error:  # nbgrader's steps raise various errors, for example if END SOLUTION is missing
+        ) as error:  # nbgrader's preprocessors raise various errors, for example if END SOLUTION is missing
             raise MasterUnusable(f"{source} cannot be prepared as nbgrader does it: {error}") from error
     _check_cells(source, notebook)
     for cell in notebook.cells:
@@ -74,7 +73,7 @@ def _master(source: Path, data: bytes, steps: tuple[str, ...]) -> NotebookNode:
 
 
 def _rubrics(source: NotebookNode) -> dict[str, dict[str, Any]]:
-    """Return the model answers and grading rules for questions that a person grades, with pictures, by grade_id."""
+    """Return, by grade_id, the model answer and its pictures for each question that a person grades."""
     found = {}
     for cell in source.cells:
         if cell.cell_type == "markdown" and is_answer(cell):
@@ -86,7 +85,7 @@ def _rubrics(source: NotebookNode) -> dict[str, dict[str, Any]]:
 
 
 def _given_part(source: str) -> str:
-    """Return the lines of a cell that are not part of the solution; empty if nbgrader replaces the whole cell."""
+    """Return the lines of a cell around its solution; empty if the whole cell is the solution."""
     lines = source.splitlines()
     begin = next((place for place, line in enumerate(lines) if "BEGIN SOLUTION" in line), len(lines))
     end = next((place for place, line in enumerate(lines) if "END SOLUTION" in line), 0)
@@ -97,7 +96,7 @@ def check_of(cell: NotebookNode) -> CellCheck | None:
     """Return the check in a cell of a master; None if the cell is not graded automatically.
 
     Raises:
-        LookupError: The cell calls the judge, but there is no exercise with its name.
+        LookupError: The cell calls the judge, but its name belongs to no exercise.
     """
     if not is_check(cell):
         return None
@@ -115,16 +114,16 @@ def check_of(cell: NotebookNode) -> CellCheck | None:
 
 
 def exercise_of(name: str) -> str:
-    """Return the id of the exercise that a check cell checks; if it checks none, the name of the cell."""
+    """Return the id of the exercise that belongs to a cell with this name; the name itself if there is none."""
     return next((known for known in exercises.all_ids() if exercises.grade_id(known) == name), name)
 
 
 def _asks_the_judge(source: str) -> bool:
-    """Return True if a graded cell calls ``check`` with an exercise; then its own tests do not decide."""
+    """Return True if a graded cell calls ``check``, so that the judge gives its points, not tests in the cell."""
     try:
         tree = ast.parse(source)
     except SyntaxError:
-        return "check(" in source  # a magic makes the cell invalid Python, so it cannot be parsed
+        return "check(" in source  # a cell with a magic cannot be parsed as Python
     return any(
         isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "check"
         for node in ast.walk(tree)
@@ -136,19 +135,21 @@ def _check_cells(source: Path, notebook: NotebookNode) -> None:
     for cell in notebook.cells:
         name = grade_id(cell)
         if name and name in seen:
-            raise MasterUnusable(f"{source}: two cells have the grade_id {name!r}. Give one of them another.")
+            raise MasterUnusable(
+                f"{source}: two cells have the grade_id {name!r}. Give one of the cells a different grade_id."
+            )
         seen.add(name)
         try:
             check_of(cell)
         except LookupError as error:
             raise MasterUnusable(
-                f"{source}: the cell {name!r} carries points, but {error}. Only the judge's verdict earns "
-                "points there: name the cell after its exercise, or mark it as manually graded."
+                f"{source}: the cell {name!r} has points, but {error}. The judge gives points only to cells "
+                "with an exercise: name the cell after its exercise, or mark it as manually graded."
             ) from error
 
 
 def _steps(config: Config) -> tuple[str, ...]:
-    """Return the steps that a source notebook goes through before it is entered into the gradebook."""
+    """Return the names of nbgrader's preprocessors that run before the cells are saved in the gradebook."""
     configured = GenerateAssignment(
         config=Config({"GenerateAssignment": config.GenerateAssignment})
     ).preprocessors

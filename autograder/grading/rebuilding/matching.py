@@ -1,8 +1,8 @@
 """Matches submitted cells with cells of the master, even if an editor has dropped nbgrader's metadata.
 
-A cell is recognized by its grade_id, or else by its id, or else by its text. If no submitted cell matches an answer
-in this way, the answer is looked for in the student's other cells, by what they define. All of this decides only
-which text of a student belongs to which cell; the text of given cells and of checks always comes from the master.
+A cell is recognized by its grade_id, otherwise by its id, otherwise by its text. If no submitted cell matches an
+answer cell, the answer is searched in the student's other cells, by the names that they define. Matching only assigns
+a student's texts to the cells of the master. The text of given cells and of checks always comes from the master.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _WRITES = re2.compile(r"\A\s*%%(?:writefile|program)[ \t]+(?:-a[ \t]+|--append[ 
 
 @dataclass(frozen=True)
 class Known:
-    """A cell of the master, with everything by which a submitted cell can be recognized as this one.
+    """A cell of the master, with the properties by which a submitted copy of it is recognized.
 
     Attributes:
         name: The grade_id of the cell; empty for a text cell that nbgrader does not know.
@@ -49,13 +49,13 @@ class Known:
 
 @dataclass(frozen=True)
 class Matches:
-    """The result of matching: which submitted cells match which cells of the master.
+    """The result of matching.
 
     Attributes:
         places: For each cell of the master, by grade_id, the indexes of the submitted cells that match it.
-        unmarked: The indexes of the submitted cells that had lost their grade_id.
-        elsewhere: For answers that match no cell, the indexes of cells that define the same names or write the same
-            file.
+        unmarked: The indexes of the submitted cells that match a cell of the master although they lost their grade_id.
+        elsewhere: For each answer cell without a match, by grade_id, the indexes of the submitted cells that define
+            the same names or write the same file.
         own: The indexes of the cells that match no cell of the master and contain a student's text.
     """
 
@@ -84,7 +84,7 @@ def match(master: Sequence[Known], submitted: Sequence[SubmittedCell]) -> Matche
 
 
 def normalized(text: str) -> str:
-    """Return a text without what editors change by themselves: spaces at line ends, and empty lines around the text."""
+    """Return a text without spaces at line ends and without empty lines at its beginning and end."""
     return "\n".join(line.rstrip() for line in text.strip().splitlines())
 
 
@@ -104,13 +104,13 @@ class _Matching:
                 self.places.setdefault(cell.grade_id, []).append(place)
 
     def by_id(self) -> None:
-        """Match cells that have no known grade_id by the id of the cell."""
+        """Match cells by their ids, if no grade_id has matched them."""
         names = {cell.identifier: cell.name for cell in self._missing() if cell.identifier}
         for place, cell in self._left():
             self._take(names.get(cell.identifier, ""), place)
 
     def by_text(self) -> None:
-        """Match cells by exactly equal text. If several cells have it, the first matches the first."""
+        """Match cells by equal text. If several cells have the same text, match them in their order."""
         names: dict[str, list[str]] = {}
         for missing in self._missing():
             for text in {normalized(text) for text in missing.texts} - {""}:
@@ -120,7 +120,7 @@ class _Matching:
             self._take(next((name for name in same if name not in self.places), ""), place)
 
     def by_given_part(self) -> None:
-        """Match missing answers that define nothing, such as texts, if just one cell contains the given part."""
+        """Match an answer that defines no names, such as a text, with a cell that contains its given part."""
         for missing in self._missing():
             if not missing.is_answer or _defines(missing) or not self._is_telling(missing):
                 continue
@@ -129,9 +129,9 @@ class _Matching:
                     self._take(missing.name, place)
 
     def elsewhere(self) -> dict[str, list[int]]:
-        """Find the cells that define what missing answers should define.
+        """Return, for each answer cell without a match, the submitted cells that define the same names.
 
-        If an answer was merged into a given cell, that cell becomes the student's own, and the original is put back.
+        If a student wrote an answer into a given cell, that cell no longer matches the given cell of the master.
         """
         code = {
             place: cell.source
@@ -166,18 +166,18 @@ class _Matching:
         return [(place, cell) for place, cell in enumerate(self._submitted) if place not in taken]
 
     def _is_telling(self, missing: Known) -> bool:
-        """Return True if no other cell of the master contains the given part of this answer."""
+        """Return True if this cell's given part identifies the cell: no other cell of the master contains that part."""
         others = (text for cell in self._master.values() if cell is not missing for text in cell.texts)
         return bool(missing.given.strip()) and not any(_has_lines(text, missing.given) for text in others)
 
 
 def _defines(answer: Known) -> str:
-    """Return the path of the file that a stub writes, or a pattern for the names that it defines, or an empty text."""
+    """Return the path of the file that a stub writes, a pattern for the names that it defines, or an empty text."""
     return _file(answer.texts[0]) or (_names(answer.texts[0]) if answer.kind is CellType.CODE else "")
 
 
 def _is_answered_by(answer: Known, text: str) -> bool:
-    """Return True if a text defines, at its top level, what a stub defines."""
+    """Return True if a cell's text writes the same file as a stub, or defines one of the stub's names."""
     if file := _file(answer.texts[0]):
         return _file(text) == file
     names = _names(answer.texts[0])
@@ -185,20 +185,20 @@ def _is_answered_by(answer: Known, text: str) -> bool:
 
 
 def _is_mentioned_by(answer: Known, text: str) -> bool:
-    """Return True if a text mentions the file that a stub writes; it may write this file in another way."""
+    """Return True if a text contains the name of the file that a stub writes, and so may write this file."""
     file = re2.escape(posixpath.basename(_file(answer.texts[0])))
     return bool(file) and re2.search(rf"(?:^|[^\w.-]){file}(?:[^\w-]|$)", text) is not None
 
 
 def _file(source: str) -> str:
-    """Return the path of the file that a cell writes; empty for any other cell."""
+    """Return the path of the file that a cell writes by a magic; empty if it has no such magic."""
     found = _WRITES.match(source)
     return posixpath.normpath(found[1]) if found else ""
 
 
 @functools.lru_cache(maxsize=1024)
 def _names(stub: str) -> str:
-    """Return a pattern for texts that define one of the stub's names; empty if the stub defines none."""
+    """Return a pattern for code that defines a name of the stub; empty if the stub defines no name."""
     names = "|".join(map(re2.escape, _defined_names(stub)))
     return (
         rf"(?m)^(?:(?:async[ \t]+)?def|class)[ \t]+(?:{names})\b"
@@ -215,7 +215,7 @@ def _defined_names(stub: str) -> list[str]:
     try:
         body = ast.parse(python_of(stub)).body
     except SyntaxError:
-        return []  # this is an instructor's own stub that contains a magic, so it cannot be parsed
+        return []  # a stub by an instructor may contain a magic, which is not valid Python
     names = []
     for node in body:
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
@@ -227,6 +227,6 @@ def _defined_names(stub: str) -> list[str]:
 
 
 def _has_lines(text: str, lines: str) -> bool:
-    """Return True if a text contains these lines in this order. Spaces around a line do not count."""
+    """Return True if a text contains all the lines, in their order. Spaces around a line do not matter."""
     there = (line.strip() for line in text.splitlines())
     return all(line.strip() in there for line in lines.splitlines() if line.strip())

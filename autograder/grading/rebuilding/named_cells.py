@@ -1,4 +1,4 @@
-"""The named cells of all notebooks of a class. They identify a notebook, whatever its file name is."""
+"""Identifies a notebook of a class by the names of its cells, independently of its file name."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Target = tuple[str, str]
 
 
 class NamedCells:
-    """The named cells in the sources of a class, read at the first use.
+    """The names of the cells in each source notebook of a class. The notebooks are read at the first use.
 
     Args:
         sources: The source file of each notebook.
@@ -29,10 +29,10 @@ class NamedCells:
     def __init__(self, sources: dict[Target, Path]) -> None:
         self._paths = sources
         self.notes: list[str] = []
-        """A sentence about each source that cannot be read."""
+        """A sentence about each source notebook that cannot be read."""
 
     def closest(self, names: Collection[str], assignment: str = "") -> list[Target]:
-        """Return the notebooks that contain most of these cell names; none if no notebook contains any of them.
+        """Return the notebooks with the most of the given cell names; none if no notebook has any of the names.
 
         Args:
             names: The names of cells.
@@ -47,13 +47,13 @@ class NamedCells:
         return [target for target, count in shared.items() if most and count == most]
 
     def assignments(self, cells: Iterable[SubmittedCell]) -> list[str]:
-        """Return the assignments whose graded cells are among these. A cell without its name may still have its id."""
+        """Return the assignments with a graded cell that has the name or the id of one of the given cells."""
         marks = {mark for cell in cells for mark in _marks(cell)}
         return sorted({self._graded[mark] for mark in marks & self._graded.keys()})
 
     @functools.cached_property
     def _graded(self) -> dict[str, str]:
-        """Return the assignment for each mark of a graded cell, if no other assignment has this mark."""
+        """Return the assignment for each mark of a graded cell that occurs in only one assignment."""
         cells = [(assignment, cell) for (assignment, _), own in self._sources.items() for cell in own]
         often = Counter(
             mark for mark, _ in {(mark, assignment) for assignment, cell in cells for mark in _marks(cell)}
@@ -68,7 +68,7 @@ class NamedCells:
 
     @functools.cached_property
     def _sources(self) -> dict[Target, list[SubmittedCell]]:
-        """Return the cells of each notebook; none for a notebook that cannot be read."""
+        """Return the cells of each source notebook; no cells for a notebook that cannot be read."""
         found: dict[Target, list[SubmittedCell]] = {}
         for target, path in self._paths.items():
             try:
@@ -76,11 +76,12 @@ class NamedCells:
             except (OSError, UnreadableSubmission) as error:
                 found[target] = []
                 self.notes.append(
-                    f"{path} cannot be read ({error}): files for it are recognized only by their names"
+                    f"{path} cannot be read ({error}): submissions of this notebook are recognized only by "
+                    "their file names"
                 )
         return found
 
 
 def _marks(cell: SubmittedCell) -> set[str]:
-    """Return the marks that distinguish a cell from others: its name and its id."""
+    """Return the marks of a cell: its name and its id, each with its kind in front."""
     return {f"{kind} {mark}" for kind, mark in (("name", cell.grade_id), ("id", cell.identifier)) if mark}

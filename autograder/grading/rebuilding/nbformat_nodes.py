@@ -1,4 +1,4 @@
-"""nbformat's constructors with type annotations, which the library itself lacks."""
+"""Makes, reads and writes notebooks with nbformat. Adds the type annotations that nbformat lacks."""
 
 from __future__ import annotations
 
@@ -41,17 +41,17 @@ _OUTPUT: Any = _Stream | _Display | _Result | _Error
 
 
 def notebook(cells: list[NotebookNode], metadata: dict[str, Any]) -> NotebookNode:
-    """Return a notebook of format 4.5 without validation; its cells come from the master, or from :func:`cell`."""
+    """Return a notebook of format 4.5 with these cells. Validation is skipped, because this package made the cells."""
     return NotebookNode(metadata=_node(metadata), nbformat=4, nbformat_minor=5, cells=cells)
 
 
 def cell(kind: CellType, source: str, identifier: str = "") -> NotebookNode:
-    """Return a cell without outputs. nbformat's validation is skipped: it would take longer than everything else.
+    """Return a new cell without outputs. nbformat's slow validation is skipped.
 
     Args:
         kind: The type of the cell.
         source: The text of the cell.
-        identifier: The id of the cell; by default random.
+        identifier: The id of the cell; a random id if empty.
     """
     made = NotebookNode(
         id=identifier or uuid.uuid4().hex[:8], cell_type=str(kind), metadata=NotebookNode(), source=source
@@ -63,12 +63,12 @@ def cell(kind: CellType, source: str, identifier: str = "") -> NotebookNode:
 
 
 def output(**fields: Any) -> NotebookNode:
-    """Return an output with these fields of nbformat's, if it is of a kind that the boxes produce.
+    """Return an output of a cell with the given fields, after checking their types.
 
-    This replaces nbformat's own check, which takes a hundred times as long.
+    nbformat's own check takes a hundred times as long.
 
     Raises:
-        msgspec.ValidationError: The fields are not those of such an output.
+        msgspec.ValidationError: The fields do not form a valid stream, display, result or error output.
     """
     msgspec.convert(fields, _OUTPUT)
     made: NotebookNode = _node(fields)
@@ -76,7 +76,7 @@ def output(**fields: Any) -> NotebookNode:
 
 
 def read(text: str) -> NotebookNode:
-    """Return the notebook that a JSON text contains.
+    """Return the notebook in a JSON text.
 
     Raises:
         Exception: Any error of nbformat's JSON and schema libraries.
@@ -86,7 +86,7 @@ def read(text: str) -> NotebookNode:
 
 
 def read_own(data: bytes) -> NotebookNode:
-    """Return a notebook of format 4 without nbformat's validation, because this package wrote it.
+    """Return a notebook of format 4 that this package wrote. Validation is skipped.
 
     Raises:
         msgspec.DecodeError: The data is not JSON.
@@ -103,13 +103,13 @@ def text(of: NotebookNode) -> str:
 
 
 def copied(of: NotebookNode) -> NotebookNode:
-    """Return a copy that shares no mutable part with the original."""
+    """Return a deep copy of a notebook or cell."""
     made: NotebookNode = _node(of)
     return made
 
 
 def _node(value: Any) -> Any:
-    """Copy JSON values, turning each dictionary into a node."""
+    """Copy a JSON value, and turn each dictionary into a ``NotebookNode``."""
     if isinstance(value, str):
         return value
     if isinstance(value, dict):

@@ -1,7 +1,7 @@
-"""Parses a notebook into typed cells, and trusts nothing in it but the text of the cells.
+"""Parses a notebook into typed cells with limited sizes, and drops everything else, such as outputs.
 
-It is used by the desk, and for the class's own notebooks. A file that a student handed in is parsed only by a desk
-(:func:`autograder.grading.rebuilding.desk.read_notebook`).
+The class's source notebooks are parsed in any process. A student's file is parsed only in a desk: call
+:func:`autograder.grading.rebuilding.desk.read_notebook`.
 """
 
 from __future__ import annotations
@@ -115,7 +115,7 @@ def _cell(cell: Any) -> SubmittedCell | None:
 
 
 def _pictures(cell: Mapping[str, Any]) -> Iterator[Picture]:
-    """Yield the bitmaps attached to a cell. Drawings (SVG), which may contain a script, are skipped."""
+    """Yield the bitmaps attached to a cell. SVG drawings are skipped, because they may contain scripts."""
     attached = cell.get("attachments")
     for name, kinds in attached.items() if isinstance(attached, Mapping) else ():
         for kind in IMAGES if isinstance(kinds, Mapping) else ():
@@ -131,5 +131,5 @@ def _name(value: Any) -> str:
 
 
 def _text(value: str) -> str:
-    """Return a text changed so that UTF-8 can encode it: JSON allows lone surrogates, UTF-8 does not."""
+    """Return a text without lone surrogates, which JSON allows, but which UTF-8 cannot encode."""
     return value.encode("utf-8", "replace").decode("utf-8")

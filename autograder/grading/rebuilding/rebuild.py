@@ -1,9 +1,8 @@
-"""Builds the notebook that is executed: from the trusted master, with only text from the submission.
+"""Builds the notebook that is executed and graded, from the trusted master and a student's texts.
 
 Locked cells and check cells come from the master, in the master's order. The submission contributes the text of
-solution cells; the student's own cells, which stay next to their neighbors; and the bitmaps that these texts show.
-Everything else in a submission (metadata, tags, outputs, ids) is dropped. Any other picture in its text cells comes
-from the master, and appears no more often than in the master.
+solution cells; the cells that the student added, at their places; and the bitmaps that these texts show. Metadata,
+tags, outputs and ids of a submission are dropped.
 """
 
 from __future__ import annotations
@@ -39,17 +38,17 @@ def rebuild(
     """Build the notebook that is executed and graded from the master and the submitted cells.
 
     Args:
-        master: The released notebook, with stubs instead of solutions. Every important cell has a name, its grade_id.
+        master: The master, with stubs instead of solutions. Its cells without a grade_id are not used.
         submitted: The cells of the submission.
         left_out: The number of submitted cells that could not be read.
         others: Other assignments whose graded cells are in the submission.
 
     Returns:
-        A notebook of format 4.5. If anything was repaired, the first cell and the metadata say so.
+        A notebook of format 4.5. If anything was repaired, the first cell and the metadata contain remarks about it.
     """
     sorting = _Sorting(master, submitted)
     remarks = [
-        f"This notebook has the checks of {other}, too. They are not graded here: hand in the notebook of {other}."
+        f"This notebook also has the checks of {other}. They are not graded here: hand in the notebook of {other}."
         for other in others
     ]
     remarks += sorting.remarks()
@@ -59,15 +58,16 @@ def rebuild(
 
 
 def rebuild_unreadable(master: NotebookNode, problem: str) -> NotebookNode:
-    """Return the notebook for a submission that cannot be read: the master without answers, and the reason."""
+    """Return a notebook for a submission that cannot be read: the master without answers, and a remark why."""
     remarks = [f"This submission could not be graded. {problem}"]
     return _finished(master, [nbformat_nodes.copied(cell) for cell in master.cells], remarks)
 
 
 def is_of_another(master: NotebookNode, submitted: Sequence[SubmittedCell]) -> bool:
-    """Return True if a notebook was made from another master: most named cells and all graded ones are foreign.
+    """Return True if the cells belong to a different master.
 
-    Some labs have cells with the same names. A notebook without named cells may come from any master.
+    This is so if the master does not know most of the cells' names, and the notebook has none of the master's graded
+    cells. Some names may still be the same, because labs share names.
     """
     names = {cell.grade_id for cell in submitted if cell.grade_id}
     ours = {grade_id(cell) for cell in master.cells}
@@ -76,7 +76,7 @@ def is_of_another(master: NotebookNode, submitted: Sequence[SubmittedCell]) -> b
 
 
 class _Sorting:
-    """Finds the submitted cell that answers each cell of the master."""
+    """Assigns submitted cells to the cells of a master, and arranges the cells of the rebuilt notebook."""
 
     def __init__(self, master: NotebookNode, submitted: Sequence[SubmittedCell]) -> None:
         self._master = {grade_id(cell): cell for cell in master.cells if grade_id(cell)}
@@ -99,11 +99,13 @@ class _Sorting:
         for name, cell in self._master.items():
             if name not in late:
                 if name in self._chosen or is_check(cell):
-                    # A deleted check is put back after the student's own cells, because it may need them.
+                    # A deleted check is put back after the cells that the student added, because it may need what they
+                    # define.
                     built += pending
                     pending = []
                 built.append(self._filled(name, cell))
-            # Any other deleted cell is put back before the student's cells, which may change what that cell defines.
+            # A deleted cell of another kind is put back before the cells that the student added: they may change what
+            # it defines.
             pending += [_extra(extra) for extra in extras.get(name, [])]
             for check in [check for check, anchor in late.items() if anchor == name]:
                 built += [*pending, nbformat_nodes.copied(self._master[check])]
@@ -126,13 +128,13 @@ class _Sorting:
         }
         if len(strangers) == 1:
             found.append(
-                f"This notebook has no graded cell {_quoted(*strangers)}. The cell with this name runs as one of your "
-                "own."
+                f"This notebook has no graded cell {_quoted(*strangers)}. The cell with this name runs as a cell "
+                "that you added."
             )
         elif strangers:
             found.append(
                 f"This notebook has no graded cells {_listed(sorted(strangers))}. The cells with these names run as "
-                "your own."
+                "cells that you added."
             )
         return found
 
@@ -154,9 +156,9 @@ class _Sorting:
             yield f"{_were(empty)} missing and put back without an answer."
         found = [name for name in answers if name in self._elsewhere]
         if len(found) == 1:
-            yield f"{_were(found)} missing. What it asks for is in another cell, and that one counts."
+            yield f"{_were(found)} missing. Another cell contains the answer, and that cell counts."
         elif found:
-            yield f"{_were(found)} missing. Other cells contain the answers, and those count."
+            yield f"{_were(found)} missing. Other cells contain the answers, and those cells count."
 
     def _remarks_on(self, name: str, places: Sequence[int]) -> list[str]:
         master, cell = self._master[name], self._submitted[self._chosen[name]]
@@ -164,7 +166,7 @@ class _Sorting:
         if len(places) > 1 and is_answer(master):
             found.append(
                 f"The cell {_quoted(name)} was there {len(places)} times. The last one that you changed before its "
-                "check counts as your answer; the others run as cells of your own."
+                "check counts as your answer; the others run as cells that you added."
             )
         elif len(places) > 1:
             found.append(f"The cell {_quoted(name)} was there {len(places)} times. It runs once.")
@@ -178,9 +180,10 @@ class _Sorting:
         return found
 
     def _choose(self, name: str, places: Sequence[int]) -> int:
-        """Return the last submitted cell with that name before its check, which counts when all cells are run.
+        """Return the index of the copy of a cell that counts: the last copy before its check.
 
-        An untouched stub does not count. A copy after the check counts only if there is no other copy.
+        An unchanged stub counts only if all copies are unchanged. A copy after the check counts only if there is no
+        copy before the check.
         """
         stub = self._master[name].source.strip()
         answered = [place for place in places if self._submitted[place].source.strip() != stub] or places
@@ -188,18 +191,18 @@ class _Sorting:
         return ([place for place in answered if place < check] or answered)[-1]
 
     def _place_of_next_check(self, name: str) -> int:
-        """Return the index of the first submitted check that comes later in the master."""
+        """Return the index, in the submission, of the first check that follows the named cell in the master."""
         behind = itertools.dropwhile(lambda other: other != name, self._master)
         checks = (self._places[one] for one in behind if is_check(self._master[one]) and one in self._places)
         return max(next(checks, [len(self._submitted)]))
 
     def _anchor(self, place: int) -> str:
-        """Return the named cell at an index, or else the nearest one before it."""
+        """Return the name of the cell at an index of the submission, or of the nearest named cell before it."""
         before = {at: name for name, at in self._chosen.items() if at <= place}
         return before[max(before)] if before else _START
 
     def _is_in_its_place(self, name: str, place: int) -> bool:
-        """Return True if a cell is exactly where the missing answer should be, so that using it moves nothing."""
+        """Return True if the cell at an index stands where the missing answer cell should stand."""
         names, anchor = list(self._master), self._anchor(place)
         behind = {at: other for other, at in self._chosen.items() if at > place}
         return (
@@ -209,7 +212,10 @@ class _Sorting:
         )
 
     def _late_checks(self) -> dict[str, str]:
-        """Return, for each check that waits for an answer in another cell, the named cell before that answer."""
+        """Return the checks that have to move down, because their answer is in a later cell.
+
+        Each is returned with the named cell after which it has to stand.
+        """
         names = list(self._master)
         late: dict[str, str] = {}
         for name, place in self._elsewhere.items():
@@ -220,7 +226,7 @@ class _Sorting:
         return late
 
     def _extras_by_anchor(self) -> dict[str, list[SubmittedCell]]:
-        """Return the student's own cells, grouped by the named cell before them."""
+        """Return the cells that the student added, grouped by the name of the nearest named cell before them."""
         anchors = {place: name for name, place in self._chosen.items()}
         given = {
             place
@@ -245,12 +251,13 @@ class _Sorting:
             answer = self._submitted[self._chosen[name]]
             filled.update(source=answer.source, attachments=_attachments(answer))
         elif is_answer(cell) and self._may_be_answered_elsewhere(name):
-            # A stub would overwrite the student's definitions, so a note tells a person where to look instead.
+            # A stub would overwrite the student's definitions. So the cell gets a note that sends a person to the
+            # other cells.
             filled["source"] = _ELSEWHERE if cell.cell_type == CellType.MARKDOWN else f"# {_ELSEWHERE}"
         return filled
 
     def _may_be_answered_elsewhere(self, name: str) -> bool:
-        """Return True if another cell may answer a missing one. A person must look, as a stub would get no points."""
+        """Return True if a person has to look for the answer of a missing cell in other cells."""
         by_a_person = self._master[name].metadata.nbgrader.get("grade", False) and bool(self._matches.own)
         return name in self._elsewhere or by_a_person
 
@@ -283,18 +290,18 @@ def _known(cell: NotebookNode) -> Known:
 
 
 def _handed_out(cell: NotebookNode) -> tuple[str, str]:
-    """Return the text of a master's cell, and the text of the same cell as students receive it."""
+    """Return the full text of a master's cell, and its text as students receive it."""
     return cell.source, _without_hidden(cell.source)
 
 
 def is_the_masters(cell: NotebookNode) -> bool:
-    """Return True if a cell of a rebuilt notebook is exactly the master's."""
+    """Return True if a cell of a rebuilt notebook was copied from the master unchanged."""
     marks = cell.get("metadata", {}).get("nbgrader", {})
     return bool(marks.get("locked")) and not marks.get("solution")
 
 
 def _without_hidden(source: str) -> str:
-    """Return a master's cell as students receive it: nbgrader removes hidden tests and the mark scheme."""
+    """Return the text of a master's cell without hidden tests and the mark scheme."""
     kept, hidden = [], False
     for line in source.splitlines():
         if _HIDDEN.search(line):
@@ -313,7 +320,7 @@ def _finished(master: NotebookNode, cells: list[NotebookNode], remarks: list[str
         if not is_the_masters(cell)
     )
     for index, cell in enumerate(cells):
-        # Accessed as items, because for an attribute nbformat's nodes first search their class, which is slower.
+        # `cell["id"]` is faster than `cell.id`, because for an attribute a NotebookNode first searches its class.
         cell["id"] = _cell_id(cell, index)
         attached = cell.pop("attachments", {})
         shown = attached if is_the_masters(cell) else pictures.of(cell["source"], attached)
@@ -348,13 +355,13 @@ def _remarks_cell(remarks: list[str]) -> NotebookNode:
 
 
 def _escaped(text: str) -> str:
-    """Escape a remark, because it may quote a student's text, which must not become markup."""
+    """Escape Markdown and HTML in a remark, because it may quote a student's text."""
     text = text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     return re.sub(r"([\\\[\]*#!|~$])", r"\\\1", " ".join(text.split()))
 
 
 def _were(names: Sequence[str]) -> str:
-    """Return the beginning of a sentence about these cells."""
+    """Return the beginning of a sentence, such as "The cell `x` was"."""
     return (
         f"The cell {_quoted(*names)} was"
         if len(names) == 1
@@ -363,7 +370,7 @@ def _were(names: Sequence[str]) -> str:
 
 
 def _listed(names: Sequence[str]) -> str:
-    """Return the names, or only the first few if there are many."""
+    """Return a list of names as text, shortened if there are many."""
     return ", ".join(map(_quoted, names[:_MOST_NAMED])) + (" …" if len(names) > _MOST_NAMED else "")
 
 
@@ -372,5 +379,5 @@ def _quoted(name: str) -> str:
 
 
 def _cell_id(cell: NotebookNode, index: int) -> str:
-    """Return an id made from the text, so that equal notebooks are equal in every byte. nbformat's ids are random."""
+    """Return an id made from the cell's index and name. With random ids, every run would give a different file."""
     return re.sub(r"[^A-Za-z0-9_-]", "-", f"{index}-{grade_id(cell) or 'own'}")[:64]

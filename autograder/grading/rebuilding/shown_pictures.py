@@ -1,4 +1,4 @@
-"""The pictures in the text cells of a rebuilt notebook."""
+"""Chooses the pictures that are attached to the text cells of a rebuilt notebook."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 MOST_CHARACTERS = 10_000_000
-"""The maximum size in bytes of all bitmaps attached to a notebook; a screenshot has a million."""
+"""The maximum length of all bitmaps attached to a notebook, in base64 characters; a screenshot has about a million."""
 _SHOWN = re2.compile(r"\(attachment:([\w.%+-]+)\)")
 
 
 class ShownPictures:
-    """Finds the pictures that text cells show: the student's own, or else the master's.
+    """Finds the pictures that text cells show: attached by the student, or otherwise from the master.
 
     Args:
-        given: For each cell of the master, its text as students receive it, and its attachments. A picture that no
-            such text shows belongs to a solution, and no student receives it.
+        given: For each cell of the master, its text as students receive it, and its attachments. An attachment that no
+            such text shows belongs to a solution, and is left out.
     """
 
     def __init__(self, given: Iterable[tuple[str, Mapping[str, Mapping[str, str]]]]) -> None:
@@ -38,7 +38,8 @@ class ShownPictures:
     def of(self, text: str, own: Mapping[str, Mapping[str, str]]) -> NotebookNode:
         """Return the pictures that a text shows.
 
-        A picture can be used once, so that copies of a cell do not bloat a page.
+        A picture of the master is returned only as often as the master shows it, so that many copies of a cell do not
+        make a page too large.
 
         Args:
             text: The text of a cell.

@@ -1,6 +1,6 @@
-"""The cells with points in a class's sources, compared with those in the gradebook.
+"""Lists the cells with points in a class's source notebooks, and compares them with the gradebook.
 
-The result is stored, because reading the source of a chapter takes a second: nbgrader's steps are run on it.
+The list is stored, because it takes a second to make: nbgrader's preprocessors run on each source notebook.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ class GradedCell:
     Attributes:
         notebook: The name of the notebook.
         name: The grade_id of the cell.
-        exercise: The exercise's id; if the cell checks no exercise, the name of the cell.
-        worth: The maximum points of the cell in the gradebook.
+        exercise: The id of the exercise that the cell checks; if there is none, the name of the cell.
+        worth: The maximum points of the cell.
         by_judge: True if the judge or the cell's own tests give the points; False if a person does.
     """
 
@@ -54,7 +54,7 @@ class Released:
 
 
 def read_released(directory: ClassDirectory, store: ClassStore, fingerprints: Fingerprints) -> Released:
-    """Return the cells with points of all assignments."""
+    """Return the cells with points of all assignments, from the store if the sources are unchanged."""
     assignments = directory.assignments()
     fingerprint = " ".join(fingerprints.of_sources(assignment) for assignment in assignments)
     with contextlib.suppress(msgspec.MsgspecError):
@@ -72,14 +72,14 @@ def read_released(directory: ClassDirectory, store: ClassStore, fingerprints: Fi
 
 
 def check_release(directory: ClassDirectory, cells: dict[str, tuple[GradedCell, ...]]) -> None:
-    """Check that the gradebook contains the same cells as the sources, with the same points.
+    """Check that the gradebook contains each cell of the sources with the same points.
 
     Raises:
-        ClassIncomplete: There is no assignment, or the gradebook has other cells or points.
+        ClassIncomplete: There is no assignment, or the gradebook lacks a cell or has different points for it.
     """
     if not cells:
         raise ClassIncomplete(
-            f"{directory.path / 'source'} contains no assignment. Put one there, or make a new class."
+            f"{directory.path / 'source'} contains no assignment. Put an assignment there, or make a new class."
         )
     for assignment, wanted in cells.items():
         entered = gradebook_reading.worth(directory.gradebook_url, assignment)
@@ -87,11 +87,11 @@ def check_release(directory: ClassDirectory, cells: dict[str, tuple[GradedCell, 
             if entered.get(cell.notebook, {}).get(cell.name) != cell.worth:
                 command = ("nbgrader", "generate_assignment", assignment, "--force")
                 raise ClassIncomplete(
-                    f"The gradebook does not know {cell.notebook} as it is in "
+                    f"The gradebook does not contain {cell.notebook} as it is in "
                     f"{directory.path / 'source' / assignment}. "
-                    f"Enter it: {course_command(*command, inside=directory.path)}. "
-                    "If nbgrader refuses because a student has points already: put the source back as it was, "
-                    f"and say in {directory.path / 'class.toml'} what is left out or gets other points, which works at "
+                    f"Enter this version: {course_command(*command, inside=directory.path)}. "
+                    "If nbgrader refuses because a student already has points, restore the earlier source, "
+                    f"and set points or left-out exercises in {directory.path / 'class.toml'}, which works at "
                     "any time"
                 )
 
@@ -116,10 +116,14 @@ def _read(directory: ClassDirectory, assignment: str) -> list[GradedCell]:
 
 
 def _check_names(directory: ClassDirectory, assignment: str, names: list[str]) -> None:
-    """Check that all lines of the table will have different names."""
+    """Check that no two graded cells of an assignment have the same name in the table of points.
+
+    Raises:
+        MasterUnusable: Two cells have the same name.
+    """
     twice = next((name for name in names if [*names, *NO_EXERCISE].count(name) > 1), "")
     if twice:
         raise MasterUnusable(
-            f"{directory.path / 'source' / assignment}: two of its lines in the table would be called {twice!r}. Give "
-            "one of the cells another name (grade_id)."
+            f"{directory.path / 'source' / assignment}: two lines in the table of points would have the name "
+            f"{twice!r}. Give one of the cells another name (grade_id)."
         )

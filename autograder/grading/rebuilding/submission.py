@@ -1,4 +1,4 @@
-"""Reads a file that a student handed in, and defines what is taken from it: the text of the cells."""
+"""Reads the bytes of a submitted file, and defines the types of its parsed cells."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ MAX_CELL_CHARACTERS = 100_000
 MAX_CHARACTERS = 1_000_000
 """The maximum length of the text of all cells together, in characters."""
 LONGEST_REASON = 300
-"""The maximum length of a sentence from the desk, in characters."""
+"""The maximum length of a reason from the desk why a file cannot be read, in characters."""
 LONGEST_NAME = 200
 """The maximum length of the name of a cell or picture, in characters."""
 HARMLESS_LENGTH = 6_000
-"""A notebook's own cells are rendered without a trial up to this total length in characters: even the worst stay within
-the time limit of a page.
+"""If the cells that a student wrote are shorter than this in total (in characters), their page is rendered without a
+test of the time. Even the slowest texts of this length stay within the time limit of a page.
 """
 _LONGEST_SHOWN = 80
 _KINDS = {
@@ -54,14 +54,14 @@ Picture = tuple[_Name, str, str]
 
 @dataclass(frozen=True)
 class SubmittedCell:
-    """The parts of a submitted cell that are used.
+    """The parts of a submitted cell that the grader uses.
 
     Attributes:
         kind: The type of the submitted cell.
         source: The text of the cell.
         grade_id: The name that the cell claims to have; empty if it has none.
         identifier: The id of the cell; empty if it has none.
-        is_graded: True if the cell claims to have points. This is trusted only in a source.
+        is_graded: True if the cell claims to have points. Trust this only in a source notebook.
         pictures: The bitmaps attached to a text cell, each with name, type and base64 content.
     """
 
@@ -89,14 +89,14 @@ class Unreadable(msgspec.Struct, frozen=True, tag=True):
     """The desk's answer about a file that is not a notebook.
 
     Attributes:
-        reason: A sentence for the student that says why.
+        reason: The reason, as a sentence for the student.
     """
 
     reason: Annotated[str, msgspec.Meta(min_length=1, max_length=LONGEST_REASON)]
 
 
 class NotAFile(UnreadableSubmission):
-    """The notebook is not an ordinary file, or cannot be read."""
+    """The path of the notebook is not an ordinary file, or cannot be opened."""
 
 
 def read_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
@@ -119,7 +119,7 @@ def read_bytes(path: Path, most: int = MAX_BYTES) -> bytes:
             )
         data = file.read(most + 1)
     if len(data) > most:
-        raise UnreadableSubmission(f"{_shown(path.name)} grows while it is read; hand it in again.")
+        raise UnreadableSubmission(f"{_shown(path.name)} became longer while it was read; hand it in again.")
     return data
 
 
@@ -136,7 +136,7 @@ def reason_against_file(path: Path) -> str:
 
 @contextlib.contextmanager
 def _opened(path: Path) -> Iterator[IO[bytes]]:
-    """Open an ordinary file. Its type is checked both before, because opening a device may have effects, and after."""
+    """Open an ordinary file. Check its type before, because opening a device may have effects, and again after."""
     try:
         _check(path, path.lstat())
         with opened(path) as file:
@@ -163,13 +163,11 @@ def _check(path: Path, status: os.stat_result) -> None:
 
 
 def _is_somebody_elses(path: Path, status: os.stat_result) -> bool:
-    """Return True if a file with several names (hard links) first had another name in the class.
+    """Return True if a file with several names (hard links) belongs to another student or to the class.
 
-    Then it belongs to another student.
-
-    The first owner keeps the file, so that a student cannot make another student's work fail by giving it a second
-    name. The change time of a folder shows when a name was made in it, and only the system can set that time. Names
-    outside the class are assumed to belong to a backup.
+    The file belongs to the student whose folder has the oldest change time. So a student cannot make another student's
+    submission fail by making a link to it. Only the system can set the change time of a folder. Links outside the
+    class are ignored, because a backup may have made them.
     """
     submitted = next((folder for folder in path.parents if folder.name == "submitted"), path.parent)
     places = itertools.chain(files_below(submitted), files_below(submitted.parent / "source"))
@@ -188,7 +186,7 @@ def _same_file(place: Path, status: os.stat_result) -> bool:
 
 
 def _found_instead(folder: Path) -> str:
-    """Return a sentence about other notebooks in a folder, because browsers often add a number to the name."""
+    """Return a sentence about other notebooks in the folder, such as one whose name a browser changed."""
     try:
         others = sorted(entry.name for entry in os.scandir(folder) if entry.name.endswith(".ipynb"))
     except OSError:
@@ -197,6 +195,6 @@ def _found_instead(folder: Path) -> str:
 
 
 def _shown(name: str) -> str:
-    """Return the name of a file in printable form, because a student, or a student's program, chose it."""
+    """Return a file name, which a student may have chosen, shortened and without unprintable characters."""
     name = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in name)
     return name if len(name) <= _LONGEST_SHOWN else f"{name[:_LONGEST_SHOWN]}…"

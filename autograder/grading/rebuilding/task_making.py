@@ -1,4 +1,4 @@
-"""Makes tasks from a submission, in the same way for a run, a dry run and the conversion."""
+"""Makes the tasks of a submission: one for each notebook, rebuilt and ready to be executed."""
 
 from __future__ import annotations
 
@@ -37,17 +37,17 @@ def tasks_of(directory: ClassDirectory, submission: Submission) -> list[Task]:
     """Return the tasks of a submission, one for each notebook of the assignment.
 
     Raises:
-        MasterUnusable: Submissions cannot be graded against a source notebook.
+        MasterUnusable: A source notebook cannot be used for grading.
     """
     notebooks = directory.notebooks(submission.assignment)
     return [task_of(directory, submission, notebook)[0] for notebook in notebooks]
 
 
 def task_of(directory: ClassDirectory, submission: Submission, notebook: str) -> tuple[Task, NotebookNode]:
-    """Return the task for a notebook of a submission, with the class's limits; and the rebuilt notebook.
+    """Return the task for one notebook of a submission, and the rebuilt notebook.
 
     Raises:
-        MasterUnusable: Submissions cannot be graded against the source notebook.
+        MasterUnusable: The source notebook cannot be used for grading.
     """
     student, assignment = submission.student, submission.assignment
     master = directory.master(assignment, notebook)
@@ -75,13 +75,13 @@ def task_of(directory: ClassDirectory, submission: Submission, notebook: str) ->
 def _rebuilt(
     directory: ClassDirectory, submission: Submission, notebook: str, master: NotebookNode
 ) -> tuple[NotebookNode, str]:
-    """Return the notebook that stands for the submitted file, and why the file was not used (empty if it was)."""
+    """Return the rebuilt notebook, and the reason if the submitted file was not used (empty if it was used)."""
     path = submission.folder / f"{notebook}{SUFFIX}"
     try:
         cells, left_out = read_notebook(read_bytes(path))
         if is_of_another(master, cells):
             raise UnreadableSubmission(
-                f"The cells of {path.name} are those of another assignment: the notebook of this one is missing."
+                f"The cells of {path.name} belong to another assignment: hand in the notebook of this assignment."
             )
     except UnreadableSubmission as error:
         return rebuild_unreadable(master, str(error)), str(error)
@@ -99,13 +99,14 @@ def _hash_of_pictures(rebuilt: NotebookNode) -> str:
 def cells_of(
     notebook: NotebookNode, *, demonstrations: bool = True, prose: Iterable[str] = ()
 ) -> tuple[Cell, ...]:
-    """Return the cells of a rebuilt notebook in the form in which they are executed.
+    """Convert the cells of a rebuilt notebook to the type that the execution uses.
 
     Args:
         notebook: The notebook.
-        demonstrations: True to run cells that only show something, too.
-        prose: Texts from the course that no student wrote, although their cells are not locked. A further copy of
-            such a text counts as the student's, because rendering a page with thousands of copies would take seconds.
+        demonstrations: False to empty the cells that only show something, so that they are skipped.
+        prose: The texts of the master's text cells. A cell with such a text counts as given, not as the student's. If
+            a text occurs more often than in ``prose``, the additional cells count as the student's, so that limits
+            apply to thousands of copies.
     """
     left_out = frozenset() if demonstrations else demonstrations_of(notebook)
     left = Counter(prose)

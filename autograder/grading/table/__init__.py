@@ -1,1 +1,1 @@
-"""The table of results of a class: points from the gradebook, texts from the judge, and what a person has to grade."""
+"""Makes the table of results of a class: points from the gradebook, and states and diagnoses from the judge."""

@@ -1,4 +1,4 @@
-"""The current table of results of a class, read without grading anything."""
+"""Reads the current table of results of a class, without grading any submission."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ class ClassTable:
         rows: The rows, sorted by student and then in the order of the course.
         roster: The students of the class.
         entries: The entries of the gradebook, by student and assignment.
-        stale: Submissions, as student/assignment, that were handed in or changed after they were last graded.
+        stale: Submissions, as student/assignment, that were never graded, or changed after they were graded.
         unplaced: Collected files for which a person has to decide where they belong.
-        unusable: Assignments that have no rows because their source cannot be used, with the reason.
-        notices: Sentences about likely mistakes of the instructor; they contain students' ids.
-        absent: The points of students who handed in nothing: None or, if the instructor chose that, zero.
+        unusable: Assignments without rows because a source notebook cannot be used, by name, each with the reason.
+        notices: Sentences about probable mistakes of the instructor in ``students.csv``. They contain students' ids.
+        absent: The points of students who handed in nothing: None for no points, or zero if the instructor chose zero.
     """
 
     rows: tuple[Row, ...]
@@ -61,23 +61,24 @@ class ClassTable:
 
     @functools.cached_property
     def assignments(self) -> list[str]:
-        """The assignments that at least one student has handed in."""
+        """The assignments for which at least one student has a submission."""
         return list(dict.fromkeys(row.assignment for row in self.rows))
 
     def check_usable(self, wanted: Collection[str] = ()) -> None:
-        """Raise an error if a wanted assignment has no usable source; without a choice, if no assignment has one.
+        """Raise an error if a wanted assignment cannot be graded, or if no assignment at all can be graded.
 
         Raises:
-            MasterUnusable: A source cannot be used. The message says why.
+            MasterUnusable: A source notebook cannot be used. The message says why.
         """
         for name, reason in self.unusable.items():
             if name in wanted or not self.assignments:
                 raise MasterUnusable(reason)
 
     def of(self, student: str, assignment: str = "") -> list[Row]:
-        """Return a student's rows, of all assignments or only of the named one.
+        """Return a student's rows, for one assignment or for all.
 
-        The rows of a named assignment have their points even if the total leaves this assignment out.
+        For all assignments, the result contains a row with negative points for each dropped assignment. For one
+        assignment, it does not.
         """
         own = self._of_student.get(student, [])
         return [
@@ -85,7 +86,7 @@ class ClassTable:
         ]
 
     def only(self, students: Collection[str]) -> ClassTable:
-        """Return the same table with only these students."""
+        """Return a copy of the table with only these students."""
         return replace(
             self,
             rows=tuple(row for row in self.rows if row.student in students),
@@ -95,16 +96,16 @@ class ClassTable:
         )
 
     def score(self, student: str, assignment: str = "") -> float | None:
-        """Return a student's points from the gradebook, minus the late penalty.
+        """Return a student's points for an assignment, or for all, after weights and the late penalty.
 
-        It is None if there are no points, or if a check could not be made: the sum without that check could be
-        mistaken for the final points.
+        Return ``absent`` if the student handed in nothing. For one assignment, return None if one of its checks could
+        not be made: the sum of the others would look like the final points.
         """
         rows = self.of(student, assignment)
         return None if assignment and any(row.is_unchecked for row in rows) else self.points(rows)
 
     def points(self, rows: Sequence[Row]) -> float | None:
-        """Return the sum of the points in some of a student's rows, by the same rule as :meth:`score`."""
+        """Return the sum of the points in some of a student's rows; ``absent`` if the student handed in nothing."""
         is_absent = any(row.state == NOT_SUBMITTED for row in rows) and all(row.is_blank for row in rows)
         return self.absent if is_absent else total(rows)
 
@@ -118,7 +119,7 @@ class ClassTable:
 
     @functools.cached_property
     def _max_scores(self) -> dict[str, float]:
-        """The maximum points by assignment. The empty name stands for all assignments together."""
+        """The maximum points by assignment. The key ``""`` stands for all assignments together."""
         return {
             name: max(
                 (sum(row.max_score for row in self.of(one, name)) for one in self.students), default=0.0
@@ -128,7 +129,7 @@ class ClassTable:
 
     @property
     def waiting(self) -> list[Row]:
-        """Return the rows that a person still has to grade."""
+        """The rows that a person still has to grade."""
         return [row for row in self.rows if row.waits]
 
 
@@ -179,5 +180,5 @@ def read_table(directory: ClassDirectory, sections: Sequence[str] = ()) -> Class
 
 
 def by_exercise(rows: list[Row]) -> dict[tuple[str, str], Row]:
-    """Return a student's rows by assignment and exercise, without those of late penalties and dropped work."""
+    """Return rows of one student by assignment and exercise. Late penalties and dropped assignments are left out."""
     return {(row.assignment, row.exercise): row for row in rows if row.exercise not in NO_EXERCISE}

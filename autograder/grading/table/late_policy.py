@@ -1,7 +1,6 @@
-"""The late penalty: a percentage of the points for each day begun, a grace period, and a cut-off.
+"""The late penalty: a percentage of the points for each started day, with a grace period and a cut-off.
 
-A class sets these values in its ``nbgrader_config.py``. nbgrader applies the penalty, whichever command or button
-grades.
+A class sets these three values in its ``nbgrader_config.py``. nbgrader's own commands use the penalty as well.
 """
 
 from __future__ import annotations
@@ -22,30 +21,30 @@ _DAY = 86_400.0
 
 
 class LatePolicy(LateSubmissionPlugin):
-    """Subtracts a percentage of the points for each day that the work is late."""
+    """nbgrader's plugin for late penalties: subtracts a percentage of the points for each day late."""
 
     percent_per_day = Float(
         10.0,
         min=0,
         max=100,
-        help="The percentage of the points that is subtracted for each day late. A day that has begun counts fully.",
+        help="The percentage of the points to subtract for each day late. A started day counts as a whole day.",
     ).tag(config=True)
     grace_minutes = Float(
-        0.0, min=0, help="Work that is late by at most this many minutes loses nothing."
+        0.0, min=0, help="A submission that is at most this many minutes late loses no points."
     ).tag(config=True)
     cut_off_days = Float(
-        math.inf, min=0, help="Work that is late by more days than this earns no points."
+        math.inf, min=0, help="A submission that is more than this many days late earns no points."
     ).tag(config=True)
 
     def late_submission_penalty(self, student_id: str, score: float, total_seconds_late: float) -> float:
-        """Return the points to subtract.
+        """Return the points to subtract for a late notebook.
 
         Args:
             student_id: The student's id.
             score: The points that were earned.
             total_seconds_late: The number of seconds after the due date. The due date includes extensions.
         """
-        del student_id  # not needed, because the due date already includes this student's extension
+        del student_id  # unused: the due date already includes the student's extension
         if total_seconds_late <= 60 * self.grace_minutes:
             return 0.0
         if total_seconds_late > _DAY * self.cut_off_days:
@@ -55,12 +54,12 @@ class LatePolicy(LateSubmissionPlugin):
 
 
 def penalties(config: Config, student: str, entry: SubmissionEntry) -> dict[str, float | None]:
-    """Return the penalty of a late submission by notebook, computed as nbgrader does; None for no penalty.
+    """Return the late penalty of each notebook of a submission, as nbgrader computes it; None for no penalty.
 
     Args:
         config: The class's configuration.
         student: The student's id.
-        entry: The points and times, as they are in the gradebook or would be after a run.
+        entry: The points and times of the submission, for example from the gradebook.
     """
     if not (entry.handed_in and entry.due and entry.is_late):
         return dict.fromkeys(entry.cells)

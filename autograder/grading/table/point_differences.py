@@ -1,4 +1,4 @@
-"""Differences in points: between two runs, or between the gradebook and what a run would enter."""
+"""Finds differences in points, between two runs, or between the gradebook and a dry run."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Difference:
-    """A change in points; or in the diagnosis, if the points are the same.
+    """A change of a student's points or diagnosis in one exercise.
 
     Attributes:
         student: The student's id.
         assignment: The assignment's name.
         exercise: The exercise's id, or ``late``.
         before: The points before; None if there were none.
-        after: The points now; None if there are none any more.
+        after: The points now; None if there are no points now.
         diagnosis_before: The diagnosis before.
         diagnosis_after: The diagnosis now.
         note: A remark for the instructor; empty if there is none.
@@ -50,7 +50,7 @@ class Difference:
 
 
 def differences(before: Iterable[Row], after: Iterable[Row]) -> list[Difference]:
-    """Return the rows in which two tables differ, in the order of the students."""
+    """Return the differences between the rows of two tables, sorted by student, assignment and exercise."""
     earlier = {(row.student, row.assignment, row.exercise): row for row in before}
     later = {(row.student, row.assignment, row.exercise): row for row in after}
     found = []
@@ -69,12 +69,12 @@ def differences(before: Iterable[Row], after: Iterable[Row]) -> list[Difference]
 
 
 def compare(store: ClassStore, before: str = "", after: str = "") -> tuple[str, str, list[Difference]]:
-    """Compare two runs.
+    """Compare the results of two runs of a class.
 
     Args:
         store: The store of the class.
-        before: The name of the earlier run; by default the last but one.
-        after: The name of the later run; by default the last one.
+        before: The name of the earlier run; if empty, the run before the last.
+        after: The name of the later run; if empty, the last run.
 
     Returns:
         The names of the two runs, and their differences.
@@ -84,7 +84,9 @@ def compare(store: ClassStore, before: str = "", after: str = "") -> tuple[str, 
     """
     names = store.runs()
     if len(names) < 2 and not (before and after):
-        raise GradingError("This class does not have two runs with different tables to compare yet.")
+        raise GradingError(
+            "There is nothing to compare yet: this class does not have two runs with different results."
+        )
     before, after = before or names[-2], after or names[-1]
     tables = []
     for name in (before, after):

@@ -1,4 +1,4 @@
-"""The students of a class, from ``students.csv`` and the gradebook, with their names in the LMS."""
+"""Reads the students of a class from ``students.csv`` and the gradebook, and finds a student by name or number."""
 
 from __future__ import annotations
 
@@ -17,13 +17,14 @@ if TYPE_CHECKING:
 
 NAME = "students.csv"
 LMS = ("canvas", "moodle", "blackboard", "brightspace", "google", "github", "gradescope", "sakai", "ilias")
-"""Learning management systems. For each, ``students.csv`` may have a column with the student's id or user name there.
+"""Learning management systems. ``students.csv`` may have a column for each, with the student's id or user name there.
 """
 _OWN = ("id", "first_name", "last_name", "email", "section", "excused")
 
 
 _EXPORTED = (
-    # First the columns that identify a list from an LMS; then, for each of our columns, the ones it may be in.
+    # For each list from an LMS: the columns that identify the list; and for each column of students.csv, the columns
+    # of the list that may contain the value.
     (
         ("student", "id", "section"),  # Canvas: Grades, Export
         {"id": ("sis login id", "sis user id", "id"), "full_name": ("student",), "canvas": ("id",)},
@@ -53,7 +54,7 @@ _NOBODY = ("points possible", "student, test")
 
 
 class RosterError(GradingError):
-    """``students.csv`` cannot be used. The message names the wrong line."""
+    """``students.csv`` cannot be used. The message says why."""
 
 
 @dataclass(frozen=True)
@@ -82,16 +83,16 @@ class Student:
 
     @property
     def name(self) -> str:
-        """First and last name, as far as they are known."""
+        """The first and last name, in one text; empty if both are unknown."""
         return f"{self.first_name} {self.last_name}".strip()
 
 
 @dataclass(frozen=True)
 class Identity:
-    """A person as named in a file name or in a list from an LMS.
+    """What a file name or a line of an LMS's list says about a person.
 
     Attributes:
-        lms: The system, one of :data:`LMS`; empty if a folder just has a name.
+        lms: The system, one of :data:`LMS`; empty if the system is unknown.
         number: The number by which the system knows the student.
         login: A user name, an email address, or a name without spaces.
         name: A name as people write it.
@@ -118,20 +119,20 @@ class Roster:
 
     @property
     def names(self) -> dict[str, str]:
-        """The students' names by id; an empty name if it is unknown."""
+        """The students' names by id; empty for an unknown name."""
         return {student.id: student.name for student in self.students.values()}
 
     @property
     def excused(self) -> set[tuple[str, str]]:
-        """Return pairs of an assignment and a student who is excused from it."""
+        """Pairs of a student's id and an assignment from which the student is excused."""
         return {(one.id, assignment) for one in self.students.values() for assignment in one.excused}
 
     def excused_from_nothing(self, assignments: Sequence[str], students: Iterable[str]) -> list[str]:
-        """Return a sentence about each name in the column "excused" that is not an assignment.
+        """Return a sentence about each name in the column ``excused`` that is not the name of an assignment.
 
         Args:
             assignments: The names of all assignments of the class.
-            students: The ids of the students whose lines are checked.
+            students: The ids of the students to check.
         """
         found: dict[str, list[str]] = {}
         for one in map(self.students.__getitem__, students):
@@ -146,7 +147,7 @@ class Roster:
         ]
 
     def of_sections(self, sections: Iterable[str]) -> list[str]:
-        """Return the ids of the students in these sections.
+        """Return the ids of the students in some sections.
 
         Raises:
             RosterError: A section has no students.
@@ -155,16 +156,16 @@ class Roster:
         for section in sections:
             if section not in known:
                 raise RosterError(
-                    f"Nobody is in a section named {section}. The column section of {NAME} has: "
+                    f"No student is in a section named {section}. The sections in {NAME} are: "
                     f"{', '.join(sorted(known)) or 'nothing'}."
                 )
         return [one.id for one in self.students.values() if one.section and one.section in set(sections)]
 
     def find(self, identity: Identity) -> tuple[Student, ...]:
-        """Return the students who may be meant: one if it is certain, several if it is not.
+        """Return the students to whom an identity may belong: one if that is certain, otherwise several or none.
 
-        The most certain match decides: first the number in that system, then user names and email addresses, then
-        names.
+        The number in the LMS decides. If no student has this number, user names and email addresses decide. If they
+        match no student, names decide.
         """
         for known in (self._by_number, self._by_login, self._by_name):
             found = known(identity)
@@ -200,7 +201,7 @@ class Roster:
 
 
 def read_roster(directory: ClassDirectory) -> Roster:
-    """Return the students from ``students.csv`` and from the gradebook. What the file says takes precedence.
+    """Return the students from ``students.csv`` and from the gradebook. Values in ``students.csv`` take precedence.
 
     Raises:
         RosterError: The file cannot be used.
@@ -221,7 +222,8 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
     """Return the students from ``students.csv``; none if the file does not exist.
 
     Raises:
-        RosterError: A column or an id is missing, or occurs twice.
+        RosterError: The file cannot be read, the column ``id`` or an id is missing, or an id occurs twice or is
+            invalid.
     """
     path = directory.path / NAME
     try:
@@ -244,9 +246,9 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
         lines = [_as_ours(line, form) for line in lines]
     elif "id" not in columns:
         raise RosterError(
-            f"{path} has no column named id. Its first line has to name its columns: id, and as far as you have "
-            f"them {', '.join((*_OWN[1:], *LMS))}. Canvas's gradebook, Moodle's participants and Gradescope's "
-            "roster can be used as they are."
+            f"{path} has no column named id. Its first line has to contain the names of the columns: id and, if you "
+            f"have them, {', '.join((*_OWN[1:], *LMS))}. You can also use Canvas's gradebook, Moodle's "
+            "participants or Gradescope's roster without changes."
         )
     found: dict[str, Student] = {}
     for line, row in enumerate(lines, 2):
@@ -256,7 +258,7 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
         name = values["id"]
         reason = "it has no id" if not name else reason_against_name(name)
         if name in found:
-            reason = f"the id {name} stands there twice"
+            reason = f"the id {name} also stands in an earlier line"
         if reason:
             raise RosterError(f"{path}, line {line}: {reason}.")
         lms = {column: value for column, value in values.items() if value and column not in _OWN}
@@ -267,7 +269,7 @@ def read_students_csv(directory: ClassDirectory) -> list[Student]:
 
 
 def _as_ours(line: Mapping[str, str], form: Mapping[str, tuple[str, ...]]) -> dict[str, str]:
-    """Convert a line of an LMS's list to our columns; empty if the line is not about a person."""
+    """Convert a line of an LMS's list to the columns of ``students.csv``; return {} for a line about no person."""
     values = {ours: next(filter(None, map(line.get, theirs)), "") or "" for ours, theirs in form.items()}
     full = values.pop("full_name", "")
     if full.lower().startswith(_NOBODY):
@@ -281,7 +283,7 @@ def _as_ours(line: Mapping[str, str], form: Mapping[str, tuple[str, ...]]) -> di
 
 
 def enter_roster(directory: ClassDirectory) -> None:
-    """Enter the students from ``students.csv`` into the gradebook, leaving other students unchanged.
+    """Enter the students from ``students.csv`` into the gradebook. Other students in the gradebook stay unchanged.
 
     Raises:
         RosterError: The file cannot be used.
@@ -291,7 +293,7 @@ def enter_roster(directory: ClassDirectory) -> None:
         return
     with opened(directory.gradebook_url) as book:
         if not has_tables(book):
-            return  # the step that needs the gradebook will report the problem
+            return  # a later step will report that the gradebook is not usable
         known = set(book.execute(sql("SELECT id FROM student")).scalars())
         for student in students:
             values = {
@@ -327,12 +329,12 @@ _APOSTROPHES = str.maketrans(dict.fromkeys("'’‘ʼ`´"))
 
 
 def _forms(name: str) -> set[tuple[str, ...]]:
-    """Return a name's words in alphabetical order, once for each way in which systems write an apostrophe."""
+    """Return the sorted words of a name, once with an apostrophe as a space and once without it (o brien, obrien)."""
     return {tuple(sorted(_words(form))) for form in (name, name.translate(_APOSTROPHES))}
 
 
 def _words(name: str) -> list[str]:
-    """Return a name's words without accents and in lower case."""
+    """Return the words of a name, without accents and in lower case."""
     plain = "".join(
         character for character in unicodedata.normalize("NFKD", name) if not unicodedata.combining(character)
     )
@@ -340,6 +342,6 @@ def _words(name: str) -> list[str]:
 
 
 def _joined_names(student: Student) -> tuple[str, str]:
-    """Return a student's names as one word, with the last name first and with the last name last."""
+    """Return a student's name as one word in two orders, such as "leeann" and "annlee"."""
     first, last = "".join(_words(student.first_name)), "".join(_words(student.last_name))
     return last + first, first + last

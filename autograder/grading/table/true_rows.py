@@ -1,4 +1,4 @@
-"""The rows of the table of results: points from the gradebook, texts from the judge."""
+"""Makes the rows of the table of results: points come from the gradebook, states and diagnoses from the judge."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ def true_rows(
     what_counts: WhatCounts = WhatCounts(),  # noqa: B008 (it is frozen)
     zone: tzinfo = UTC,
 ) -> list[Row]:
-    """Return the rows of a class, sorted by student and then in the order of the course.
+    """Return a class's rows: those of each student in the order of the course, sorted by student.
 
-    Assignments that no student has handed in are left out. For all others, every student has rows.
+    An assignment without any submission is left out. Every student has rows for all other assignments.
 
     Args:
         students: The names of the students, by id.
@@ -105,15 +105,15 @@ def _with_points(row: Row, kept: CellEntry) -> Row:
 
 
 _IS_GRADED = ("passed", "failed", WAITS, BY_HAND)
-"""The states with a final result. Any other state waits for a run, not for a person."""
+"""The states after a finished run. Only in these states can a cell wait for a person."""
 
 
 def _state(cell: GradedCell, kept: CellEntry) -> str:
-    """Return the state of a cell for which the judge's result is unknown."""
+    """Return the state of a cell without a stored result of the judge, from the gradebook's entry."""
     if not cell.by_judge:
         if kept.by_hand is None and not kept.waits:
-            return "failed"  # nbgrader gives no points because the cell is empty
+            return "failed"  # the student left the cell empty, so nbgrader gave zero points
         return WAITS if kept.waits else BY_HAND
     if kept.waits and kept.by_hand is None:
-        return NOT_GRADED  # the grade was set to zero
+        return NOT_GRADED  # the grade was set to zero before a run
     return "passed" if (kept.judged or 0.0) >= kept.max_score else "failed"

@@ -1,4 +1,4 @@
-"""An instructor's weights for a class, and the exercises and assignments that are left out, from ``class.toml``."""
+"""Reads from ``class.toml`` which weights exercises and assignments have, and which do not count."""
 
 from __future__ import annotations
 
@@ -29,20 +29,20 @@ class _File(msgspec.Struct, forbid_unknown_fields=True):
 
 @dataclass(frozen=True)
 class WhatCounts:
-    """The weights for a class's table. The gradebook keeps the earned points, so weights can change at any time.
+    """The weights for a class's table. They can change at any time, because the gradebook has points without weights.
 
     Attributes:
-        factors: The factors with which points are multiplied, by assignment and exercise; 0 leaves an exercise out.
-        drop_lowest: The number of each student's lowest assignments that are left out of the total.
+        factors: The factors that multiply points, by assignment and exercise. The factor 0 leaves an exercise out.
+        drop_lowest: The number of assignments that do not count: for each student, those with the fewest points.
     """
 
     factors: Mapping[tuple[str, str], float] = field(default_factory=dict)
     drop_lowest: int = 0
 
     def applied(self, rows: Sequence[Row]) -> list[Row]:
-        """Return the rows of one submission with the weights applied.
+        """Multiply the points in the rows of one submission by the weights, and return the new rows.
 
-        The late penalty stays the same fraction of the points.
+        The late penalty remains the same fraction of the points.
         """
         plain = [row for row in rows if row.exercise != LATE]
         factors = [self.factors.get((row.assignment, row.exercise), 1.0) for row in plain]
@@ -53,10 +53,11 @@ class WhatCounts:
         return found + [_scaled(row, late) for row in rows if row.exercise == LATE and found]
 
     def without_lowest(self, rows: Sequence[Row]) -> list[Row]:
-        """Return the rows of one student, with an additional row for each assignment that is left out of the total.
+        """Return the rows of one student. For each dropped assignment, add a row that subtracts its points.
 
-        Assignments that were not handed in are left out first, then those with the lowest share of their maximum
-        points. At least one always counts. While points of any are still to come, all count.
+        Assignments without a submission are dropped first, then those with the smallest share of their maximum points.
+        At least one assignment always counts. No assignment is dropped while points for any assignment are still
+        missing.
         """
         by_assignment: dict[str, list[Row]] = {}
         for row in rows:
@@ -123,11 +124,14 @@ def read_what_counts(directory: ClassDirectory, cells: Mapping[str, Sequence[Gra
     ):
         if name not in known:
             raise GradingError(
-                f"{path} speaks of {name}, which is not here. There is: {', '.join(sorted(known))}."
+                f"{path} contains {name}, which does not exist in this class. Possible names are: "
+                f"{', '.join(sorted(known))}."
             )
     for name, points in (*said.points.items(), *said.weights.items()):
         if not 0 <= points < 1e6:
-            raise GradingError(f"{path} gives {name} {points:g}, and no points can be that many.")
+            raise GradingError(
+                f"{path} sets {name} to {points:g}. Write a number from 0 to less than 1000000."
+            )
     factors: dict[tuple[str, str], float] = {}
     for assignment, of_assignment in cells.items():
         weight = said.weights.get(assignment, 1.0)
