@@ -1,1 +1,1 @@
-"""The report page: one page about the whole class, for the instructor."""
+"""Makes the report page: one HTML page for the instructor about the whole class."""

@@ -1,4 +1,4 @@
-"""The report page about a class: one file without scripts or network access, readable in black and white."""
+"""Writes the report page about a class: one HTML file that needs no scripts, no network and no colors."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class _Person:
     """A student as shown on the page.
 
     Attributes:
-        shown: The name; if names are hidden, a number.
+        shown: The name; or, if names are hidden, a number such as ``student 3``.
         links: The links to feedback pages by assignment, relative to this page; empty if names are hidden.
     """
 
@@ -57,7 +57,7 @@ def write_report(
         The absolute path of the file.
 
     Raises:
-        GradingError: No work was handed in, or the class cannot be read.
+        GradingError: The class has no submissions, or cannot be read.
     """
     directory = ClassDirectory(path)
     to = (to or directory.path / NAME).absolute()
@@ -65,7 +65,7 @@ def write_report(
         table = read_table(directory, sections)
         table.check_usable()
         if not figures.handed_in(table):
-            raise GradingError("Nothing was handed in yet, so there is nothing to report.")
+            raise GradingError("There are no submissions yet, so there is nothing to report.")
         page = _page(directory, store, table, names=names, folder=to.parent)
         with clear_place_errors(to, "--output"):
             write_whole(to, page.encode())
@@ -114,17 +114,17 @@ def _people(directory: ClassDirectory, table: ClassTable, *, names: bool, folder
         for assignment in table.assignments:
             pages = sorted((directory.path / "feedback" / student / assignment).glob("*.html"))
             if pages:
-                # A feedback page outside the class's folder is linked by its whole path.
+                # A feedback page outside the folder of the report page is linked by its absolute path.
                 inside = pages[0].is_relative_to(folder)
                 links[assignment] = quote(str(pages[0].relative_to(folder))) if inside else pages[0].as_uri()
         name = table.roster.students[student].name
-        # In an LMS, users choose their own names, so the text is shortened to one line.
+        # Students choose their names in an LMS, so a name may be very long or have several lines.
         people[student] = _Person(one_line(f"{name} ({student})" if name else student, _LONGEST_NAME), links)
     return people
 
 
 def _dropped(table: ClassTable) -> dict[str, list[str]]:
-    """Return the assignments that ``drop_lowest`` leaves out of totals, by student."""
+    """Return the assignments of each student that do not count because of ``drop_lowest``."""
     found: dict[str, list[str]] = {}
     for row in table.rows:
         if row.exercise == DROPPED:
@@ -139,13 +139,13 @@ def _cell(row: Row | None) -> str:
 
 
 def _progress(store: ClassStore, table: ClassTable) -> list[figures.AttemptProgress]:
-    """Return the students whose work was graded more than once, those with the greatest improvement first."""
+    """Return the progress of students over several attempts, those with the greatest improvement first."""
     found = [one for student in table.students for one in figures.progress(student, store.attempts(student))]
     return sorted(found, key=lambda one: one.first - one.last)
 
 
 def _times(directory: ClassDirectory, table: ClassTable) -> list[dict[str, object]]:
-    """Return the times of handing in relative to the due date, with the points."""
+    """Return, for each submission, its time, the hours before the due date, and its points."""
     earlier = Table(directory).earlier()
     found: list[dict[str, object]] = []
     for (student, assignment), entry in sorted(

@@ -25,12 +25,12 @@ _FEWEST = 3
 
 @dataclass(frozen=True)
 class Band:
-    """One of ten equal parts of the range of points.
+    """One of ten equal ranges of points, with the students in it.
 
     Attributes:
         low: The lower end in percent of the points.
-        high: The upper end in percent. The last band includes full points.
-        students: The number of students in the band.
+        high: The upper end in percent. Only the last band includes its upper end.
+        students: The ids of the students in the band.
     """
 
     low: int
@@ -40,7 +40,7 @@ class Band:
 
 @dataclass(frozen=True)
 class CriterionFigures:
-    """The figures for one criterion.
+    """How many submissions meet one criterion.
 
     Attributes:
         title: The criterion's title.
@@ -58,17 +58,17 @@ class ItemFigures:
     """The statistics of one exercise, over the students who handed it in.
 
     Attributes:
-        exercise: The exercise's id. If several assignments have a cell with this name, it is preceded by the
-            assignment's name.
+        exercise: The exercise's id. If several assignments have a cell with this name, the id follows the assignment's
+            name, such as ``lab_1.talker``.
         max_score: The maximum points for the exercise.
         handed_in: The number of students who have handed it in.
         mean: The mean of these students' points.
         full: The number of these students with full points.
         none: The number of these students without points.
         difficulty: The mean divided by the maximum points. A high value means an easy exercise.
-        discrimination: Pearson's correlation, from -1 to 1, of the exercise's points with the points of all other
-            exercises; None if it cannot be computed.
-        criteria: The figures for its criteria, in the order of the exercise.
+        discrimination: Pearson's correlation, from -1 to 1, between students' points for this exercise and their
+            points for all other exercises; None if it cannot be computed.
+        criteria: How many submissions meet each criterion of the exercise.
     """
 
     exercise: str
@@ -90,8 +90,8 @@ class MistakeFigures:
         assignment: The assignment's name.
         exercise: The exercise's id.
         key: The mistake's key.
-        reason: The explanation that the first of these students got.
-        students: The students who made it.
+        reason: The explanation in the diagnosis, as one of the students got it.
+        students: The ids of the students who made the mistake.
     """
 
     assignment: str
@@ -103,12 +103,12 @@ class MistakeFigures:
 
 @dataclass(frozen=True)
 class AttemptProgress:
-    """The judge's points of a student's first and last attempt at an assignment.
+    """A student's points from the judge in the first and the last attempt at an assignment.
 
     Attributes:
         student: The student's id.
         assignment: The assignment's name.
-        attempts: The number of times that changed work was graded.
+        attempts: The number of different submissions that were graded.
         first: The points of the first attempt.
         last: The points of the last attempt.
         max_score: The maximum points that the judge gives.
@@ -123,15 +123,12 @@ class AttemptProgress:
 
 
 def progress(student: str, attempts: Iterable[Attempt]) -> list[AttemptProgress]:
-    """Return how a student's points developed over the attempts at each assignment.
+    """Return a student's progress in each assignment that the student submitted again after a change.
 
     Args:
         student: The student's id.
-        attempts: All graded attempts, oldest first. Attempts that were graded with another version of the course than
-            the last one are left out, because their points are not comparable.
-
-    Returns:
-        An entry for each assignment that was graded again with changed work.
+        attempts: All graded attempts of the student, oldest first. Only attempts with the same version of the course
+            as the last attempt are used, because others are not comparable.
     """
     found: dict[str, list[Attempt]] = defaultdict(list)
     for attempt in attempts:
@@ -148,7 +145,7 @@ def progress(student: str, attempts: Iterable[Attempt]) -> list[AttemptProgress]
 
 
 def bands(table: ClassTable) -> list[Band]:
-    """Return the number of students in each tenth of the range of points. Students without points yet are left out."""
+    """Return the distribution of total points in ten bands. Students without points are left out."""
     found: dict[int, list[str]] = defaultdict(list)
     for student in handed_in(table):
         if (points := table.score(student)) is None:
@@ -161,7 +158,7 @@ def bands(table: ClassTable) -> list[Band]:
 
 
 def handed_in(table: ClassTable) -> list[str]:
-    """Return the students who have handed in at least one assignment."""
+    """Return the ids of the students with at least one submission."""
     return [
         student
         for student in table.students
@@ -170,7 +167,7 @@ def handed_in(table: ClassTable) -> list[str]:
 
 
 def totals(table: ClassTable) -> list[float]:
-    """Return the total points of every student who has any; empty if nothing is graded yet."""
+    """Return the total points of each student who has points."""
     return [points for student in handed_in(table) if (points := table.score(student)) is not None]
 
 
@@ -211,7 +208,7 @@ def _key(row: Row) -> tuple[str, str]:
 
 
 def mistakes(table: ClassTable) -> list[MistakeFigures]:
-    """Return the recognized mistakes, the most common first."""
+    """Return the recognized mistakes with the students who made them, the most common mistake first."""
     found: dict[tuple[str, str, str], list[Row]] = defaultdict(list)
     for row in table.rows:
         if row.diagnosis:
@@ -233,7 +230,7 @@ def _correlation(ours: Sequence[float], others: Sequence[float]) -> float | None
 
 
 def _criteria(table: ClassTable, store: ClassStore) -> dict[tuple[str, str], list[CriterionFigures]]:
-    """Return the figures for each criterion, taken from the verdicts on which the points in the table are based."""
+    """Return, for each exercise, how many of the graded submissions meet each criterion."""
     counted = {(row.student, row.assignment) for row in table.rows if row.state in ("passed", "failed")}
     seen: dict[tuple[str, str], dict[str, CriterionFigures]] = defaultdict(dict)
     for student, assignment in sorted(counted):

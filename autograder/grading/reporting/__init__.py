@@ -1,1 +1,1 @@
-"""The result of a run, shown to the person who started it: a table, a JSON object, a CSV file."""
+"""Shows the result of a grading run to the instructor: as a table in the terminal, as JSON, and as a CSV file."""

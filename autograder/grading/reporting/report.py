@@ -1,4 +1,4 @@
-"""The result of grading a class, as an object, and as the JSON that ``grade --json`` prints."""
+"""The result of a grading run, as a Python object and as the JSON that ``grade --json`` prints."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from autograder.grading.table.point_differences import Difference
 
 FORM = 2
-"""The version of the JSON object. It is increased when a field is renamed or removed."""
+"""The version of the JSON format. It increases when a field is renamed or removed."""
 
 
 @dataclass(frozen=True)
@@ -34,16 +34,16 @@ class GradeReport:
         path: The class.
         rows: The rows, sorted by student and then in the order of the course.
         refused: Files in ``submitted`` that cannot be graded where they are.
-        problems: Other problems, as sentences. None of them gave a student points.
-        notices: Sentences that the instructor should read although they report no failure.
+        problems: Sentences about other failures. No student has points because of a failure.
+        notices: Sentences for the instructor that are not about a failure.
         would_change: After a dry run, the points that would change; None if points were entered.
         executed: The number of notebooks that were executed.
         reused: The number of notebooks whose result was already known.
         written: The number of submissions that this run entered into the gradebook.
         seconds: The duration of the run, in seconds of wall time.
-        timings: The parts of this time, by step.
-        note: A warning about the points if the class was graded without boxes; else empty.
-        gradebook: The file of nbgrader's gradebook; None if it is in a database server.
+        timings: The seconds that each step took.
+        note: A warning if submissions were run without a sandbox, so that the points may be forged; otherwise empty.
+        gradebook: The path of the gradebook's SQLite file; None if the gradebook is on a database server.
         due: The due date of each assignment that has one, in the time zone of the class.
     """
 
@@ -64,23 +64,23 @@ class GradeReport:
 
     @property
     def csv(self) -> Path:
-        """The path of the CSV file with all rows."""
+        """The path of ``grades.csv``, which contains all rows."""
         return self.path / "grades.csv"
 
     @property
     def feedback(self) -> Path:
-        """The folder that contains the pages for students."""
+        """The folder with the feedback pages for students."""
         return self.path / "feedback"
 
     @property
     def exit_code(self) -> int:
-        """The command's exit code: 0 if everything was graded; 2 if something could not be checked or was refused."""
+        """The command's exit code: 0 if everything was graded; 2 if a check or a file could not be graded."""
         unchecked = any(row.state == State.NOT_CHECKED for row in self.rows)
         return 2 if self.refused or self.problems or unchecked else 0
 
 
 def report_json(report: GradeReport) -> bytes:
-    """Return one line of JSON: the run, each submission, totals and times."""
+    """Return the report as one line of JSON."""
     return msgspec.json.encode(
         {
             "form": FORM,
@@ -112,7 +112,7 @@ def report_json(report: GradeReport) -> bytes:
 
 
 def table_json(page: Path, table: ClassTable) -> bytes:
-    """Return one line of JSON: the submissions of a class, what a person has to grade, and the report page's path."""
+    """Return a class's table of results and the path of the report page as one line of JSON."""
     return msgspec.json.encode(
         {
             "form": FORM,
@@ -126,7 +126,7 @@ def table_json(page: Path, table: ClassTable) -> bytes:
 
 
 def _submissions(rows: tuple[Row, ...]) -> list[dict[str, Any]]:
-    """Return an object for each student and assignment, in the order of the rows."""
+    """Return a JSON object for each submission, in the order of the rows."""
     found = []
     for (student, assignment), group in groupby(rows, key=lambda row: (row.student, row.assignment)):
         all_rows = list(group)

@@ -1,4 +1,4 @@
-"""The result of a run, printed in a terminal."""
+"""Prints the result of a grading run in a terminal."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ if TYPE_CHECKING:
 
 _WIDE = 130
 _NAME = 30
-"""The maximum width of a student's id or name, in columns of a terminal. Longer ones are wrapped."""
+"""The maximum width of a student's id or name, in characters. Longer ids and names are wrapped."""
 _ANY_WIDTH = 10_000
 _STYLES = {State.PASSED: "green", State.FAILED: "red", State.NOT_CHECKED: "yellow", WAITS: "yellow"}
 
 
 def show(report: GradeReport, console: Console | None = None) -> None:
-    """Print the table of results, what could not be graded, and the paths of the files.
+    """Print the table of results, lines about refused files and problems, and the paths of written files.
 
     Args:
         report: The result of the run.
@@ -103,12 +103,12 @@ def tables(rows: Sequence[Row], console: Console, *, diagnoses: bool) -> Iterato
     Args:
         rows: The rows to show.
         console: The console into which each table has to fit.
-        diagnoses: True to also show the mistake where points are missing. This needs about 130 columns for four
-            exercises.
+        diagnoses: True to also show recognized mistakes. A table with four exercises is then about 130 characters
+            wide.
     """
     grid = _Grid.of(rows, diagnoses=diagnoses)
     left = list(grid.names)
-    # rich measures cells slowly and a class has many rows, so only the widest cell of each column is measured.
+    # rich is slow at measuring many cells, so measure only the widest cell of each column.
     widest = grid.of_the_widest()
     no_column = _needs(widest.table([]), console)
     widths = {key: _needs(widest.table([key]), console) - no_column for key in left}
@@ -125,18 +125,18 @@ def tables(rows: Sequence[Row], console: Console, *, diagnoses: bool) -> Iterato
 
 
 def _needs(shown: Table, console: Console) -> int:
-    """Return the width, in columns of a terminal, at which nothing in a table is cut off or wrapped."""
+    """Return the width of a table, in characters, at which no cell is cut off or wrapped."""
     return console.measure(shown, options=console.options.update(width=_ANY_WIDTH)).maximum
 
 
 @dataclass(frozen=True)
 class _Grid:
-    """The content of the cells of a table.
+    """The content of the printed table.
 
     Attributes:
-        names: The heading of each column, by assignment and exercise.
-        students: The rows of each student.
-        results: The row for each cell, by student, assignment and exercise.
+        names: The headings of the columns, by assignment and exercise.
+        students: The results of each student, by the student's id.
+        results: The result for each cell of the table, by student, assignment and exercise.
         diagnoses: True if cells also show the mistake.
     """
 
@@ -154,21 +154,22 @@ class _Grid:
         return cls(columns(rows), students, results, diagnoses)
 
     def of_the_widest(self) -> Self:
-        """Return a grid with a single row that has the widest cell of each column."""
+        """Return a grid with one row, which consists of the widest cell of each column."""
         student = next(iter(self.students))
         by_width = sorted(self.results.values(), key=lambda row: cell_len(_cell(row, self.diagnoses).plain))
-        # The rows are sorted by width, so the last one in each column, which stays, is the widest.
+        # A dict keeps the last value for a key. As the rows are sorted by width, this is the widest cell of the
+        # column.
         results = {(student, row.assignment, row.exercise): row for row in by_width}
         return replace(self, students={student: self.students[student]}, results=results)
 
     def table(self, keys: Sequence[tuple[str, str]], *, is_last: bool = False) -> Table:
-        """Return a table of these columns. The last table also has late penalty, dropped assignments and total."""
+        """Return a table of some columns. The last table also has columns for late penalty, dropped work and total."""
         there = {exercise for _, _, exercise in self.results} if is_last else set()
         late, dropped = LATE in there, DROPPED in there
         shown = Table(header_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
         shown.add_column("student", overflow="fold", max_width=_NAME)
         for key in keys:
-            # A heading takes two lines, so that four exercises fit into a terminal of 80 columns.
+            # With headings of two lines, four exercises fit into a terminal of 80 characters.
             shown.add_column(self.names[key].replace(".", "\n."), no_wrap=True)
         if late:
             shown.add_column("late", justify="right", no_wrap=True)
@@ -197,7 +198,7 @@ def _taken_off(rows: Sequence[Row]) -> Text:
 
 
 def _diagnoses(rows: Sequence[Row]) -> Table:
-    """Return a table with a line for each exercise in which a mistake was recognized."""
+    """Return a table of the recognized mistakes: a line for each student and exercise."""
     names = columns(rows)
     shown = Table.grid(padding=(0, 2))
     for row in rows:
@@ -207,7 +208,7 @@ def _diagnoses(rows: Sequence[Row]) -> Table:
 
 
 def _unreadable(report: GradeReport) -> list[tuple[str, str]]:
-    """Return a line with the reason for each file that is not a notebook. Refused files are listed elsewhere."""
+    """Return pairs of a submission and the reason why its notebook cannot be read. Refused files are left out."""
     refused = {(entry.path.parent.parent.name, entry.path.parent.name) for entry in report.refused}
     reasons = {
         f"{row.student}/{row.assignment}": row.reason
@@ -227,16 +228,16 @@ def _cell(row: Row | None, diagnoses: bool) -> Text:
 
 
 def _legend(rows: Sequence[Row]) -> list[str]:
-    """Return an explanation of each mark that appears after points."""
+    """Return a line about each mark that appears after points in the table."""
     waiting = sum(row.waits for row in rows)
     marks = {row.mark for row in rows}
-    found = ["*  a person gave these points, or some of them"] if "*" in marks else []
+    found = ["*  a person gave these points, or a part of them"] if "*" in marks else []
     if waiting:
         found.append(f"?  waits for a person ({waiting} in all): give the points in formgrader")
     return found
 
 
 def _near(path: Path) -> Path:
-    """Return the shortest form of a path that can be typed in the current folder."""
+    """Return a path relative to the current folder; if it is outside of this folder, the path unchanged."""
     here = path.cwd()
     return path.relative_to(here) if path.is_relative_to(here) else path

@@ -1,4 +1,4 @@
-"""The rows of a class's results, and the CSV file with these rows, ``grades.csv``."""
+"""Defines a row, the result of one student in one exercise, and writes rows into ``grades.csv``."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
 
 NOT_SUBMITTED = "not_submitted"
 NOT_GRADED = "not_graded"
-"""The state of an exercise that was handed in but that no run has graded yet."""
+"""The state of an exercise that was submitted, but not graded yet."""
 WAITS = "waits"
-"""The state of a cell that a person has to grade and that has no points yet."""
+"""The state of a cell that a person still has to grade."""
 BY_HAND = "by_hand"
 """The state of a cell to which a person has given points."""
 EXCUSED = "excused"
-"""The state of an assignment from which students.csv excuses the student. The student's total does not include it."""
+"""The state of an exercise if students.csv excuses the student from its assignment. It does not count in the total."""
 LATE = "late"
-"""The value of ``exercise`` in the row that contains the late penalty."""
+"""The value of ``exercise`` in a row for a late penalty."""
 DROPPED = "dropped"
-"""The value of ``exercise`` in the row that takes one of a student's lowest assignments out of the total."""
+"""The value of ``exercise`` in a row that subtracts the points of a dropped assignment."""
 NO_EXERCISE = (LATE, DROPPED)
 COLUMNS = (
     "student",
@@ -55,7 +55,7 @@ _NOTHING_JUDGED = (NOT_SUBMITTED, NOT_GRADED, EXCUSED, State.NOT_CHECKED)
 
 
 def total(rows: Iterable[Row]) -> float | None:
-    """Return the sum of the points in several rows; None if no row has been judged."""
+    """Return the sum of the points in some rows; None if no row has points yet."""
     scores = [score for row in rows if (score := row.shown_score) is not None]
     return round(sum(scores), 4) if scores else None
 
@@ -67,17 +67,17 @@ class Row:
     Attributes:
         student: The student's id.
         assignment: The assignment's name.
-        exercise: The exercise's id, or the name of a cell that a person grades, or ``late`` or ``dropped``.
+        exercise: The exercise's id; the name of a cell that a person grades; or ``late`` or ``dropped``.
         score: The points in the gradebook, including those that a person gave.
         max_score: The maximum points for the exercise.
         state: ``passed``, ``failed``, ``not_checked``, ``not_graded``, ``not_submitted``, ``excused``, ``waits``,
             ``by_hand``, ``late`` or ``dropped``.
         diagnosis: The key of the recognized mistake; empty if there is none.
         reason: The text about the mistake; empty if there is none.
-        judged: The points from the judge in the gradebook; None if there are none.
-        by_hand: The points that a person gave instead; None if no person did.
-        extra: The points that a person added.
-        waits: True if a person still has to look at it.
+        judged: The automatic points in the gradebook; None if there are none.
+        by_hand: The points by a person, which replace the automatic points; None if there are none.
+        extra: Extra credit: points that a person added.
+        waits: True if a person still has to grade the exercise.
         name: The student's name; empty if unknown.
         remarks: Sentences about repairs of the notebook, for example missing cells.
     """
@@ -99,34 +99,34 @@ class Row:
 
     @property
     def is_blank(self) -> bool:
-        """True if nothing has been judged yet. Such a row has no points, which differs from zero points."""
+        """True if the row has no points yet, which is different from zero points."""
         return self.state in _NOTHING_JUDGED and self.by_hand is None and not self.extra
 
     @property
     def is_unchecked(self) -> bool:
-        """True if the exercise was handed in but not judged. The next run may then give points."""
+        """True if the exercise was submitted but not judged. The next run may give points."""
         return self.is_blank and self.state in (NOT_GRADED, State.NOT_CHECKED)
 
     @property
     def is_to_come(self) -> bool:
-        """True if its points are still to come, from the next run or from a person."""
+        """True if the next run or a person still has to give points."""
         return self.is_unchecked or self.state == WAITS
 
     @property
     def shown_score(self) -> float | None:
-        """The points; None if nothing has been judged yet."""
+        """The points; None if the row has no points yet."""
         return None if self.is_blank else self.score
 
     @property
     def mark(self) -> str:
-        """The mark after the points: ``?`` if a person still has to grade, ``*`` if a person gave some, or none."""
+        """The mark after the points: ``?`` if a person still has to grade, ``*`` if a person gave points, or empty."""
         return "?" if self.waits else "*" if self.by_hand is not None or self.extra else ""
 
 
 def columns(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
-    """Return the name of each exercise's column, by assignment and exercise.
+    """Return the heading of each exercise's column, by assignment and exercise.
 
-    Instructors often use one cell name in several assignments. Then the column's name begins with the assignment's.
+    If several assignments have a cell with the same name, the heading begins with the assignment's name.
     """
     keys = list(
         dict.fromkeys((row.assignment, row.exercise) for row in rows if row.exercise not in NO_EXERCISE)
@@ -136,7 +136,7 @@ def columns(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
 
 
 def rows_of(task: Task, execution: Execution) -> list[Row]:
-    """Return the rows of one notebook."""
+    """Return a row for each check of an executed notebook."""
     found = []
     for index, cell in enumerate(task.cells):
         if cell.check is None:
@@ -160,7 +160,7 @@ def rows_of(task: Task, execution: Execution) -> list[Row]:
 
 
 def remarks_on(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
-    """Return the remarks on each submission's notebooks in one line, by student and assignment, if there are any."""
+    """Return the remarks on each submission in one line, by student and assignment."""
     found: dict[tuple[str, str], dict[str, None]] = {}
     for row in rows:
         found.setdefault((row.student, row.assignment), {}).update(dict.fromkeys(row.remarks))
@@ -168,16 +168,16 @@ def remarks_on(rows: Iterable[Row]) -> dict[tuple[str, str], str]:
 
 
 def write_csv(path: Path, rows: Iterable[Row]) -> None:
-    """Write the rows as CSV in UTF-8, with the mark (BOM) by which Excel recognizes it. The file is replaced whole.
+    """Write rows as a CSV file, in UTF-8 with a byte order mark (BOM), so that Excel recognizes the encoding.
 
     Raises:
-        OSError: The file could not be written. An earlier file is then unchanged.
+        OSError: The file could not be written. An earlier file is unchanged.
     """
     write_whole(path, csv_text([COLUMNS, *map(csv_cells, rows)]).encode("utf-8-sig"))
 
 
 def csv_cells(row: Row) -> tuple[str | float, ...]:
-    """Return a row as the cells of the columns in :data:`COLUMNS`."""
+    """Return the values of a row in the order of :data:`COLUMNS`."""
     return (
         row.student,
         row.assignment,

@@ -1,4 +1,4 @@
-"""CSV files that a spreadsheet shows without executing formulas in them."""
+"""Reads and writes CSV text. In written CSV, no text of a student is executed as a formula by a spreadsheet."""
 
 from __future__ import annotations
 
@@ -13,20 +13,19 @@ import re2
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-# A list from an LMS contains texts that students have typed. They may be of any length, so a cell has no limit of its
-# own.
+# A list from an LMS may contain students' texts of any length, so raise Python's limit for a cell.
 csv.field_size_limit(2**31 - 1)
 _FORMULA = frozenset("=+-@\N{MINUS SIGN}")
-# A spreadsheet may be set to split a line at these characters, so a formula could begin after them.
+# Some spreadsheets split a line at these characters, so that a formula could begin after them.
 _SEPARATOR = re2.compile(r"([;|])")
 _SPACES = frozenset({"Cc", "Zl", "Zp", "Zs"})
 
 
 def csv_text(rows: Iterable[Iterable[str | float]]) -> str:
-    """Return rows as CSV text. Texts are made harmless; numbers stay numbers."""
+    """Return rows as CSV text. Texts that look like formulas are changed by :func:`defused`."""
     text = io.StringIO(newline="")
     writer = csv.writer(text, lineterminator="\n")
-    # Cache the texts, because most of them appear many times in the rows of a class.
+    # Cache the results, because most texts appear many times in the rows of a class.
     as_text = functools.cache(defused)
     for row in rows:
         writer.writerow([as_text(cell) if isinstance(cell, str) else f"{cell:g}" for cell in row])
@@ -34,15 +33,15 @@ def csv_text(rows: Iterable[Iterable[str | float]]) -> str:
 
 
 def blank(score: float | None) -> float | str:
-    """Return points as a cell: empty if there are none, which differs from zero."""
+    """Return points as the content of a cell; None becomes an empty cell."""
     return "" if score is None else score
 
 
 def csv_rows(data: bytes) -> tuple[list[list[str]], str]:
-    """Return the rows of a table that a system or a spreadsheet saved, and the separator of its cells.
+    """Return the rows of a CSV file from an LMS or a spreadsheet, and the character that separates its cells.
 
-    Commas, semicolons and tabs separate cells; the text is in UTF-8, in UTF-16 or, from Excel, in the encoding of
-    Western European systems. The cells are as they stand there; :func:`original` is their text.
+    The separator may be a comma, a semicolon or a tab. The encoding may be UTF-8, UTF-16 or, from Excel, Windows-1252.
+    Call :func:`original` to get the text of a cell.
     """
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         text = data.decode("utf-16", "replace")
@@ -57,20 +56,20 @@ def csv_rows(data: bytes) -> tuple[list[list[str]], str]:
 
 
 def original(cell: str) -> str:
-    """Return a cell without the apostrophe that :func:`defused` put in front."""
+    """Return the text of a cell, without an apostrophe that :func:`defused` has put in front of it."""
     return cell[1:] if cell[:1] == "'" and cell[1:2] in _FORMULA and cell[1:] else cell
 
 
 def defused(cell: str) -> str:
-    """Return the text of a cell, changed so that no spreadsheet takes it for a formula (OWASP, "CSV Injection").
+    """Return a text that no spreadsheet executes as a formula (OWASP, "CSV Injection").
 
-    An apostrophe is put before a possible formula: at the start, or after a character at which some spreadsheets
-    split. Spreadsheets then read the cell as text. Full-width signs count as well, because some programs convert
-    them. Tabs, line breaks and other control characters become spaces, and invisible characters (such as changes of
-    the writing direction) are removed.
+    An apostrophe is put in front of a possible formula, at the beginning of the text, or after a character at which
+    some spreadsheets split a line. Spreadsheets then read the cell as text. Full-width signs such as "＝" count as
+    well, because some programs convert them to "=". Control characters such as tabs become spaces. Invisible
+    characters are removed.
 
     Args:
-        cell: Any text.
+        cell: The original text.
     """
     kinds = ((character, unicodedata.category(character)) for character in cell)
     cell = "".join(" " if kind in _SPACES else character for character, kind in kinds if kind != "Cf")

@@ -1,1 +1,1 @@
-"""The feedback pages for students, which contain nothing harmful."""
+"""Makes the feedback pages for students, without anything in them that could harm a reader's browser."""

@@ -1,4 +1,4 @@
-"""Makes the feedback pages for students, one after the other, with templates that are read only once."""
+"""Makes the feedback pages for students. Templates are read only once for all pages."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class FeedbackPages:
 
 
 def _fill_in(cell: Any, cells: Mapping[str, CellEntry]) -> None:
-    """Put into a cell what nbgrader's GetGrades preprocessor would put there for the template."""
+    """Add the points and the comment to a cell's metadata for the template, as nbgrader's GetGrades does."""
     marks: Mapping[str, Any] = cell.metadata.get("nbgrader", {})
     known = cells.get(marks.get("grade_id", ""))
     if known is None:

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
-"""The policy that limits what a browser does on a page: it may only show the page's own text, styles and pictures (W3C,
-"Content Security Policy").
+"""The Content Security Policy of a feedback page. It lets a browser show only the text, styles and pictures inside the
+page.
 """
 
 _OURS = Path(__file__).parents[1] / "page_templates"
@@ -42,10 +42,10 @@ _NBGRADERS = _FORMGRADER / "templates"
 _BOOTSTRAP = _FORMGRADER / "static" / "node_modules" / "bootstrap" / "dist" / "css"
 _SCRIPT = re.compile(r"<script\b.*?</script\s*>", re.DOTALL | re.IGNORECASE)
 _REMEMBERED = 1024
-"""The maximum number of highlighted pieces of code in the cache. A chapter has a few hundred given cells."""
+"""The maximum number of code cells in the cache of highlighted code. A chapter has a few hundred given cells."""
 _REMEMBERED_CHARACTERS = 8_000_000
-"""The maximum length, in characters, of all rendered fragments in the cache. The fragments that a chapter's students
-have in common take about a million.
+"""The maximum length of all rendered parts of pages in the cache, in characters. The parts that are the same for all
+students of a chapter take about a million.
 """
 _PICTURE = re2.compile(r"(?i)<img\b[^>]*")
 _SHOWS_ATTACHED = re2.compile(r'(?P<before><img\b(?:\s+[\w-]+="[^"]*")*?\s+)src="attachment:(?P<name>[^"]*)"')
@@ -53,7 +53,7 @@ _ALTERNATIVE = re2.compile(r"(?i)\salt=")
 
 
 class Remembered:
-    """A cache of texts, by the values from which they were made. The text that was unused for longest is dropped first.
+    """A cache of texts that are made from values. The least recently used text is dropped first.
 
     Args:
         characters: The maximum length of all texts together.
@@ -64,13 +64,13 @@ class Remembered:
         self._texts: OrderedDict[bytes, str] = OrderedDict()
 
     def get(self, of: Any, make: Callable[[], str]) -> str:
-        """Return the text made from these values. If it is not in the cache, make it.
+        """Return the text for the given values, from the cache or newly made.
 
         Args:
-            of: Everything on which the text depends, as JSON values.
+            of: The values on which the text depends. They are encoded as JSON for the key.
             make: Makes the text.
         """
-        # Students write a part of the values, so the key is a hash for which no student can find two values.
+        # The key is a cryptographic hash, so that no student can write a cell with the key of another text.
         key = hashlib.sha256(msgspec.json.encode(of)).digest()
         known = self._texts.get(key)
         if known is not None:
@@ -86,17 +86,16 @@ class Remembered:
 
 
 class PageExporter(HTMLExporter):
-    """nbgrader's feedback page without scripts, and safe for untrusted notebooks.
+    """Makes nbgrader's feedback page from an untrusted notebook, without scripts.
 
-    nbgrader's own page loads MathJax from the network; this one does not, and shows formulas as TeX. Parts that many
-    students share are rendered only once. Nbconvert copies and validates a notebook twice before it reaches the
-    template, in case a preprocessor changes it. There are no preprocessors here, so the template is rendered from the
-    notebook itself.
+    nbgrader's own page loads MathJax from the network. This page loads nothing, and shows formulas as TeX. Parts that
+    are the same for many students are rendered only once. nbconvert would copy and validate a notebook twice for its
+    preprocessors. This class has no preprocessors, and gives the notebook directly to the template.
     """
 
     @property
     def default_config(self) -> Config:
-        """The settings of this page, in addition to nbgrader's."""
+        """The templates of this page, and nbconvert's default settings."""
         config = Config(
             {
                 "PageExporter": {
@@ -120,7 +119,7 @@ class PageExporter(HTMLExporter):
         self._set_filter("markdown2html", markdown_to_html)
 
     def default_filters(self) -> Iterator[tuple[str, Any]]:
-        """Yield the filters of nbconvert, some of them replaced by those of this module."""
+        """Yield nbconvert's filters and those that only this page's template uses, as pairs of name and function."""
         filters: Any = super().default_filters
         yield from filters()
         yield "without_scripts", without_scripts
@@ -128,7 +127,7 @@ class PageExporter(HTMLExporter):
         yield "cards_first", cards_first
 
     def page(self, notebook: NotebookNode, names: Mapping[str, Any]) -> str:
-        """Make the page of one notebook.
+        """Return the feedback page of one notebook, as HTML.
 
         Args:
             notebook: The notebook from ``autograded/``, with points and comments filled in. It is changed.
@@ -145,22 +144,22 @@ class PageExporter(HTMLExporter):
 
     @functools.cached_property
     def _resources(self) -> dict[str, Any]:
-        """Return the resources that nbconvert passes to a template, taken from an empty notebook: they never change."""
+        """The resources that nbconvert gives to a template, such as style sheets; the same for every notebook."""
         initialise: Any = self._init_resources
         names = {"notebook": "", "score": 0.0, "max_score": 0.0, "late_penalty": 0.0}
-        # nbconvert looks for custom/custom.css below this folder, and without it below the current one.
+        # nbconvert searches custom/custom.css in `config_dir`, or, if that is not set, in the current folder.
         resources: dict[str, Any] = initialise({"nbgrader": names, "config_dir": str(_OURS)})
         shown: Any = WidgetsDataTypeFilter(notebook_metadata={}, parent=self, resources=resources)
         self._set_filter("filter_data_type", shown)
         convert: Any = (
             TemplateExporter.from_notebook_node
-        )  # the method of HTMLExporter would parse the page again
+        )  # HTMLExporter's own method would parse the whole page again
         _, resources = convert(self, nbformat_nodes.notebook([], {}), resources)
         return resources
 
     def _part(self, lexer: str | None, render: Callable[[], str], depends_on: Any) -> str:
         if isinstance(depends_on, NotebookNode) and is_check(depends_on):
-            return render()  # not remembered, because it contains this student's card
+            return render()  # not cached, because a check cell contains this student's card
         return self._parts.get((lexer, depends_on), render)
 
     def _set_filter(self, name: str, function: Callable[..., Any]) -> None:
@@ -170,25 +169,26 @@ class PageExporter(HTMLExporter):
 
 @pass_context
 def markdown_to_html(context: Any, source: str) -> str:
-    """Replaces nbconvert's filter with this name. Text that differs from the master is cleaned.
+    """Return a Markdown cell as HTML, cleaned unless the cell comes from the master. Replaces nbconvert's filter.
 
-    For formgrader, ``nbgrader_config.py`` sets it as ``HTMLExporter.filters["markdown2html"]``. A picture that is
-    missing among the attachments is left out, because nbconvert would make no page at all.
+    For formgrader, ``nbgrader_config.py`` sets this filter as ``HTMLExporter.filters["markdown2html"]``. A picture
+    that is not attached to the cell is left out. nbconvert's filter would raise an error, so that there would be no
+    page.
     """
     cell = context.get("cell", {})
     rendered = MarkdownWithMath(renderer=Renderer(escape=False)).render(source)
     harmless = rendered if is_the_masters(cell) else clean(rendered)
-    # Limit the width, because nbgrader's pages and nbconvert's classic template let a picture grow beyond its column.
+    # Without a limit, a wide picture would extend beyond its column on nbgrader's pages.
     page = without_dead_links(harmless.replace("<img ", '<img style="max-width: 100%" '))
     attached = dict(cell.get("attachments", {}))
     return _with_pictures(page, attached.get if is_the_masters(cell) else attached.pop)
 
 
 def _with_pictures(page: str, take: Callable[[str, dict[str, str]], Mapping[str, str]]) -> str:
-    """Return a piece of a page with the pictures that are attached to its cell.
+    """Return the HTML of a cell with the attached pictures inserted.
 
     Args:
-        page: HTML in which a picture's address is the name of an attachment.
+        page: HTML in which the address of a picture is ``attachment:`` and a name.
         take: Returns an attachment by its name. A student's attachment is returned only once, so that a page cannot
             grow.
     """
@@ -200,10 +200,10 @@ def _with_pictures(page: str, take: Callable[[str, dict[str, str]], Mapping[str,
     return _SHOWS_ATTACHED.sub(shown, page)
 
 
-# The result is cached, because the head is the same for all students of an assignment and is most of a page.
+# The head is most of a page, and the same for all students of an assignment. So the result is cached.
 @functools.lru_cache(maxsize=16)
 def without_scripts(head: str) -> str:
-    """Return the head of a page without its scripts, and with the policy that forbids any script.
+    """Return the head of a page without scripts, and with the policy that forbids scripts.
 
     Args:
         head: The head of the page, from a trusted template.
@@ -214,7 +214,7 @@ def without_scripts(head: str) -> str:
 
 @functools.lru_cache(maxsize=8)
 def _highlighter(lexer: str | None) -> Any:
-    """Return nbconvert's highlighter with a cache of the code that it has seen."""
+    """Return nbconvert's filter for highlighting code, with a cache of its results."""
     make: Any = Highlight2HTML
     highlight = make(pygments_lexer=lexer)
 
@@ -229,7 +229,7 @@ def _highlighter(lexer: str | None) -> Any:
 
 
 def _with_alternative_texts(page: str) -> str:
-    """Add missing alternative texts to pictures, nbconvert's last step, only if needed: it parses the page again."""
+    """Add missing alternative texts to pictures, as nbconvert does. If none is missing, do not parse the page."""
     if all(_ALTERNATIVE.search(picture[0]) for picture in _PICTURE.finditer(page)):
         return page
     soup = BeautifulSoup(page, features="html.parser")

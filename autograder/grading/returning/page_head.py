@@ -1,6 +1,6 @@
-"""The head of a feedback page: the student, and a table of the exercises with points.
+"""Writes the top of a feedback page: the student's name, and a table of the exercises with points.
 
-nbgrader's own head does not name the student, and calls each exercise "Test cell".
+At the top of nbgrader's own page, the student's name is missing, and each exercise is called "Test cell".
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from autograder.grading.gradebooks.gradebook_reading import CellEntry
 
 WAITS = "waits_for_a_person"
-"""The key in a cell's nbgrader metadata that marks points as still to come. Its value is the text to show instead of
-the points.
+"""The key in a cell's nbgrader metadata for a cell without final points. Its value is a remark for the student, such
+as "waits for your instructor".
 """
 _FOR_A_PERSON, _TRIED_AGAIN = "waits for your instructor", "could not be checked, and is tried again"
 _BEGIN, _END = '<div id="toc">', "</div>"
@@ -35,12 +35,12 @@ _CELL = "padding: 4px 14px 4px 0; vertical-align: top; text-align: left"
 
 
 def with_summary(body: str, notebook: NotebookNode, names: Mapping[str, Any]) -> str:
-    """Return a page that begins with the student and a table of exercises, instead of nbgrader's list.
+    """Return a page in which the student's name and a table of exercises replace nbgrader's list.
 
     Args:
-        body: The page. It contains no text by a student before nbgrader's list.
+        body: The page as HTML. Text by a student may follow nbgrader's list, but must not precede the list.
         notebook: The notebook of the page, with points filled in.
-        names: The template's values for the student and the points.
+        names: The values that the template gets about the student and the points.
     """
     before, begin, rest = body.partition(_BEGIN)
     _, end, after = rest.partition(_END)
@@ -57,11 +57,11 @@ def with_summary(body: str, notebook: NotebookNode, names: Mapping[str, Any]) ->
 
 
 def cards_first(notebook: NotebookNode) -> list[tuple[bool, bool]]:
-    """Move the checks, whose outputs are the cards, to the top of a notebook.
+    """Move the check cells to the top of a notebook, because their outputs are the cards.
 
     Returns:
-        For each cell a pair: whether the lab's text begins with this cell, and whether it ends with it. A page folds
-        that text.
+        For each cell a pair of booleans: whether a block of given cells begins with this cell, and whether such a
+        block ends with it. A page folds these blocks.
     """
     notebook.cells = sorted(notebook.cells, key=lambda cell: not is_check(cell))
     given = [is_the_masters(cell) and not is_check(cell) for cell in notebook.cells]
@@ -72,7 +72,7 @@ def cards_first(notebook: NotebookNode) -> list[tuple[bool, bool]]:
 
 
 def mark_waiting(notebook: NotebookNode, cells: Mapping[str, CellEntry]) -> None:
-    """Mark the cells whose points are still to come, from a person or from the judge.
+    """Mark the cells without final points, which a person or the judge still has to give.
 
     Args:
         notebook: A graded notebook. It is changed.
@@ -91,7 +91,7 @@ def without_dead_links(page: str) -> str:
 
 
 def _lines(notebook: NotebookNode, names: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
-    """Yield for each cell with points, as HTML: the name, the points, and a remark."""
+    """Yield a line of the table for each cell with points: the name, the points, and a remark, as HTML."""
     for cell in notebook.cells:
         marks = cell.metadata.get("nbgrader", {})
         if not (marks.get("grade") or marks.get("task")):

@@ -1,8 +1,8 @@
-"""The number of pixels of a picture, read from its header without decoding it.
+"""Reads the number of pixels of a picture from its header, without decoding the picture.
 
-A PNG of 30 kB may have 16,000 x 16,000 pixels, which take a gigabyte in a browser. Each frame of an animated picture
-is counted. Sources: PNG specification (W3C, third edition), 11.2 and 11.3.6; GIF89a, 18 to 26; ITU-T T.81, B.2.2; RFC
-9649.
+A small file can have very many pixels: a PNG of 30 kB with 16,000 x 16,000 pixels takes a gigabyte in a browser. Each
+frame of an animated picture is counted. Sources: PNG specification (W3C, third edition), 11.2 and 11.3.6; GIF89a, 18
+to 26; ITU-T T.81, B.2.2; RFC 9649.
 """
 
 from __future__ import annotations
@@ -16,24 +16,26 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 MOST_POINTS = 100_000_000
-"""The maximum number of pixels of all pictures in a notebook's page: 400 MB in a browser, or a dozen 4K screenshots."""
+"""The maximum number of pixels of all pictures on a notebook's page: a dozen 4K screenshots, or 400 MB in a
+browser.
+"""
 _PNG = b"\x89PNG\r\n\x1a\n"
 _NO_SIZE = {0xC4, 0xC8, 0xCC}
-"""JPEG markers that lie in the range of start-of-frame markers but do not start a frame: tables, a reserved one,
-conditioning.
+"""The JPEG markers from 0xC0 to 0xCF that do not start a frame: DHT (Huffman tables), JPG (reserved), DAC (arithmetic
+conditioning).
 """
 _ALONE = {0x01, *range(0xD0, 0xD8)}
-"""JPEG markers that have no segment after them."""
+"""The JPEG markers without a segment: TEM, and RST0 to RST7."""
 
 
 class PixelBudget:
-    """Counts the pixels of the pictures of a notebook."""
+    """Counts the pixels of a notebook's pictures up to the limit ``MOST_POINTS``."""
 
     def __init__(self) -> None:
         self._left = MOST_POINTS
 
     def fit(self, encoded: Iterable[str]) -> bool:
-        """Return True if all of these base64 pictures are within the limit together; then count them."""
+        """Count the pixels of base64 pictures. If they would exceed the limit, return False and do not count them."""
         wanted = sum(points_of(picture) or 0 for picture in encoded)
         if wanted > self._left:
             return False
@@ -42,7 +44,7 @@ class PixelBudget:
 
 
 def is_shown(encoded: str) -> bool:
-    """Return True if a page may show a base64 picture: a browser can show it, and it alone is not too large."""
+    """Return True if a page may show a base64 picture: a valid PNG, JPEG, GIF or WebP with few enough pixels."""
     points = points_of(encoded)
     return points is not None and points <= MOST_POINTS
 
@@ -50,7 +52,7 @@ def is_shown(encoded: str) -> bool:
 def points_of(encoded: str) -> int | None:
     """Return the number of pixels of a base64 picture, in all frames; None if it is not a PNG, JPEG, GIF or WebP.
 
-    Like a browser, this goes by the content of a picture and not by its declared type.
+    The type is recognized by the first bytes, as in a browser, not by the type that the notebook declares.
     """
     try:
         data = base64.b64decode(encoded)
@@ -83,7 +85,7 @@ def _points_of_gif(data: bytes) -> int | None:
     while place < len(data) and data[place] != 0x3B:
         if data[place] == 0x2C:
             left, top, wide, high, flags = struct.unpack_from("<HHHHB", data, place + 1)
-            # A browser enlarges the whole picture for a frame that reaches beyond it.
+            # If a frame extends beyond the picture, a browser makes the whole picture larger.
             width, height, frames = max(width, left + wide), max(height, top + high), frames + 1
             place += 11 + _colors(flags)
         else:

@@ -1,9 +1,9 @@
-"""A limit on the time for rendering the texts of one notebook on a page.
+"""Finds the cells of a notebook that take too long to render on a page.
 
 A text can be crafted to keep parsers of Markdown and code busy for minutes. So a desk (:mod:`autograder.boxes.desk`)
-renders a student's texts as a trial, one after the other, in the same steps as nbconvert's page template. Text beyond
-the limit of processor time is shown as typed and cut (:func:`autograder.grading.returning.sanitize.make_harmless`),
-both in nbgrader's pages and in formgrader.
+renders a student's texts in the same steps as nbconvert's page template, and is ended at a limit of processor time. On
+pages and in formgrader, the texts that it did not finish are shown as typed, and cut
+(:func:`autograder.grading.returning.sanitize.make_harmless`).
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from autograder.execution.cells import Cell
 
 SECONDS = 1
-"""The limit in seconds of processor time for a notebook. Usual texts take a few hundredths of a second."""
+"""The time limit for a notebook, in seconds of processor time. Usual texts take a few hundredths of a second."""
 _desk = KeptDesk("autograder.grading.returning.rendering_trial")
 
 
 def too_costly(cells: Sequence[Cell]) -> tuple[int, ...]:
-    """Return the indexes of the cells that must be shown as typed: the first that exceeds the limit, and all after it.
+    """Return the indexes of the cells to show as typed: the first cell that exceeds the time limit, and all after it.
 
     Args:
         cells: The cells of a rebuilt notebook.

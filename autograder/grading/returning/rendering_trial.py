@@ -1,6 +1,7 @@
-"""The desk that renders the texts of one notebook as a page does, and writes one byte after each text.
+"""The program of the desk that renders a notebook's texts in the same steps as a page, to test how long they take.
 
-It throws away what it renders: only the time counts. :mod:`autograder.grading.returning.rendering_time` asks it.
+The desk writes one byte after each text. The rendered texts are not used. The module
+:mod:`autograder.grading.returning.rendering_time` starts the desk.
 """
 
 from __future__ import annotations
@@ -34,11 +35,15 @@ _SAMPLES = (
     "<b>a</b>\n\n<div>b</div>",
     "```python\na\n```\n\n```no such language\nb\n```",
 )
-"""Texts whose rendering loads all that is loaded at first use. One text with all of it would be shown as typed."""
+"""Texts for loading everything that a renderer loads at its first use. They are separate texts, because one text with
+all of this would be shown as typed.
+"""
 
 
 def prepare() -> None:
-    """Load everything that a desk needs, because the desk itself cannot open files: also every highlighted language."""
+    """Load everything that a desk needs, such as every highlighted language, because the desk itself cannot open
+    files.
+    """
     gc.disable()
     for name, *_ in pygments.lexers.get_all_lexers():
         pygments.lexers.find_lexer_class(name)
@@ -63,7 +68,7 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
 
 
 def render(kind: CellType, text: str) -> None:
-    """Take the steps of the page with one text."""
+    """Render one text in the same steps as a page."""
     # This follows the blocks "markdowncell" and "input" of nbconvert/templates/lab/base.html.j2.
     if kind is CellType.CODE:
         piece = clean_html(Highlight2HTML(pygments_lexer="ipython3")(text))

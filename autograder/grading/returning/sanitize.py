@@ -1,8 +1,8 @@
 """Makes a submission's texts and outputs harmless for a browser.
 
-nbconvert passes raw HTML, Mermaid diagrams and any address to the page, in nbgrader's feedback and in formgrader. So
-a student's text is checked with nbconvert's own Markdown parser before it is written into ``autograded/``: plain
-Markdown stays as written; anything else is rendered, cleaned with nh3 and stored as HTML. The pages are cleaned again
+nbconvert copies raw HTML, Mermaid diagrams and any address into nbgrader's feedback pages and formgrader. So a
+student's text is parsed with nbconvert's own Markdown parser before it is written into ``autograded/``. Plain Markdown
+stays unchanged. Any other text is rendered, cleaned with nh3, and stored as HTML. Feedback pages are cleaned again
 when they are made (:mod:`autograder.grading.returning.page_exporter`).
 """
 
@@ -31,16 +31,16 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 LONGEST_MARKDOWN = 50_000
-"""The maximum length of a text cell, in characters, that is rendered. A longer one is shown as typed."""
+"""The maximum length of a text cell to render, in characters. A longer text is shown as typed."""
 _MOST_PLACES = 50_000
-"""The maximum number of rows times columns in a text's tables. A browser stores the borders of each position, even if
-there is no cell.
+"""The maximum size of all tables in a text, as rows times columns. A browser needs memory for each position in a
+table, even if the position has no cell.
 """
 SHOWN = (*IMAGES, "text/plain")
-"""The types of output that a submission's cell may show. None of them can contain code."""
+"""The media types that an output of a student's cell may have. None of these types can contain scripts."""
 
 _FORMATTING = frozenset(("a", "b", "code", "em", "i", "s", "small", "strike", "strong", "tt", "u"))
-"""Elements that an HTML parser opens again in each block until they are closed."""
+"""The formatting elements of HTML. If one is not closed, a parser opens it again in each following block."""
 _TAGS = _FORMATTING | {
     *("abbr", "blockquote", "br", "caption", "center", "dd", "del", "details", "div", "dl", "dt"),
     *("h1", "h2", "h3", "h4", "h5", "h6", "hr", "img", "input", "ins", "kbd", "li", "mark", "ol", "p", "pre"),
@@ -52,27 +52,28 @@ _ATTRIBUTES = {
     "abbr": {"title"},
     "details": {"open"},
     "img": {"alt", "height", "src", "title", "width"},
-    "input": {"disabled", "type"},  # the checkbox of a task list; no reader can change it
+    "input": {"disabled", "type"},  # the disabled checkbox of a task list in Markdown
     "ol": {"start"},
-    "td": {"colspan", "rowspan", "style"},  # mistune writes the alignment into the style
+    "td": {"colspan", "rowspan", "style"},  # mistune writes the alignment of a table cell into `style`
     "th": {"colspan", "rowspan", "style"},
     "*": {"class"},
 }
 _MOST_OPENED = 200_000
-"""The maximum number of elements that a parser may have to make for unclosed formatting. A text of the course needs up
+"""The maximum number of elements that a parser may make because of unclosed formatting. The course's own texts need up
 to 1,700.
 """
-# Matches a comment; a tag, in which a quoted ">" does not end it; or a "<" that begins neither.
+# Matches the beginning of a comment, a whole tag (with ">" allowed inside quotation marks), or any other "<".
 _MARKUP = re2.compile(r"""<!--|</?([a-zA-Z][^\s/>]*)(?:[^<>"']|"[^"]*"|'[^']*')*>|<""")
 # Matches the beginning of a tag, up to its end or its first quotation mark.
 _TAG = re2.compile(r"""<([a-zA-Z][^\s/>]*)[^<>"']*["']?""")
 _CONTROL = dict.fromkeys((*range(1, 9), 11, 12, *range(14, 32)), "?")
-# Only links that open a page on a click are allowed. They must not begin with "//", which would be another host.
+# Matches the allowed addresses of links: pages, email addresses, and places in this page. An address such as
+# "//host/page" is not allowed, because it leads to another host.
 _LINK = re2.compile(r"https?://\S+|mailto:[^\s:]+|#\S*|(/|/?[\w%.-][\w%./-]*)(#\S*)?")
 _PICTURE = re2.compile(r"data:image/(?:png|jpeg|gif|webp);base64,([A-Za-z0-9+/=\s]*)")
 _ATTACHED = "attachment:"
 _ATTACHMENT = re2.compile(rf"{_ATTACHED}[\w.%+-]+")
-# The allowed CSS classes: Pygments and mistune give pieces of code no others. Other classes could make a text look like
+# The allowed CSS classes are those that Pygments and mistune give to code. With other classes, a text could look like
 # a verdict, or cover the page.
 _CLASSES = {name for name in STANDARD_TYPES.values() if name} | {"highlight"}
 _LANGUAGE = re2.compile(r"language-[\w+-]{1,30}")
@@ -82,26 +83,25 @@ _TURNS = {
     code: f"\\u{code:04x}"
     for code in (0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A))
 }
-"""Characters that change the writing direction, so that a text may look different from what it is (Unicode TR 36,
-"Bidirectional Text"), each with its escape.
+"""The characters that change the writing direction, each with the escape to show instead. With such characters, a text
+may look different from its real content (Unicode TR 36, "Bidirectional Text").
 """
 
 
 def visible(text: str) -> str:
-    """Return ``text`` with characters that change the writing direction shown as escapes."""
+    """Return ``text`` with escapes for the characters that change the writing direction."""
     return text if text.isascii() else text.translate(_TURNS)
 
 
 def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> NotebookNode:
-    """Change a student's texts and outputs so that no browser executes or fetches anything or is misled.
+    """Remove everything from a student's texts and outputs that a browser could execute or load, or that misleads.
 
-    Cells from the master stay unchanged, and so do the outputs of the master's check cells, which show the judge's
-    verdict. Nothing else in a notebook is trusted.
+    The text of the master's cells and the outputs of its check cells, which show verdicts, stay unchanged.
 
     Args:
         notebook: A rebuilt or graded notebook. It is changed.
-        as_they_are: The indexes of cells whose text must not be rendered, because that would take too long. They are
-            shown as typed. As that, too, goes through nbconvert's filters, they are cut to a total length.
+        as_they_are: The indexes of cells that take too long to render. They are shown as typed and, because
+            nbconvert's filters read them even then, cut to a total length.
 
     Returns:
         The same notebook.
@@ -125,7 +125,7 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
                 cell.update(nbformat_nodes.cell(CellType.MARKDOWN, as_typed(cell.source)) | {"id": cell.id})
             elif place in as_they_are:
                 cell.metadata["magics_language"] = (
-                    "text"  # with this value, nbconvert does not highlight the code
+                    "text"  # for the language "text", nbconvert does not highlight code
                 )
         if cell.cell_type == CellType.CODE and not (is_check(cell) and is_the_masters(cell)):
             cell.outputs = [_with_pictures_that_fit(harmless_output(o), pictures) for o in cell.outputs]
@@ -133,13 +133,13 @@ def make_harmless(notebook: NotebookNode, as_they_are: Collection[int] = ()) -> 
 
 
 def _pictures_of(cell: NotebookNode) -> list[str]:
-    """Return the pictures of a text cell in base64; each picture once, however often the text shows it."""
+    """Return the attached and embedded pictures of a text cell in base64, without duplicates."""
     attached = [data for kinds in cell.get("attachments", {}).values() for data in kinds.values()]
     return [*attached, *{found[1] for found in _PICTURE.finditer(cell.source)}]
 
 
 def _with_pictures_that_fit(output: NotebookNode, pictures: PixelBudget) -> NotebookNode:
-    """Return an output in which a sentence replaces each picture that a page may not show. The output is changed."""
+    """Replace each picture in an output that is invalid or too large by a sentence. Return the changed output."""
     for kind in IMAGES:
         encoded = output.get("data", {}).get(kind)
         if encoded is not None and not (is_shown(text := "".join(encoded)) and pictures.fit([text])):
@@ -148,14 +148,14 @@ def _with_pictures_that_fit(output: NotebookNode, pictures: PixelBudget) -> Note
     return output
 
 
-# The result is cached, because most text cells of a class are unchanged: they are checked once, not once per student.
+# The result is cached, because most students leave most text cells unchanged.
 @functools.lru_cache(maxsize=1024)
 def harmless_markdown(source: str, figures: tuple[str, ...] = ()) -> str:
-    """Return Markdown with the same text as ``source`` that can do nothing harmful.
+    """Return Markdown that shows the same text as ``source``, without scripts, foreign pictures or misleading markup.
 
     Args:
         source: A student's text cell.
-        figures: The names of the bitmaps attached to the cell. A bitmap may be shown once.
+        figures: The names of the bitmaps attached to the cell. Each may be shown once.
     """
     if len(source) > LONGEST_MARKDOWN:
         return as_typed(source)
@@ -163,26 +163,26 @@ def harmless_markdown(source: str, figures: tuple[str, ...] = ()) -> str:
         looking = _Looking(figures)
         rendered = MarkdownWithMath(renderer=looking).render(source)
         if visible(plain := unescape(rendered)) != plain:
-            return as_typed(source)  # a change of the writing direction may also be written as an entity
+            return as_typed(source)  # an HTML entity may also change the writing direction
         cleaned = clean(rendered)
         if looking.is_plain and cleaned.count("&lt;") == rendered.count("&lt;"):
             return source
         if (in_one_line := _in_one_line(cleaned)) == source:
-            return source  # this text is the result of an earlier cleaning
+            return source  # the text was cleaned earlier
         block = f"<div>{in_one_line}</div>"
         return block if _as_shown(block).strip() == block else as_typed(source)
-    except Exception:  # for example because of too deep nesting; on hostile text a parser may raise anything
+    except Exception:  # a parser may raise any error for a hostile text, for example because of deep nesting
         return as_typed(source)
 
 
 def as_typed(source: str) -> str:
-    """Return Markdown that shows ``source`` literally."""
+    """Return Markdown that shows ``source`` unchanged, as a code block; very long text is cut."""
     fence = "`" * (3 + max((len(run) for run in re2.findall(r"`+", source)), default=0))
     return f"{fence}text\n{_cut(source, LONGEST_MARKDOWN)}\n{fence}"
 
 
 def _figures(cell: Any) -> tuple[str, ...]:
-    """Return the names of the bitmaps attached to a text cell; remove all other attachments."""
+    """Remove all attachments of a text cell except bitmaps. Return the names of the bitmaps."""
     attached = cell.pop("attachments", {})
     bitmaps = {
         name: {kind: data}
@@ -196,7 +196,7 @@ def _figures(cell: Any) -> tuple[str, ...]:
 
 
 def _longest_shown(lengths: Iterable[int]) -> int:
-    """Return the length to which texts of these lengths have to be cut, so that all of them together are harmless."""
+    """Return the length to which texts must be cut so that together they have at most ``HARMLESS_LENGTH``."""
     left, fewest_first = HARMLESS_LENGTH, sorted(lengths)
     for place, length in enumerate(fewest_first):
         share = left // (len(fewest_first) - place)
@@ -211,16 +211,16 @@ def _cut(source: str, length: int) -> str:
 
 
 def _in_one_line(page: str) -> str:
-    """Return HTML without line breaks, because after a blank line the rest would be parsed as Markdown."""
+    """Return HTML without line breaks. After an empty line, a Markdown parser would read the rest as Markdown."""
     pieces = re2.split(r"(?s)(<pre\b.*?</pre>)", page.strip())
     return "".join(("&#10;" if i % 2 else " ").join(piece.splitlines()) for i, piece in enumerate(pieces))
 
 
 @functools.lru_cache(maxsize=1024)
 def clean(page: str) -> str:
-    """Return HTML that contains only text, its structure, links and embedded pictures.
+    """Return HTML reduced to allowed elements: text, structure, links and embedded pictures.
 
-    A forbidden tag is shown as text. nh3 would remove it, and so change the meaning of "List<int>".
+    A forbidden tag is shown as text. If nh3 removed it, a text such as "List<int>" would lose its meaning.
     """
     if _may_open(page) > _MOST_OPENED:
         return f"<pre>{escape(page)}</pre>"
@@ -229,26 +229,27 @@ def clean(page: str) -> str:
 
 
 def _may_open(page: str) -> int:
-    """Return an upper limit for the number of elements that nh3 makes for formatting that is left open.
+    """Return the maximum number of elements that nh3 could make because formatting elements are not closed.
 
-    At each tag, nh3 opens each kind of unclosed formatting again, up to three times per kind. So a text of 50,000
-    characters can make it create gigabytes of elements, and it cannot be interrupted.
+    At each tag, nh3 opens each kind of unclosed formatting again, up to three times per kind. So for a text of 50,000
+    characters, nh3 can make gigabytes of elements, and nothing can interrupt nh3.
     """
     tags = list(_TAG.finditer(page))
     formatting = [tag[0] for tag in tags if tag[1].lower() in _FORMATTING]
-    # A tag is read only up to its first quotation mark, so each tag that has one counts as a different kind.
+    # `_TAG` reads a tag only up to its first quotation mark. So each tag with a quotation mark counts as a kind of its
+    # own.
     kinds = {tag for tag in formatting if tag[-1] not in "\"'"}
     return len(tags) * (3 * len(kinds) + sum(tag not in kinds for tag in formatting))
 
 
 def _shown_or_kept(markup: Any) -> str:
-    """Return an allowed tag or a comment unchanged, and anything else as text."""
+    """Return an allowed tag, or the beginning of a comment, unchanged. Return any other markup escaped as text."""
     stays = markup[0] == "<!--" or (markup[1] or "").lower() in _TAGS
     return markup[0] if stays else markup[0].replace("<", "&lt;")
 
 
 def _is_picture(address: str) -> bool:
-    """Return True if an address itself contains a picture (data URL) that a page may show."""
+    """Return True if an address is a data URL with a picture that a page may show."""
     found = _PICTURE.fullmatch(address)
     return found is not None and is_shown(found[1])
 
@@ -284,7 +285,7 @@ _CLEANER = nh3.Cleaner(
 
 
 class Renderer(IPythonRenderer):
-    """nbconvert's renderer, but attached pictures are inserted last, because parsing a megabyte takes long."""
+    """nbconvert's renderer without inserting attached pictures. They are inserted later, as they are slow to parse."""
 
     def _embed_image_or_attachment(self, src: str) -> str:
         embedded: str = super()._embed_image_or_attachment("" if src.startswith(_ATTACHED) else src)
@@ -292,7 +293,7 @@ class Renderer(IPythonRenderer):
 
 
 class _Looking(Renderer):
-    """Renders as nbconvert does, and records everything that is more than plain Markdown."""
+    """nbconvert's renderer. Sets ``is_plain`` to False if a text contains more than plain Markdown."""
 
     def __init__(self, figures: tuple[str, ...] = ()) -> None:
         super().__init__(escape=False, exclude_anchor_links=True)
@@ -308,7 +309,7 @@ class _Looking(Renderer):
         return super().inline_html(html)
 
     def block_mermaidjs(self, code: str) -> str:
-        """Record a diagram, which nbconvert writes into the page without escaping it."""
+        """Render a diagram as text, because nbconvert would not escape it."""
         self.is_plain = False
         return f"<pre>{escape(code)}</pre>"
 
@@ -318,7 +319,7 @@ class _Looking(Renderer):
         return super().link(text, url, title)
 
     def image(self, text: str, url: str, title: str | None = None) -> str:
-        """Record a picture. One from another server would reveal who reads the page, and when."""
+        """Leave out a picture on another server, because loading it would reveal who reads the page, and when."""
         if (name := url.removeprefix(_ATTACHED)) != url and name in self._left:
             self._left.remove(name)
             return super().image(text, url, title)
@@ -329,12 +330,12 @@ class _Looking(Renderer):
 
 
 def _as_shown(markdown: str) -> str:
-    """Return the HTML that nbconvert will make of Markdown."""
+    """Return the HTML that nbconvert makes from Markdown."""
     return MarkdownWithMath(renderer=IPythonRenderer(escape=False)).render(markdown)
 
 
 def harmless_output(output: NotebookNode) -> NotebookNode:
-    """Return the output of a student's cell, reduced to texts and bitmaps. The output is changed."""
+    """Remove everything but texts and bitmaps from an output of a student's cell. Return the changed output."""
     if "data" in output:
         output.data = {kind: _visible(output.data[kind]) for kind in SHOWN if kind in output.data}
         output.metadata = {}
@@ -345,7 +346,7 @@ def harmless_output(output: NotebookNode) -> NotebookNode:
 
 
 def _visible(words: Any) -> Any:
-    """Return the text (or lines) of an output, with characters that change the writing direction shown as escapes."""
+    """Return a text, or a list of lines, with escapes for the characters that change the writing direction."""
     if isinstance(words, str):
         return visible(words)
     return [_visible(line) for line in words] if isinstance(words, list) else words

@@ -1,7 +1,7 @@
-"""The size of the tables on a page, as rows times columns.
+"""Computes the size of the tables on a page, as rows times columns.
 
-A browser stores the borders of each position in a table, whether there is a cell or not. A cell of twenty characters
-may span 1,000 columns, so 46 kB of text can make a table that no browser can open.
+A browser needs memory for each position in a table, even if the position has no cell. A cell of twenty characters may
+span 1,000 columns, so 46 kB of text can make a table that no browser can open.
 """
 
 from __future__ import annotations
@@ -10,13 +10,13 @@ from dataclasses import dataclass
 
 import re2
 
-# Matches tags as nh3 writes them: attributes are in quotation marks, with no quotation mark inside.
+# Matches the tags of tables as nh3 writes them: the values of attributes are in double quotes and contain none.
 _OF_TABLES = re2.compile(r"""<(/?table|tr|td|th)\b((?: [a-z]+="[^"]*")*)>""")
 _SPAN = re2.compile(r' (colspan|rowspan)="([0-9]+)"')
 
 
 def places_in_tables(page: str) -> int:
-    """Return an upper limit for rows times columns, added up over all tables.
+    """Return the sum, over all tables, of rows times columns. The real size may be smaller.
 
     Args:
         page: HTML that nh3 has cleaned.
@@ -42,7 +42,7 @@ class _Table:
         rows: The number of rows so far.
         width: The number of columns that the cells of the current row take.
         widest: The largest number of columns in any row.
-        reaching: The number of columns of all cells that span into later rows, and so move other cells to the side.
+        reaching: The number of columns of all cells that span into later rows. They move other cells to the side.
     """
 
     rows: int = 0
@@ -61,5 +61,5 @@ class _Table:
 
     @property
     def places(self) -> int:
-        """Return the number of rows times the number of columns."""
+        """The number of rows times the largest possible number of columns."""
         return self.rows * (self.widest + self.reaching)

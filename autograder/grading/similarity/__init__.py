@@ -1,1 +1,1 @@
-"""Pairs of submissions that are more similar than the task explains: a hint for a person, never a grade."""
+"""Finds pairs of submissions that are more similar than their task explains. A pair is a hint for a person."""

@@ -1,4 +1,4 @@
-"""Finds the similar pairs of a class, and lists what could not be compared."""
+"""Compares all submissions of a class. Returns the similar pairs, and a line for each file that was not compared."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from autograder.grading.classes.class_directory import ClassDirectory, RefusedFile
 
 MOST = 100
-"""The maximum number of pairs of students to show. The closest pairs are shown, and a reader needs no more."""
+"""The maximum number of pairs of students to show, the most similar first."""
 
 
 @dataclass(frozen=True)
@@ -29,12 +29,12 @@ class Similar:
 
     Attributes:
         path: The class.
-        pairs: The similar pairs of answers, the closest first.
-        more: The number of further pairs of students that are not shown.
+        pairs: The similar pairs of answers, the most similar first.
+        more: The number of pairs of students that are left out of ``pairs``.
         names: The students' names, by id.
-        compared: The number of notebooks that were compared.
-        notes: Sentences that the instructor should read.
-        troubles: A line for each file that could not be compared, or only partly.
+        compared: The number of submitted notebooks that were compared.
+        notes: Sentences for the instructor that are not about a failure.
+        troubles: A line for each file that was not compared, or only in part.
     """
 
     path: Path
@@ -47,19 +47,19 @@ class Similar:
 
     @property
     def exit_code(self) -> int:
-        """The command's exit code: 2 if something could not be compared, else 0, because a pair is only a hint."""
+        """The command's exit code: 0 if every file was compared, even if there are similar pairs; otherwise 2."""
         return 2 if self.troubles else 0
 
 
 def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
-    """Compare the submissions of a class.
+    """Compare the submissions of a class with each other.
 
     Args:
         directory: The class.
-        assignment: The assignment to compare; by default all.
+        assignment: The assignment whose submissions are compared; all assignments if empty.
 
     Raises:
-        GradingError: No work was handed in, the assignment does not exist, or a source cannot be used.
+        GradingError: There are no submissions, the assignment does not exist, or a source notebook cannot be used.
     """
     known = directory.assignments()
     check_known([assignment] if assignment else [], known, "assignment")
@@ -68,7 +68,7 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
     troubles = list(_not_looked_at(directory, refused, assignment))
     if not submissions and not troubles:
         raise GradingError(
-            f"Nothing was handed in yet{f' for {assignment}' if assignment else ''}, so there is nothing to compare."
+            f"There are no submissions yet{f' for {assignment}' if assignment else ''}, so there is nothing to compare."
         )
     given = GivenTexts(given_texts(directory))
     pairs: list[Pair] = []
@@ -83,12 +83,12 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
             troubles += handed_in.troubles
             if len(handed_in.students) == 1:
                 notes.append(
-                    f"{notebook}: one student has handed it in, so there is nothing to compare it with"
+                    f"{notebook}: only one student has submitted this notebook, so there is nothing to compare"
                 )
             answers = compared(handed_in.answers, given, len(handed_in.students))
             troubles += [
-                f"left out     {one.answer.student}/{name}: {one.answer.cell} is too long; its first "
-                f"{LONGEST} words are compared"
+                f"left out     {one.answer.student}/{name}: {one.answer.cell} is too long; only its "
+                f"first {LONGEST} words were compared"
                 for one in answers
                 if one.is_cut
             ]
@@ -109,7 +109,7 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
 def _not_looked_at(
     directory: ClassDirectory, refused: Iterable[RefusedFile], assignment: str
 ) -> Iterator[str]:
-    """Yield a line for each file that may be an answer but lies in a wrong folder."""
+    """Yield a line for each file that cannot be used because it is refused or lies in a wrong folder."""
     for one in (*refused, *beside_their_place(directory)[0]):
         # A file above the assignment's folder may belong to any assignment.
         below = one.path.relative_to(directory.path / "submitted").parts[1:]

@@ -1,4 +1,4 @@
-"""Finds a student's own part of an answer: not from the task or its solution, and not what many students wrote."""
+"""Marks the words of an answer that are a student's own: not from the task, its solution, or many other students."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from autograder.grading.similarity.student_texts import StudentAnswer
 
 SEQUENCE = 7
-"""The length of the sequences that are compared, in words: about one short line."""
+"""The number of words in a sequence. Answers are compared by such sequences; each is about one short line of code."""
 LONGEST = 10_000
-"""The maximum number of words of an answer that are compared: more than a thousand lines."""
+"""The maximum number of words of an answer to compare: more than a thousand lines."""
 _LONGEST_TEXT = 20 * LONGEST
 _MANY, _MANY_SHARE = 5, 0.25
-"""Code counts as common if at least this number of students, and at least this fraction of all students, have it."""
+"""A sequence is not a student's own if at least this number and this fraction of the students wrote it."""
 
 Sequence_ = tuple[str, ...]
 
@@ -32,10 +32,11 @@ class Compared:
     Attributes:
         answer: The answer.
         code: The words of the answer.
-        signs: The same words, but with names and texts that the student chose replaced by one sign each.
-        own: For each word, True if it is the student's own.
-        is_cut: True if the answer is longer than the compared part.
-        sequences: The sequences of words that do not come from the task.
+        signs: The words for the comparison: all names that the student chose are replaced by one sign, and all texts
+            that the student chose by another.
+        own: For each word, True if the word is the student's own.
+        is_cut: True if the answer is too long, so that only its beginning is compared.
+        sequences: The sequences of words that are the student's own.
     """
 
     answer: StudentAnswer
@@ -52,10 +53,10 @@ class Compared:
 
 
 class GivenTexts:
-    """The texts that students received, and the solutions.
+    """The code that is not a student's own: code that students received, and the solutions.
 
     Args:
-        texts: The cells of all sources and of everything that was handed out.
+        texts: The texts of the code cells in all source notebooks and released notebooks.
     """
 
     def __init__(self, texts: Iterable[str]) -> None:
@@ -68,12 +69,12 @@ class GivenTexts:
 
 
 def compared(answers: Sequence[StudentAnswer], given: GivenTexts, students: int) -> list[Compared]:
-    """Return the answers to one notebook, each with the student's own part marked.
+    """Return the answers to one notebook, prepared for the comparison.
 
     Args:
-        answers: All answers to that notebook.
-        given: The texts that belong to the task.
-        students: The number of students who handed in the notebook.
+        answers: All students' answers to the notebook.
+        given: The code that is not a student's own.
+        students: The number of students who submitted the notebook.
     """
     longer = [list(islice(words(answer.text[:_LONGEST_TEXT]), LONGEST + 1)) for answer in answers]
     codes = [code[:LONGEST] for code in longer]

@@ -1,4 +1,4 @@
-"""Finds pairs of answers that are more similar than the task explains, even if lines were inserted or moved."""
+"""Finds pairs of similar answers, even if a student inserted lines into a copy or moved lines."""
 
 from __future__ import annotations
 
@@ -17,33 +17,33 @@ if TYPE_CHECKING:
     from autograder.grading.similarity.own_code import Compared
 
 SHORTEST = 40
-"""The minimum number of own words that two answers must share: four to eight lines.
+"""Two answers are similar only if they share at least this number of students' own words: four to eight lines.
 
-For comparison: in the bank, which solves a task in many ways, two independent right answers share at most 27.
+For comparison: two independent right answers in the bank share at most 27 such words.
 """
 LEAST_SHARE = 0.5
-"""The minimum share of own words that the two have in common, as a fraction of the answer with fewer own words."""
+"""Two answers are similar only if they share at least this fraction of the own words of the shorter answer."""
 _ROUNDS = 6
-"""How many times two answers are compared, each time without the passages already found. One comparison finds passages
-in the same order in both answers; the next ones find blocks that were moved.
+"""The number of times that two answers are compared. The first comparison finds passages that have the same order in
+both answers. Each further comparison ignores the passages found before, and so finds moved passages.
 """
 _FOUND_IN_ONE, _FOUND_IN_OTHER = -3, -4
 
 HINT = (
-    "A pair is a hint, not a proof: two students may have learnt from each other, or from one page on the web. "
-    "Read both answers, and talk with both, before you decide anything."
+    "A pair is a hint, not a proof: two students may have learned from each other, or from the same web page. "
+    "Read both answers, and talk with both students, before you decide anything."
 )
-"""The sentence that is shown with every list of pairs."""
+"""The text that is shown with every list of pairs."""
 
 
 @dataclass(frozen=True)
 class Passage:
-    """A sequence of words that two answers have in common, in the same order.
+    """A part of two answers that has the same words in the same order.
 
     Attributes:
-        first: The index of its first word in the first answer.
-        second: The index of its first word in the second answer.
-        own: For each word, True if it is the student's own in both answers.
+        first: The index of the passage's first word in the first answer.
+        second: The index of the passage's first word in the second answer.
+        own: For each word of the passage, True if the word is the student's own in both answers.
     """
 
     first: int
@@ -58,7 +58,7 @@ class Pair:
     Attributes:
         one: The first answer.
         other: The second answer.
-        passages: The passages that they have in common, in the order of the first answer.
+        passages: The common passages, in the order of the first answer.
     """
 
     one: Compared
@@ -67,17 +67,17 @@ class Pair:
 
     @property
     def shared(self) -> int:
-        """The number of own words in the common passages."""
+        """The number of students' own words in the common passages."""
         return sum(sum(passage.own) for passage in self.passages)
 
     @property
     def share(self) -> float:
-        """The number of shared own words, as a fraction of the own words of the answer that has fewer."""
+        """The fraction of the own words of the shorter answer that the common passages contain."""
         return self.shared / min(self.one.length, self.other.length)
 
     @property
     def percent(self) -> str:
-        """Return the share in percent as text, rounded down, so that only complete agreement is 100 %."""
+        """The share in percent as text, rounded down, so that 100 % means that all own words are shared."""
         return f"{int(100 * self.share)} %"
 
     @property
@@ -87,16 +87,16 @@ class Pair:
 
     @property
     def place(self) -> str:
-        """Return the notebook and the cell of the answers, as text."""
+        """The notebook and the cells of the two answers, as text."""
         cells = dict.fromkeys((self.one.answer.cell, self.other.answer.cell))
         return f"{self.one.answer.notebook}, {' and '.join(cells)}"
 
 
 def close_pairs(answers: Sequence[Compared]) -> list[Pair]:
-    """Return the similar pairs of answers to one notebook, the closest first.
+    """Return the similar pairs of answers to one notebook, the most similar first.
 
-    Each cell is compared with every cell of another student, because an answer may have been moved into an added
-    cell.
+    Each cell of a student is compared with all cells of the other students, because a student may have moved a copy
+    into an added cell.
     """
     candidates = _candidates([answer for answer in answers if answer.length >= SHORTEST])
     pairs = [Pair(left, right, _common_passages(left, right)) for left, right in candidates]
@@ -104,12 +104,12 @@ def close_pairs(answers: Sequence[Compared]) -> list[Pair]:
 
 
 def closest_first(pairs: Sequence[Pair]) -> list[Pair]:
-    """Return the pairs in the order in which they are shown."""
+    """Return the pairs sorted by similarity, the most similar first."""
     return sorted(pairs, key=lambda pair: (-round(pair.share, 2), -pair.shared, _names(pair)))
 
 
 def by_students(pairs: Iterable[Pair]) -> list[list[Pair]]:
-    """Return the pairs of answers grouped by their two students, in the order of the first pair of each group."""
+    """Return the pairs grouped by students: each group contains the pairs of the same two students."""
     found: dict[tuple[str, str], list[Pair]] = {}
     for pair in pairs:
         found.setdefault(pair.students, []).append(pair)
@@ -117,10 +117,9 @@ def by_students(pairs: Iterable[Pair]) -> list[list[Pair]]:
 
 
 def _candidates(answers: Sequence[Compared]) -> list[tuple[Compared, Compared]]:
-    """Return the pairs with enough common sequences to be worth comparing; comparing all pairs would take too long.
+    """Return the pairs that share enough sequences to be similar. A full comparison of all pairs would take too long.
 
-    In a common passage, at least every seventh of the shared words that the students wrote themselves is part of a
-    common sequence, or begins one.
+    If two answers share ``SHORTEST`` own words, they share at least ``SHORTEST // SEQUENCE`` sequences.
     """
     holders: defaultdict[tuple[str, ...], list[int]] = defaultdict(list)
     for place, answer in enumerate(answers):
@@ -135,9 +134,9 @@ def _candidates(answers: Sequence[Compared]) -> list[tuple[Compared, Compared]]:
 
 
 def _common_passages(one: Compared, other: Compared) -> list[Passage]:
-    """Return the passages that two answers have in common, in the order of the first answer.
+    """Return the common passages of two answers, in the order of the first answer.
 
-    Each passage contains at least one word that both students wrote themselves, and not only given code.
+    A passage that consists only of given code is left out.
     """
     numbers = {sign: number for number, sign in enumerate({*one.signs, *other.signs})}
     first, second = ([numbers[sign] for sign in answer.signs] for answer in (one, other))
@@ -151,7 +150,7 @@ def _common_passages(one: Compared, other: Compared) -> list[Passage]:
         if not blocks:
             break
         for here, there, length in blocks:
-            # A passage is found only once, because the other answer contains no word with this number.
+            # These two numbers occur in only one answer each, so no later comparison finds the passage again.
             first[here : here + length] = [_FOUND_IN_ONE] * length
             second[there : there + length] = [_FOUND_IN_OTHER] * length
             sides = zip(one.own[here : here + length], other.own[there : there + length], strict=True)
@@ -169,5 +168,5 @@ def _names(pair: Pair) -> tuple[str, ...]:
 
 
 def nothing_found(compared: int) -> str:
-    """Return the sentence for a class without similar pairs."""
-    return f"No pair is closer than the task explains ({compared} notebooks compared)."
+    """Return the sentence to show if no pairs are similar."""
+    return f"No two answers are more similar than their task explains ({compared} notebooks compared)."

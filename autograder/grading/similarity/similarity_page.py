@@ -1,7 +1,4 @@
-"""The page that shows the two answers of each pair side by side.
-
-It is one file without scripts, readable in black and white.
-"""
+"""Writes the page that shows the two answers of each pair side by side: one HTML file without scripts."""
 
 from __future__ import annotations
 
@@ -27,7 +24,7 @@ if TYPE_CHECKING:
 _NAME = "similar.html"
 _LONGEST_NAME = 200
 _AROUND = 3
-"""The number of unmarked lines shown before and after a marked line."""
+"""The number of lines to show before and after a line with a common passage."""
 _LONGEST_PIECE = 400
 
 
@@ -36,9 +33,9 @@ class _Piece:
     """A piece of a line.
 
     Attributes:
-        text: The text, with control characters made visible; the template escapes it for HTML.
-        passage: The number of the common passage to which it belongs; 0 if it belongs to none.
-        begins: True if the number of the passage is shown before it.
+        text: The text, with control characters made visible. The template escapes the text for HTML.
+        passage: The number of the common passage that contains the piece; 0 if no passage contains the piece.
+        begins: True if the page shows the passage's number before this piece.
     """
 
     text: str
@@ -48,12 +45,12 @@ class _Piece:
 
 @dataclass(frozen=True)
 class _Line:
-    """A line of an answer, or a mark that lines were left out.
+    """A line of an answer; or, if ``number`` is 0, a note that lines were left out.
 
     Attributes:
-        number: The number of the line, from 1; 0 if this marks lines that were left out.
+        number: The line number, from 1; 0 for a note.
         pieces: The pieces of the line.
-        left_out: The number of lines that were left out here.
+        left_out: For a note, the number of lines that were left out.
     """
 
     number: int
@@ -62,7 +59,7 @@ class _Line:
 
 
 def write_page(found: Similar, to: Path | None = None) -> Path:
-    """Write the page about the similar pairs of a class.
+    """Write the page about the similar pairs of a class, and return its path.
 
     Args:
         found: The result of the search.
@@ -72,7 +69,7 @@ def write_page(found: Similar, to: Path | None = None) -> Path:
         The absolute path of the file.
 
     Raises:
-        GradingError: Another file or folder is in the way.
+        GradingError: The path cannot be used, for example because it is a folder.
         OSError: The file could not be written for another reason.
     """
     to = (to or found.path / _NAME).absolute()
@@ -82,7 +79,7 @@ def write_page(found: Similar, to: Path | None = None) -> Path:
 
 
 def page(found: Similar) -> str:
-    """Return the page about the similar pairs of a class."""
+    """Return the page about the similar pairs of a class, as HTML."""
     environment = page_templates("autograder.grading.similarity")
     return environment.get_template("similar.html.j2").render(
         policy=POLICY,
@@ -127,12 +124,12 @@ def _called(student: str, names: Mapping[str, str]) -> str:
 
 
 def _lines(answer: Compared, passages: Iterable[tuple[int, Sequence[bool]]]) -> list[_Line]:
-    """Return the lines that contain marked passages, and the lines around them.
+    """Return the lines with common passages and the lines around them, with notes for the lines left out.
 
     Args:
         answer: One answer of a pair.
-        passages: For each passage, the index of its first word in this answer, and for each of its words whether it
-            counts.
+        passages: For each passage, the index of its first word in this answer, and a list with True for each word to
+            mark.
     """
     text = answer.answer.text
     passage_of = [0] * len(text)  # by character
@@ -153,7 +150,7 @@ def _lines(answer: Compared, passages: Iterable[tuple[int, Sequence[bool]]]) -> 
 
 
 def _pieces(line: str, passage_of: list[int], last: int) -> tuple[_Piece, ...]:
-    """Return the pieces of a line, each of one passage or none; ``last`` is the passage marked before this line."""
+    """Split a line into pieces of at most one passage each. ``last`` is the passage before the line."""
     indent = len(line) - len(line.lstrip())
     passage_of[:indent] = [0] * indent
     found = []

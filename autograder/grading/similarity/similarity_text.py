@@ -1,4 +1,4 @@
-"""The similar pairs as text for a terminal, and as data."""
+"""Prints the similar pairs in a terminal, and converts them for ``similar --json``."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def show(found: Similar, page: Path, console: Console | None = None) -> None:
-    """Print the pairs, what could not be compared, and the path of the page.
+    """Print the pairs, a line for each file that was not compared, and the path of the page.
 
     Args:
         found: The result of the search.
@@ -39,7 +39,8 @@ def show(found: Similar, page: Path, console: Console | None = None) -> None:
         line(nothing_found(found.compared))
     if found.more:
         line(
-            f"note         {found.more} more pairs are less close and not shown; name an assignment to see fewer"
+            f"note         {found.more} more pairs are less similar and not shown; to see them, compare one "
+            "ASSIGNMENT at a time"
         )
     for note in found.notes:
         line(f"note         {note}")
@@ -49,7 +50,7 @@ def show(found: Similar, page: Path, console: Console | None = None) -> None:
 
 
 def similar_json(found: Similar, page: Path) -> dict[str, Any]:
-    """Return the result of a search and the path of the page, as data for ``--json``."""
+    """Return the similar pairs and the path of the page, as data for ``similar --json``."""
     pairs = [
         {
             "students": pair.students,

@@ -1,4 +1,4 @@
-"""Reads students' own texts from the notebooks of a class, and the texts that students received."""
+"""Reads from the notebooks of a class the code that students wrote, and the code that students received."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from autograder.grading.classes.class_directory import ClassDirectory, Submission
 
 OWN_CELLS = "own cells"
-"""The name that is used for all cells that a student added, taken together."""
+"""The name of an answer that consists of all cells that a student added to a notebook."""
 
 
 @dataclass(frozen=True)
@@ -30,8 +30,8 @@ class StudentAnswer:
         student: The student's id.
         assignment: The assignment's name.
         notebook: The notebook's name.
-        cell: The name of the cell.
-        text: The text of the cell.
+        cell: The name of the cell; ``OWN_CELLS`` for the added cells.
+        text: The text of the cell, or of all added cells.
     """
 
     student: str
@@ -43,12 +43,12 @@ class StudentAnswer:
 
 @dataclass
 class HandedIn:
-    """The answers that were handed in for one notebook.
+    """The submitted answers to one notebook.
 
     Attributes:
-        answers: The answers, sorted by student and then by cell.
+        answers: The answers of each student, in the order of the cells.
         students: The students whose notebooks could be read.
-        troubles: A line for each submission that could not be read, or only partly.
+        troubles: A line for each submission that could not be read, or only in part.
     """
 
     answers: list[StudentAnswer] = field(default_factory=list)
@@ -57,10 +57,10 @@ class HandedIn:
 
 
 def given_texts(directory: ClassDirectory) -> list[str]:
-    """Return all code in the class's sources and hand-outs: what students received, and every solution.
+    """Return the texts of all code cells in ``source`` and ``release``: code that students received, and solutions.
 
     Raises:
-        MasterUnusable: A source is not a notebook.
+        MasterUnusable: A file in these folders is not a notebook.
     """
     return [
         cell.source
@@ -74,10 +74,10 @@ def given_texts(directory: ClassDirectory) -> list[str]:
 def read_answers(
     directory: ClassDirectory, assignment: str, notebook: str, submissions: list[Submission]
 ) -> HandedIn:
-    """Return the answers that were handed in for one notebook.
+    """Return the submitted answers to one notebook.
 
     Raises:
-        MasterUnusable: The source is not a notebook.
+        MasterUnusable: The source is not a valid notebook.
     """
     named = {
         name: cell
@@ -91,19 +91,19 @@ def read_answers(
         try:
             cells, left_out = read_notebook(read_bytes(submission.folder / f"{notebook}{SUFFIX}"))
         except NotAFile:
-            continue  # the class lists this file as refused
+            continue  # the instructor gets a line about this refused file elsewhere
         except UnreadableSubmission as error:
             found.troubles.append(f"unreadable   {who}: {error}")
             continue
         if left_out:
             found.troubles.append(
-                f"left out     {who}: {left_out} cell(s) had not the form of a cell, or were too long; "
-                "the others are compared"
+                f"left out     {who}: {left_out} cell(s) were not valid notebook cells, or were too long; "
+                "the other cells were compared"
             )
         found.students.append(submission.student)
         written: dict[str, list[str]] = {}
         for cell in cells:
-            # An answer counts whatever type its cell has now, as it does in grading.
+            # If a student changed the type of an answer cell, the answer is compared all the same, as in grading.
             if cell.grade_id in answers or (cell.kind == CellType.CODE and cell.grade_id not in named):
                 name = cell.grade_id if cell.grade_id in answers else OWN_CELLS
                 written.setdefault(name, []).append(cell.source)
@@ -118,7 +118,7 @@ def _cells(directory: ClassDirectory, place: str) -> list[NotebookNode]:
     path = directory.path / place
     try:
         return list(nbformat_nodes.read(path.read_text(encoding="utf-8")).cells)
-    except Exception as error:  # nbformat passes on all errors of its JSON and schema libraries
+    except Exception as error:  # nbformat may raise any error of its JSON and schema libraries
         raise MasterUnusable(
-            f"{path} is not a notebook: {error}. Make it again or put back a copy."
+            f"{path} is not a notebook: {error}. Make the notebook again, or restore a copy."
         ) from error

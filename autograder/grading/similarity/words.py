@@ -1,7 +1,7 @@
-"""Splits an answer into words that stay the same if a copy is hidden by other comments, layout or names.
+"""Splits code into words for the comparison, without comments, layout and chosen names, which often differ in copies.
 
-The text is not parsed as Python, because a student's text may be invalid or hostile. One regular expression reads it,
-in time proportional to its length.
+A regular expression reads the text, in time proportional to its length. Python's parser would not do, because a
+student's text may be invalid or hostile.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ _OPENING, _CLOSING = frozenset("([{"), frozenset(")]}")
 
 @dataclass(frozen=True)
 class Word:
-    """A word of code, as it is compared.
+    """A word of code: a name, a text, a number or a sign such as ``+=``.
 
     Attributes:
         kind: ``name``, ``string``, ``number`` or ``sign``.
         text: The original text.
-        start: The index of its first character in the answer.
-        end: The index after its last character.
-        opens: True if it is the first word of a line.
+        start: The index of the word's first character in the text.
+        end: The index after the word's last character.
+        opens: True if the word is the first in its line.
     """
 
     kind: str
@@ -50,7 +50,7 @@ class Word:
 
 
 def words(text: str) -> Iterator[Word]:
-    """Yield the words of a text. Comments, docstrings and the first line of a cell that writes a file are left out."""
+    """Yield the words of code. Comments, docstrings and lines with a magic are left out."""
     before = 0
     for match in _WORD.finditer(text):
         kind = match.lastgroup or "sign"
@@ -61,7 +61,7 @@ def words(text: str) -> Iterator[Word]:
 
 
 def chosen_names(code: Sequence[Word]) -> set[str]:
-    """Return the names that the student has chosen: of variables, functions, classes, parameters and attributes."""
+    """Return the names that code defines: of variables, functions, classes, parameters and attributes."""
     chosen: set[str] = set()
     depth, in_head, in_loop = 0, False, False
     for place, word in enumerate(code):
@@ -78,7 +78,7 @@ def chosen_names(code: Sequence[Word]) -> set[str]:
             in_loop = word.text == "for"
         elif word.kind == "name" and word.text not in _FIXED:
             is_parameter = in_head and depth == 1 and before in ("(", ",", "*", "**")
-            # A name with a type, or the first of several names, as in x: int = 3, self.x: int = 3, and x, y = 3, 4.
+            # The code defines the name x in the lines x: int = 3, self.x: int = 3, and x, y = 3, 4.
             first = code[place - 2] if before == "." else word
             is_declared = behind in (":", ",") and first.opens
             is_assigned = (depth == 0 and (behind == "=" or is_declared)) or behind == ":="
@@ -88,12 +88,12 @@ def chosen_names(code: Sequence[Word]) -> set[str]:
 
 
 def neutral(code: Sequence[Word], names: Collection[str], texts: Collection[str]) -> list[str]:
-    """Return the words with one sign for each name that the student chose, and one for each text not from the task.
+    """Return the texts of words, with one sign for every chosen name, and another for every chosen string.
 
     Args:
         code: The words of an answer.
-        names: The names that the student has chosen.
-        texts: The texts that the task contains.
+        names: The chosen names, which are all replaced by the same sign.
+        texts: The strings that the task contains. All other strings are replaced by the same sign.
     """
     return [
         _CHOSEN_NAME
