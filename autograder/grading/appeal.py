@@ -1,4 +1,4 @@
-"""Writes an appeal file from a class: what the student handed in, what the judge saw, and what it decided."""
+"""Writes the appeal file of one check: the student's cells, the judge's evidence, and the verdict."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from autograder.grading.class_records import Entered, RunCell
 
 FOLDER = "appeals"
-"""The name of the folder, in a class, for appeal files."""
+"""The name of a class's folder for appeal files."""
 
 
 def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = None) -> Path:
@@ -32,10 +32,10 @@ def write_appeal(path: Path, student: str, exercise_id: str, to: Path | None = N
         path: The class directory.
         student: The student's id.
         exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
-        to: The file to write; by default a file in the class.
+        to: The path of the appeal file; by default in the class's folder ``appeals``.
 
     Raises:
-        GradingError: The check does not exist, or its evidence was not kept. The message says what to do.
+        GradingError: The check does not exist, or its evidence is not stored. The message says what to do.
     """
     directory = ClassDirectory(path)
     try:
@@ -60,14 +60,14 @@ def _appeal(
     known = entered.get((student, kept.assignment))
     if known is None or known.tasks.get(kept.notebook) != kept.task:
         raise GradingError(
-            f"The gradebook does not have the points that the judge gave {student} in {kept.notebook} when it saw "
-            f"this, as after `--dry-run` or after a run that could not check it. Enter them first: {again}"
+            f"The points of {student} for this check of {kept.notebook} are not in the gradebook, for example "
+            f"because the last run was a `--dry-run`. Enter the points first: {again}"
         )
     try:
         seen, cells = unpack(kept.checks[exercise_id]), kept.run_cells()
     except (NoEvidence, ValueError) as error:
         raise GradingError(
-            f"What is kept of {exercise_id} by {student} is damaged ({error}). Judge it again: {again} --again"
+            f"The evidence of {exercise_id} by {student} is damaged ({error}). Judge the check again: {again} --again"
         ) from error
     return Appeal(
         student=student,
@@ -82,7 +82,7 @@ def _appeal(
 
 
 def _before(cells: list[RunCell], exercise_id: str) -> Iterator[AppealedCell]:
-    """Yield the student's cells above the check, which all ran in the same kernel before the check."""
+    """Yield the cells that the student wrote and that ran before the check."""
     for cell in cells:
         if cell.checks == exercise_id:
             return
@@ -108,13 +108,13 @@ def _why_nothing(
         for row in known.rows if known else ():
             if row.exercise == exercise_id:
                 return (
-                    f"Nothing that a judge saw of {exercise_id} by {student} is kept. The table says: {row.state}"
+                    f"There is no evidence of {exercise_id} by {student}. The state in the table is: {row.state}"
                     f"{f', {row.diagnosis}' if row.diagnosis else ''}. {row.reason}".rstrip()
-                    + " If a check never began, as after a cell that raised an error, there is nothing to keep. "
-                    f"If it was graded before evidence was kept, type: {again} --again"
+                    + " If the check never began, for example after a cell that raised an error, no evidence exists. "
+                    f"If an older version of the course graded the check, type: {again} --again"
                 )
     return (
-        f"No check of {exercise_id} by {student!r} was graded here: the class has the assignments "
-        f"{', '.join(directory.assignments()) or 'none'}. `{course_command('attempts', directory.path, 'STUDENT')}` "
-        "lists what was graded."
+        f"No check of {exercise_id} by {student!r} was graded in this class. Its assignments are: "
+        f"{', '.join(directory.assignments()) or 'none'}. To list a student's graded checks: "
+        f"{course_command('attempts', directory.path, 'STUDENT')}"
     )

@@ -1,10 +1,10 @@
-"""Grades a class: rebuilds notebooks, executes them in parallel, and writes the results one after the other.
+"""Grades a class: rebuilds notebooks, executes them in parallel, and writes the results to the gradebook.
 
-The order of the steps ensures that a failure leaves no wrong grade. First, grades that may be wrong are set to zero
-in the gradebook. Then each result goes into the store of the class, and from there, by a single writer, into the
-gradebook. So a run that is killed leaves zeros and finished results, and the next run continues from there.
+The order of the steps ensures that no failure leaves a wrong grade. First, grades that may be outdated are set to zero
+in the gradebook. Then each result is stored in the class's store, and entered into the gradebook when its submission
+is complete. If the run is killed, the gradebook contains zeros and finished grades, and the next run grades the rest.
 
-A submission is kept in memory only until it is written, so a class may have any size.
+The results of a submission are in memory only until they are written, so a class may have any size.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ from autograder.grading.table.true_rows import true_rows
 from autograder.grading.table.what_counts import read_what_counts
 from environment.installation import COMMAND
 
-# Modules that only grading needs are imported inside functions, because importing nbgrader takes a second.
+# Some modules are imported inside functions, because they import nbgrader, which takes a second.
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -77,29 +77,29 @@ def grade(
     scheduler: str | None = None,
     dry_run: bool = False,
 ) -> GradeReport:
-    """Grade the work that was handed in to a class.
+    """Grade the submissions of a class.
 
     Args:
         path: The class directory.
         assignments: The assignments to grade; by default all.
         students: The students to grade; by default all.
-        sections: The sections whose students are graded, in addition to those in ``students``.
+        sections: The sections to grade. Their students are graded in addition to those in ``students``.
         jobs: The number of notebooks to execute at the same time; by default as many as processors and memory allow.
         again: True to execute every notebook again, even if it has not changed.
         feedback: True to make the feedback pages for students.
         console: The console for the progress; by default standard error.
-        judge: The class that makes a judge, as ``module:class``; by default the real one.
+        judge: The Python class that makes a judge, as ``module:class``; by default the real judge. For tests.
         scheduler: The address of a Dask scheduler whose workers execute the notebooks; by default this machine
             executes them.
-        dry_run: True to enter nothing in the gradebook: new work is executed, and the report lists the students whose
-            points would change. The results are kept for the run that enters them.
+        dry_run: True to leave the gradebook unchanged. New submissions are executed, and the report lists the students
+            whose points would change. The results are stored, so that the next run only has to enter them.
 
     Returns:
-        The report. A submission that could not be graded is in the report with zero points and the reason.
+        The report. If a submission could not be graded, the report contains it with zero points and the reason.
 
     Raises:
-        GradingError: The class cannot be graded: it is not a class, another run holds it, the disk is full, or no
-            worker can execute it.
+        GradingError: The class cannot be graded: for example, it is not a class, another run is grading it, the disk
+            is full, or no worker can execute its notebooks.
     """
     began = time.monotonic()
     console = console or Console(stderr=True)
@@ -123,7 +123,8 @@ def grade(
         batch = _Batch(directory, store, console, roster, asked, feedback=feedback, dry_run=dry_run)
         batch.collect()
         batch.plan(again)
-        # This comes before any grade is withdrawn: if no worker can execute notebooks, the class stays unchanged.
+        # This raises an error if no worker can execute notebooks. It comes before grades are set to zero, so that the
+        # class is unchanged then.
         execute = stack.enter_context(backend) if batch.unsettled else None
         if not dry_run:
             batch.take_back()
@@ -176,10 +177,10 @@ class _Batch:
         return Writer(self._directory, self._store)
 
     def collect(self) -> None:
-        """Find the submissions of the class.
+        """Find the submissions of the class, and the notices about them.
 
         Raises:
-            ClassIncomplete: The gradebook does not contain an assignment that was chosen.
+            ClassIncomplete: The gradebook does not contain a chosen assignment as it is in the source.
             GradingError: A chosen name is not an assignment or a student.
         """
         assignments = self._asked.assignments
@@ -204,7 +205,7 @@ class _Batch:
         )
 
     def plan(self, again: bool) -> None:
-        """Find the submissions whose grades are already in the gradebook. The others remain to be graded."""
+        """Find out which submissions already have their grades in the gradebook. The others have to be graded."""
         self._entries = read_entries(self._directory.gradebook_url)
         self._entered = self._store.entered()
         for work in self._others:
@@ -215,8 +216,8 @@ class _Batch:
         )
         if older:
             self._notices.append(
-                f"{older} submissions had been graded with another version of the course; `{COMMAND} compare` says "
-                f"whose points have changed since; `{COMMAND} grade --dry-run` lists them before a run"
+                f"{older} submissions had been graded with another version of the course; to see whose points this run "
+                f"has changed: `{COMMAND} compare`; to see them before a run: `{COMMAND} grade --dry-run`"
             )
         if again:
             self._store.forget_results(work.submission for work in self._works)
@@ -226,19 +227,19 @@ class _Batch:
 
     @property
     def unsettled(self) -> list[Submission]:
-        """The submissions whose grades are not in the gradebook yet."""
+        """The chosen submissions whose grades are not in the gradebook yet."""
         return [work.submission for work in self._works if not work.written]
 
     def take_back(self) -> None:
-        """Set the grades of every submission that is not settled to zero."""
+        """Set the grades of the submissions that have to be graded to zero."""
         if self.unsettled:
             self._writer.take_back(self.unsettled)
 
     def run(self, execute: Execute | None) -> None:
-        """Execute the tasks that need it, and write each submission as soon as it is complete.
+        """Execute the tasks without a stored result, and write each submission when all its notebooks have a result.
 
         Args:
-            execute: Executes tasks; None if everything is settled.
+            execute: Executes tasks; None if all grades are already in the gradebook.
         """
         for work in self._works:
             if work.written:
@@ -263,16 +264,14 @@ class _Batch:
                     progress.finished(done.task.label, failed=bool(done.execution.trouble))
         for work in waiting:
             if work.rows is None and work.complete:
-                self._write(
-                    work
-                )  # it has no notebook to execute, or its last missing result was known already
+                self._write(work)  # no notebook of this submission had to be executed
 
     def report(self, seconds: float) -> GradeReport:
-        """Return the report on the chosen part of the class. Also write ``grades.csv``, with the whole class."""
+        """Return the report on the chosen submissions. Also write ``grades.csv``, which contains the whole class."""
         url = self._directory.gradebook_url
         works = {work.key: work for work in (*self._works, *self._others)}
         entries = read_entries(url)
-        # For a submission that this run did not grade, keep the judge's texts from the run that entered its points.
+        # For a submission that this run did not grade, use the diagnoses from the run that entered its points.
         judged = {key: one.rows for key, one in self._entered.items()}
         judged |= {key: work.rows for key, work in works.items() if work.rows is not None}
         for student, assignment in sorted((entries.keys() & self._entered.keys()) - works.keys()):
@@ -313,7 +312,7 @@ class _Batch:
         )
 
     def _due_dates(self, url: str) -> dict[str, datetime]:
-        """Return the due dates of the chosen assignments, in the time zone of the class."""
+        """Return the due dates of the chosen assignments by name, in the time zone of the class."""
         zone, asked = self._directory.time_zone, self._asked.assignments or self._cells
         return {
             name: due.replace(tzinfo=UTC).astimezone(zone)
@@ -322,7 +321,7 @@ class _Batch:
         }
 
     def _settle(self, work: Work) -> None:
-        """Mark a submission as written if the gradebook has the grades of exactly this work."""
+        """Mark a submission as written if the gradebook contains the grades of its present files."""
         entered, entry = self._entered.get(work.key), self._entries.get(work.key, SubmissionEntry())
         if entered is None or not entered.is_in(entry):
             return
@@ -331,10 +330,10 @@ class _Batch:
         try:
             handed_in_at(work.submission.folder, believed=entry.handed_in)
         except ValueError:
-            return  # the writer rejects the submission, with the reason
+            return  # the timestamp file is invalid; the writer will reject the submission, with the reason
         if entered.fingerprint != work.fingerprint:
-            # The bytes differ, but perhaps the work does not: the file was saved again, or an unrelated part of the
-            # course changed.
+            # The files have changed, but perhaps no cell has: for example, the student saved the notebook again, or
+            # another part of the course changed.
             if entered.tasks != {task.notebook: task.key() for task in self._tasks_of(work.submission)}:
                 return
             self._store.note_fingerprint(work.submission, work.fingerprint)
@@ -343,7 +342,7 @@ class _Batch:
         work.written = True
 
     def _take_known(self, work: Work) -> None:
-        """Use the results that an earlier run has kept. If they make the submission complete, enter it."""
+        """Take the stored results of an earlier run. If no result is missing then, write the submission."""
         known = self._store.results(*work.key)
         for task in self._tasks_of(work.submission) if known else ():
             if (key := task.key()) in known:
@@ -353,7 +352,7 @@ class _Batch:
             self._write(work)
 
     def _tasks(self, works: Sequence[Work]) -> Iterator[Task]:
-        """Yield the tasks to execute. A task is built only when the caller asks for it."""
+        """Yield the tasks to execute. Each task is made only when the caller asks for it, to save memory."""
         for work in works:
             for task in self._tasks_of(work.submission):
                 if task.problem:
@@ -368,7 +367,7 @@ class _Batch:
             return tasks_of(self._directory, submission)
 
     def _take(self, work: Work, task: Task, execution: Execution) -> None:
-        """Keep a result. If it makes the submission complete, enter the submission."""
+        """Store the result of a task. If no result of the submission is missing then, write the submission."""
         self._executed += 1
         self._timings.count(task.cells, execution)
         execution = self._store.keep(task, execution)
@@ -389,8 +388,8 @@ class _Batch:
         try:
             with self._timings.measure("gradebook"):
                 if self._fingerprints.of(work.submission) != work.fingerprint:
-                    # The tasks may have been built from bytes other than those that the submission's fingerprint
-                    # describes.
+                    # The files changed during the run, so the tasks may have been made from files with another
+                    # fingerprint.
                     name = f"{work.submission.student}/{work.submission.assignment}"
                     raise NotWritten(f"{name} was changed while it was graded: grade it again")
                 self._writer.write(work.submission, work.fingerprint, work.pairs, rows)
@@ -407,7 +406,7 @@ class _Batch:
         work.results.clear()
 
     def _keep_time(self, work: Work) -> SubmissionEntry:
-        """Enter a changed time of handing in or due date, and the late penalty that follows from it."""
+        """Enter a changed submission time into the gradebook, and compute the late penalty again."""
         entry = self._entries.get(work.key, SubmissionEntry())
         at = handed_in_at(work.submission.folder, believed=entry.handed_in)
         moved = at is not None and at != entry.handed_in
@@ -418,7 +417,7 @@ class _Batch:
         return read_entry(self._directory.gradebook_url, *work.key)
 
     def _make_pages(self, work: Work, entry: SubmissionEntry) -> None:
-        """Make the feedback pages of a submission if there are none, or if their points differ from the gradebook."""
+        """Make the feedback pages of a submission, unless it has pages that show what the gradebook contains."""
         submission = work.submission
         if not self._feedback:
             return

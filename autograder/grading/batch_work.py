@@ -1,4 +1,4 @@
-"""The work of a batch: what to grade, the state of each submission, and the changes that a dry run reports."""
+"""Finds the submissions to grade in a run, holds the state of each, and computes what a dry run reports."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class AskedFor:
-    """The assignments and students that a run was asked to grade.
+    """The assignments and students that the instructor chose for a run.
 
     Attributes:
         assignments: The chosen assignments; all if empty.
@@ -42,13 +42,13 @@ class AskedFor:
     students: Sequence[str]
 
     def has(self, student: str, assignment: str) -> bool:
-        """Return True if this student and this assignment are chosen."""
+        """Return True if the submission of a student for an assignment is chosen."""
         return (not self.assignments or assignment in self.assignments) and (
             not self.students or student in self.students
         )
 
     def tells_of(self, refused: RefusedFile, class_folder: Path) -> bool:
-        """Return True if a refused file belongs to the chosen students and assignments."""
+        """Return True if a refused file belongs, or may belong, to the chosen students and assignments."""
         submitted = class_folder / "submitted"
         if submitted not in refused.path.parents:
             return True
@@ -60,17 +60,16 @@ class AskedFor:
 
 @dataclass
 class Work:
-    """The state of a submission during the batch.
+    """The state of a submission during a run.
 
     Attributes:
         submission: The submission.
-        fingerprint: A hash of its files, as they were at the start.
-        notebooks: The names of its notebooks.
-        results: The results that are not yet entered in the gradebook, by notebook.
-        rows: The judge's results as rows of the report, or rows with the reason why there are none; None if nothing
-            is known yet.
-        written: True if the gradebook contains exactly these results.
-        shown: A hash of the gradebook's entries from which its pages were made; empty if these results have no pages.
+        fingerprint: The hash of its files at the beginning of the run.
+        notebooks: The names of the assignment's notebooks.
+        results: The results by notebook, until they are entered into the gradebook.
+        rows: The results as rows of the report; None if the submission has not been graded yet.
+        written: True if the gradebook contains these results.
+        shown: The hash of the gradebook's entry from which the feedback pages were made; empty if there are no pages.
     """
 
     submission: Submission
@@ -88,24 +87,24 @@ class Work:
 
     @property
     def complete(self) -> bool:
-        """True if each of its notebooks has a result."""
+        """True if each notebook of the submission has a result."""
         return len(self.results) == len(self.notebooks)
 
     @property
     def pairs(self) -> list[tuple[Task, Execution]]:
-        """Return the tasks with their results, in the order of the notebooks."""
+        """The tasks with their results, in the order of the notebooks."""
         return [self.results[notebook] for notebook in self.notebooks]
 
 
 @dataclass(frozen=True)
 class FoundWork:
-    """The submissions found in a class, and what else was found.
+    """The submissions of a class, with refused files and notices.
 
     Attributes:
         works: The chosen submissions.
         others: The other submissions of the class.
-        refused: Files and folders that cannot be graded where they are, with the reason.
-        notices: Sentences that the instructor should read.
+        refused: Files and folders that cannot be graded, each with the reason.
+        notices: Sentences for the instructor.
     """
 
     works: list[Work]
@@ -122,14 +121,14 @@ def find_work(
     fingerprints: Fingerprints,
     beside: Iterable[RefusedFile],
 ) -> FoundWork:
-    """Find the submissions of a class, and choose those to grade.
+    """Find the submissions of a class, and select the chosen ones.
 
     Args:
         directory: The class.
         asked: The chosen students and assignments.
-        released: The cells with points in the notebooks of the class.
+        released: The cells with points in the source notebooks.
         roster: The students of the class.
-        fingerprints: Computes the fingerprints of submissions in the current state of the class.
+        fingerprints: Computes the fingerprint of a submission.
         beside: Files in ``submitted`` that lie in a wrong folder.
 
     Raises:
@@ -142,8 +141,7 @@ def find_work(
     submissions = [one for one in submissions if one.assignment in released.cells]
     check_known(asked.assignments, directory.assignments(), "assignment")
     there = {submission.student for submission in submissions}
-    # The student of a refused folder also counts as known: the report already has a line with the reason for the
-    # refusal.
+    # If the student's folder is refused, do not also report the student as unknown.
     there |= {one.path.name for one in refused if one.path.parent == directory.path / "submitted"}
     check_known(asked.students, sorted(there | roster.students.keys()), "student")
     names = {assignment: directory.notebooks(assignment) for assignment in released.cells}
@@ -151,20 +149,20 @@ def find_work(
         work = Work(submission, fingerprints.of(submission), names[submission.assignment])
         if is_not_believed(submission.folder):
             found.notices.append(
-                f"{submission.student}/{submission.assignment}: its timestamp.txt is ignored, because, "
-                f"unlike the others of this class, it was not written by `{COMMAND} collect`: type "
-                f"{course_command('collect', directory.path)}, write the time under handed_in in the "
-                f"line of this work in {NAME}, and type the command again"
+                f"{submission.student}/{submission.assignment}: its timestamp.txt is ignored, because "
+                f"`{COMMAND} collect` did not write this file. To set the time, type "
+                f"{course_command('collect', directory.path)}, write the time into the column handed_in of "
+                f"this submission's line in {NAME}, and type the command again"
             )
         (found.works if asked.has(*work.key) else found.others).append(work)
     return found
 
 
 def _unusable(directory: ClassDirectory, asked: AskedFor, released: Released) -> Iterator[RefusedFile]:
-    """Yield the assignments that cannot be graded. They do not keep the others from being graded.
+    """Yield the assignments whose source notebooks cannot be used. The other assignments are graded.
 
     Raises:
-        MasterUnusable: Such an assignment was chosen by name.
+        MasterUnusable: An assignment that was chosen by name cannot be graded.
     """
     for name, reason in released.unusable.items():
         if name in asked.assignments:
@@ -174,14 +172,17 @@ def _unusable(directory: ClassDirectory, asked: AskedFor, released: Released) ->
 
 
 def _unplaced(directory: ClassDirectory, asked: AskedFor) -> Iterator[RefusedFile]:
-    """Yield collected files that could not be placed. The instructor is told about them until they are placed."""
+    """Yield the collected files for which the instructor still has to say to which submission they belong."""
     table = Table(directory)
     for one in table.waiting():
         if asked.has(one.student, one.assignment) or not (one.student and one.assignment):
             yield RefusedFile(Path(one.label), f"not placed: {one.sentence}")
     if table.is_edited:
         path = directory.path
-        yield RefusedFile(path / NAME, f"it was edited since: type {course_command('collect', path)}")
+        yield RefusedFile(
+            path / NAME,
+            f"the file was edited after the last collect: to use the changes, type {course_command('collect', path)}",
+        )
 
 
 def would_change(
@@ -190,11 +191,11 @@ def would_change(
     entries: Entries,
     cells: Mapping[str, Sequence[GradedCell]],
 ) -> list[Difference]:
-    """Return the students whose points would change, through the judge or through a late penalty.
+    """Return the changes of points that a run would make, by new verdicts or a late penalty.
 
     Args:
         directory: The class.
-        works: The submissions.
+        works: The submissions, with the results of the dry run.
         entries: The entries of the gradebook.
         cells: The cells with points, by assignment.
     """
@@ -208,13 +209,13 @@ def would_change(
             kept = entry.cells.get(cell.notebook, {}).get(cell.name)
             before = kept.judged if kept else None
             if before != row.score:
-                note = "a person's points stay" if kept and kept.by_hand is not None else ""
+                note = "the points by a person stay" if kept and kept.by_hand is not None else ""
                 found.append(Difference(*work.key, row.exercise, before, row.score, "", row.diagnosis, note))
         then = _foreseen(work, entry, by_exercise, due.get(work.submission.assignment))
         if then.is_late or entry.penalty:
             from autograder.grading.table.late_policy import (
                 penalties,
-            )  # imported late because this module loads nbgrader
+            )  # imported here because the module imports nbgrader, which takes a second
 
             costs = penalties(directory.config, work.submission.student, then)
             then = replace(then, penalties={name: cost or 0.0 for name, cost in costs.items()})
@@ -229,19 +230,19 @@ def would_change(
 def _foreseen(
     work: Work, entry: SubmissionEntry, by_exercise: Mapping[str, GradedCell], due: datetime | None
 ) -> SubmissionEntry:
-    """Predict the gradebook entry of a submission if it were graded now. The late penalty is the one in ``entry``."""
+    """Return the gradebook entry that a run would make for a submission, but with the old late penalty."""
     cells = {notebook: dict(of_notebook) for notebook, of_notebook in entry.cells.items()}
     for row in () if work.written else work.rows or ():
         cell = by_exercise[row.exercise]
         of_notebook = cells.setdefault(cell.notebook, {})
         of_notebook[cell.name] = replace(of_notebook.get(cell.name, CellEntry(cell.worth)), judged=row.score)
     at = entry.handed_in
-    with contextlib.suppress(ValueError):  # the run itself rejects such a time
+    with contextlib.suppress(ValueError):  # a run rejects the submission if its time is invalid
         at = handed_in_at(work.submission.folder, believed=at) or at
     return replace(entry, handed_in=at, due=entry.due or due, cells=cells)
 
 
 def without_grade(row: Row) -> Row:
-    """Return the row of a result that could not be entered into the gradebook: with zero points."""
+    """Return a row with zero points for a result that could not be entered into the gradebook."""
     reason = "The result could not be entered into the gradebook; it has zero points there."
     return replace(row, score=0.0, state="not_checked", diagnosis="not_written_down", reason=reason)

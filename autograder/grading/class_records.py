@@ -1,4 +1,4 @@
-"""The records in a class's store (:mod:`autograder.grading.class_store`), as plain data."""
+"""Defines the records in a class's store (:mod:`autograder.grading.class_store`)."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Attempt:
-    """One grading of a submission whose results were entered into the gradebook.
+    """One grading of a submission, whose results were entered into the gradebook.
 
     Attributes:
         at: The time of the grading, in UTC.
         assignment: The assignment's name.
-        work: A hash of the submission and of everything used to grade it. It is unchanged as long as both are.
-        course: The version of the course that was used.
+        work: The fingerprint of the submission, a hash of all files that influence its grade.
+        course: The version of the course that graded the submission.
         rows: The judge's results, as rows of the report.
     """
 
@@ -51,15 +51,15 @@ class Attempt:
 
 @dataclass(frozen=True)
 class Entered:
-    """The last entry of a submission in the gradebook. The next run uses it to find grades that are still right.
+    """The results of a submission that were last entered into the gradebook. The next run skips unchanged submissions.
 
     Attributes:
-        fingerprint: A hash of everything from which the grades were made.
+        fingerprint: The hash of all files that influence the grades, from :class:`Fingerprints`.
         tasks: The hash of each notebook's task, from :meth:`autograder.grading.task.Task.key`.
         scores: The points of each check cell, by notebook and grade_id.
         rows: The results as rows of the report, with the recognized mistakes.
-        course: The version of the course with which it was graded.
-        shown: A hash of the gradebook's entries from which the feedback pages were made; empty if there are no pages.
+        course: The version of the course that graded the submission.
+        shown: The hash of the gradebook's entry from which the feedback pages were made; empty if there are no pages.
     """
 
     fingerprint: str
@@ -70,7 +70,7 @@ class Entered:
     shown: str = ""
 
     def is_in(self, entry: SubmissionEntry) -> bool:
-        """Return True if this gradebook entry still contains the points that were entered."""
+        """Return True if a gradebook entry still contains the points that were entered."""
         return all(
             entry.judged(notebook, name) == score
             for notebook, entered in self.scores.items()
@@ -80,12 +80,12 @@ class Entered:
 
 @dataclass(frozen=True)
 class Origin:
-    """The master from which a source notebook of a class was made.
+    """The master from which a source notebook of a class was made, as the master was then.
 
     Attributes:
-        master: The file of the master. If it is inside the course, the path is relative to the course.
+        master: The path of the master, relative to the course if it is inside the course.
         text: A hash of the master's whole text.
-        work: A hash of only those cells that are graded or that students write.
+        work: A hash of the graded cells and the answer cells.
     """
 
     master: str
@@ -94,12 +94,12 @@ class Origin:
 
 
 class RunCell(msgspec.Struct, frozen=True, array_like=True):
-    """A cell that was run: a cell that a student wrote, or a check cell.
+    """A cell that was executed: a cell that a student wrote, or a check cell.
 
     Attributes:
         name: The grade_id of the cell; empty for a cell that the student added.
         text: The student's text; empty for a check cell.
-        checks: The id of the exercise that it checks; empty if it is not a check cell.
+        checks: For a check cell, the id of its exercise; empty for another cell.
     """
 
     name: str
@@ -109,7 +109,7 @@ class RunCell(msgspec.Struct, frozen=True, array_like=True):
 
 @dataclass(frozen=True)
 class KeptEvidence:
-    """The evidence about a student's notebook, with the cells that were run. It has no influence on a grade.
+    """The evidence of all checks in a student's notebook, for appeals. It has no influence on grades.
 
     Attributes:
         assignment: The assignment's name.
@@ -117,7 +117,7 @@ class KeptEvidence:
         task: The hash of the executed task, from :meth:`autograder.grading.task.Task.key`.
         course: The version of the course.
         checks: The evidence by exercise, as packed by the judge (:mod:`autograder.judge.verdicts.keeping`).
-        cells: The cells that show what was judged, in order: a list of :class:`RunCell`, compressed.
+        cells: The executed cells: a list of :class:`RunCell`, encoded with MessagePack and compressed.
     """
 
     assignment: str
@@ -129,7 +129,7 @@ class KeptEvidence:
 
     @classmethod
     def of(cls, task: Task, execution: Execution) -> Self:
-        """Return the evidence of an executed task as it will be stored."""
+        """Return the evidence of an executed task in the form to store."""
         run = [
             RunCell(cell.name, "" if cell.check else cell.source, cell.check.exercise if cell.check else "")
             for cell in task.cells
@@ -139,7 +139,7 @@ class KeptEvidence:
         return cls(task.assignment, task.notebook, task.key(), task.course, execution.evidence, packed)
 
     def run_cells(self) -> list[RunCell]:
-        """Return the cells that were judged.
+        """Return the executed cells.
 
         Raises:
             ValueError: The stored cells are damaged.

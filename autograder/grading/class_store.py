@@ -1,11 +1,9 @@
-"""The store of a class: everything that the grader itself records about the class, in one SQLite file.
+"""The store of a class: one SQLite file in which the grader keeps results, evidence, attempts and runs.
 
-The file lies next to the gradebook. Each step is one transaction: whenever a run is killed or the power fails, the
-step is either on the disk or not done at all. The file uses a rollback journal and not a write-ahead log, because
-such a log needs memory that the machines of a network cannot share, and write access to the folder even for readers.
-Readers may read during a batch, which locks the file for milliseconds in each step. A separate lock file
-(:mod:`autograder.grading.classes.class_lock`) ensures that only one batch runs at a time. The system releases that
-lock however the process ends, while a lock on this file for a whole batch would keep readers out.
+Each write is one transaction, so that a killed run or a power failure leaves no half-written entry. The file uses
+SQLite's rollback journal. A write-ahead log would not work on network disks, and would need write access even for
+readers. Other programs may read the file during a run, which locks it only for milliseconds. A separate lock file
+(:mod:`autograder.grading.classes.class_lock`) ensures that only one process grades a class at a time.
 """
 
 from __future__ import annotations
@@ -32,27 +30,27 @@ if TYPE_CHECKING:
 
 NAME = "class.db"
 _FORM = 2
-"""The version of the tables, increased with each change. A file with another version is rejected."""
+"""The version of the tables. It increases with each change of the tables. A file with another version is not used."""
 _TABLES = """
--- What came of each notebook when it was executed last. Its task is the hash of all that the result depends on.
+-- The last result of each notebook. The column task contains the hash of everything on which the result depends.
 CREATE TABLE IF NOT EXISTS result (
     student TEXT, assignment TEXT, notebook TEXT, task TEXT NOT NULL, execution BLOB NOT NULL,
     PRIMARY KEY (student, assignment, notebook)
 );
--- What the judge saw of it, for appeals: its packed evidence by exercise, and the cells that were run. Of the task that
--- stands in the gradebook, and of the one that was executed last.
+-- The evidence of each notebook, for appeals: packed by exercise, with the executed cells. Evidence is kept for the
+-- task whose points are in the gradebook, and for the task that was executed last.
 CREATE TABLE IF NOT EXISTS evidence (
     student TEXT, assignment TEXT, notebook TEXT, task TEXT NOT NULL, course TEXT NOT NULL,
     checks BLOB NOT NULL, cells BLOB NOT NULL,
     PRIMARY KEY (student, assignment, notebook, task)
 );
--- What stands in the gradebook, and what it was made of; see the class Entered.
+-- The results that were entered into the gradebook; see the class Entered.
 CREATE TABLE IF NOT EXISTS entered (
     student TEXT, assignment TEXT, fingerprint TEXT NOT NULL, tasks BLOB NOT NULL, scores BLOB NOT NULL,
     report BLOB NOT NULL, course TEXT NOT NULL, shown TEXT NOT NULL,
     PRIMARY KEY (student, assignment)
 );
--- Each time that a submission was graded and entered. Attempts are added, never changed and never removed.
+-- Each grading of a submission; see the class Attempt. Attempts are only added, never changed or removed.
 CREATE TABLE IF NOT EXISTS attempt (
     number INTEGER PRIMARY KEY, student TEXT NOT NULL, at TEXT NOT NULL, assignment TEXT NOT NULL,
     work TEXT NOT NULL, course TEXT NOT NULL, report BLOB NOT NULL
@@ -60,35 +58,35 @@ CREATE TABLE IF NOT EXISTS attempt (
 CREATE INDEX IF NOT EXISTS attempt_of ON attempt (student);
 CREATE TRIGGER IF NOT EXISTS not_removed BEFORE DELETE ON attempt BEGIN SELECT RAISE(ABORT, 'attempts stay'); END;
 CREATE TRIGGER IF NOT EXISTS not_changed BEFORE UPDATE ON attempt BEGIN SELECT RAISE(ABORT, 'attempts stay'); END;
--- The table of the class after each of the last runs that changed it. The name is its time in UTC.
+-- The class's table of results after each of the last runs that changed the table. The name is the run's time in UTC.
 CREATE TABLE IF NOT EXISTS run (name TEXT PRIMARY KEY, course TEXT NOT NULL, report BLOB NOT NULL);
--- The master that each source of the class was made of; see the class Origin.
+-- The master from which each source notebook of the class was made; see the class Origin.
 CREATE TABLE IF NOT EXISTS origin (
     assignment TEXT PRIMARY KEY, master TEXT NOT NULL, text TEXT NOT NULL, work TEXT NOT NULL
 );
--- The cells with points in the sources, for as long as the sources have this fingerprint.
+-- The cells with points in the source notebooks. They are valid as long as the sources have this fingerprint.
 CREATE TABLE IF NOT EXISTS graded_cells (fingerprint TEXT PRIMARY KEY, cells BLOB NOT NULL);
 """
 _NOT_ENTERED = (
     "task NOT IN (SELECT value FROM entered AS e, json_each(CAST(e.tasks AS TEXT))"
     " WHERE e.student = evidence.student AND e.assignment = evidence.assignment)"
 )
-"""SQL condition: no entry in the gradebook is based on this evidence."""
+"""SQL condition for evidence whose points are not in the gradebook."""
 _RUNS = 50
-"""The maximum number of runs whose result tables are kept."""
+"""The maximum number of runs for which the table of results is stored."""
 _PATIENCE = 30.0
-"""Time limit in seconds for a step to wait until another program's step ends."""
+"""Time limit in seconds for waiting until another program has ended its transaction."""
 _Decoded = TypeVar("_Decoded")
 
 
 class ClassStore:
-    """The store of one class. It is a context manager, which closes the file.
+    """The store of one class. Use it in a ``with`` statement, which closes the file at the end.
 
-    The first write makes the file. Without a file, every method returns the same as for an unknown student. A damaged
-    entry that can be made again is treated as missing.
+    The first write makes the file. Before that, the store is empty. Methods skip a damaged entry if the next run can
+    make it again.
 
     Every method raises :class:`DiskFull` if the disk is full, and :class:`StoreTrouble` if the file is damaged,
-    locked, read-only or of another version. Earlier content stays in each case.
+    locked, read-only or of another version. The content of the file does not change in these cases.
 
     Args:
         directory: The class.
@@ -107,7 +105,7 @@ class ClassStore:
         self.close()
 
     def close(self) -> None:
-        """Close the file. The next method that needs it opens it again."""
+        """Close the file. The next method that needs the file opens it again."""
         if self._connection is not None:
             self._connection.close()
             self._connection = None
@@ -115,12 +113,10 @@ class ClassStore:
     # -- results of tasks
 
     def keep(self, task: Task, execution: Execution) -> Execution:
-        """Replace the stored result and evidence of this notebook. Return the result without the evidence.
+        """Store the result and the evidence of a notebook. Return the result without the evidence.
 
-        Evidence for grades that are in the gradebook stays, because appeals need it as long as no run replaces these
-        grades.
-
-        If the grader itself failed, nothing is stored or replaced, and the next run tries again.
+        They replace the notebook's earlier result and evidence. But evidence for points in the gradebook stays,
+        because an appeal may need it. If the grader itself failed, store nothing, so that the next run tries again.
         """
         result = replace(execution, evidence={})
         if execution.trouble:
@@ -143,9 +139,9 @@ class ClassStore:
         return result
 
     def results(self, student: str, assignment: str) -> dict[str, Execution]:
-        """Return the last results of a submission by task, in the order of the notebooks.
+        """Return the stored results of a submission by the hash of the task, in the order of the notebooks.
 
-        The submission may have changed since those results were made.
+        A result is outdated if the submission has changed since: its present tasks then have other hashes.
         """
         rows = self._rows(
             "SELECT task, execution FROM result WHERE (student, assignment) = (?, ?) ORDER BY notebook",
@@ -156,13 +152,13 @@ class ClassStore:
         return {task: execution for task, execution in found.items() if execution is not None}
 
     def forget_results(self, submissions: Iterable[Submission]) -> None:
-        """Delete the results of submissions, so that they are executed again. Evidence stays until it is replaced."""
+        """Delete the results of submissions, so that the submissions are executed again. Their evidence stays."""
         with self._step() as book:
             names = ((one.student, one.assignment) for one in submissions)
             book.executemany("DELETE FROM result WHERE (student, assignment) = (?, ?)", names)
 
     def evidence(self, student: str, exercise: str) -> KeptEvidence | None:
-        """Return the evidence for a check's grade in the gradebook, or else the newest; None if there is none."""
+        """Return the evidence for a check's points in the gradebook, or else the newest; None if nothing is stored."""
         for assignment, notebook, task, course, checks, cells in self._rows(
             "SELECT assignment, notebook, task, course, checks, cells FROM evidence WHERE student = ?"
             f" ORDER BY assignment, notebook, {_NOT_ENTERED}",
@@ -173,10 +169,10 @@ class ClassStore:
                 return KeptEvidence(assignment, notebook, task, course, found, cells)
         return None
 
-    # -- what stands in the gradebook
+    # -- entries in the gradebook
 
     def enter(self, submission: Submission, attempt: Attempt, entered: Entered | None) -> None:
-        """Record an attempt and the new gradebook entry; ``entered`` is None if the next run should try again."""
+        """Record an attempt and the results in the gradebook. With ``entered`` None, the next run grades again."""
         names = (submission.student, submission.assignment)
         with self._step() as book:
             book.execute(
@@ -206,21 +202,21 @@ class ClassStore:
                 )
 
     def note_fingerprint(self, submission: Submission, fingerprint: str) -> None:
-        """Record that the entry of a submission is also right for files with another fingerprint."""
+        """Replace the fingerprint of an entered submission, because its files have changed but its grades have not."""
         self._note(submission, "fingerprint", fingerprint)
 
     def note_shown(self, submission: Submission, shown: str) -> None:
-        """Record from which state of the gradebook the pages of a submission were made."""
+        """Record the hash of the gradebook's entry from which the feedback pages of a submission were made."""
         self._note(submission, "shown", shown)
 
     def forget_entered(self, submissions: Iterable[Submission]) -> None:
-        """Delete the entries of submissions. Called before their grades are set to zero."""
+        """Delete the records of submissions in the gradebook. Call this before setting their grades to zero."""
         with self._step() as book:
             names = ((one.student, one.assignment) for one in submissions)
             book.executemany("DELETE FROM entered WHERE (student, assignment) = (?, ?)", names)
 
     def entered(self) -> dict[tuple[str, str], Entered]:
-        """Return the last entry of each submission in the gradebook, by student and assignment."""
+        """Return the results that were last entered into the gradebook, by student and assignment."""
         found = {}
         for student, assignment, fingerprint, *blobs, course, shown in self._rows("SELECT * FROM entered"):
             tasks = _decoded(blobs[0], dict[str, str])
@@ -245,7 +241,7 @@ class ClassStore:
     # -- runs
 
     def keep_run(self, course: str, rows: Sequence[Row]) -> None:
-        """Keep the result table of a run if it differs from the last one. The oldest tables are deleted."""
+        """Store the table of results after a run, if it differs from the last table. Delete the oldest tables."""
         report = msgspec.json.encode(rows)
         if self._rows("SELECT course, report FROM run ORDER BY name DESC LIMIT 1") == [(course, report)]:
             return
@@ -262,14 +258,14 @@ class ClassStore:
         return [name for (name,) in self._rows("SELECT name FROM run ORDER BY name")]
 
     def run(self, name: str) -> tuple[Row, ...] | None:
-        """Return the result table of a run; None if there is no run with this name."""
+        """Return the table of results after a run; None if no run has this name."""
         rows = self._rows("SELECT report FROM run WHERE name = ?", name)
         return _decoded(rows[0][0], tuple[Row, ...]) if rows else None
 
     # -- sources
 
     def note_origins(self, origins: Mapping[str, Origin]) -> None:
-        """Record the masters from which the sources of assignments were just made."""
+        """Record the masters of new source notebooks, by assignment."""
         with self._step() as book:
             book.executemany(
                 "REPLACE INTO origin VALUES (?, ?, ?, ?)",
@@ -277,17 +273,17 @@ class ClassStore:
             )
 
     def origins(self) -> dict[str, Origin]:
-        """Return the masters of the sources, by assignment; empty if the class has no record of them."""
+        """Return the masters of the source notebooks, by assignment; empty if no master was recorded."""
         return {name: Origin(*fields) for name, *fields in self._rows("SELECT * FROM origin")}
 
     def keep_graded_cells(self, fingerprint: str, cells: bytes) -> None:
-        """Store the graded cells that were read from the current sources. They replace all earlier ones."""
+        """Store the cells with points in the present source notebooks, in place of all earlier ones."""
         with self._step() as book:
             book.execute("DELETE FROM graded_cells")
             book.execute("INSERT INTO graded_cells VALUES (?, ?)", (fingerprint, cells))
 
     def graded_cells(self, fingerprint: str) -> bytes:
-        """Return the graded cells that were read from the sources with this fingerprint; empty if none are stored."""
+        """Return the cells with points, as stored for source notebooks with this fingerprint; empty if not stored."""
         rows = self._rows("SELECT cells FROM graded_cells WHERE fingerprint = ?", fingerprint)
         return rows[0][0] if rows else b""
 
@@ -306,12 +302,12 @@ class ClassStore:
                 return []
             book = self._opened(may_make=False)
             if not self._has_tables:
-                return []  # the process that created the file was killed before its first transaction
+                return []  # a process was killed after it created the file and before it made the tables
             return book.execute(question, [name_as_text(name) for name in names]).fetchall()
 
     @contextlib.contextmanager
     def _step(self) -> Iterator[sqlite3.Connection]:
-        """Run the block in one transaction."""
+        """Execute the block in one transaction."""
         with self._said_clearly():
             book = self._opened(may_make=True)
             book.execute("BEGIN IMMEDIATE")
@@ -320,7 +316,7 @@ class ClassStore:
 
     def _opened(self, *, may_make: bool) -> sqlite3.Connection:
         if self._connection is None:
-            # Open for writing even if only queries follow, so that SQLite can roll back the transaction of a killed
+            # Open the file for writing even to read it, so that SQLite can roll back the transaction of a killed
             # process.
             address = f"{self._path.as_uri()}?mode={'rwc' if may_make else 'rw'}"
             self._connection = sqlite3.connect(address, _PATIENCE, isolation_level=None, uri=True)
@@ -332,7 +328,7 @@ class ClassStore:
             if form not in (0, _FORM):
                 whose = " of a newer course" if form > _FORM else ""
                 raise StoreTrouble(
-                    self._path, f"its version is {form}{whose}, but this course knows version {_FORM}"
+                    self._path, f"the file has version {form}{whose}, but this course uses version {_FORM}"
                 )
             if may_make and not form:
                 make = f"BEGIN IMMEDIATE; {_TABLES} PRAGMA user_version = {_FORM}; COMMIT;"
@@ -342,7 +338,7 @@ class ClassStore:
 
     @contextlib.contextmanager
     def _said_clearly(self) -> Iterator[None]:
-        """Roll back after a failure, and turn the database's message into one for an instructor."""
+        """If the block fails, roll back its transaction, and raise an error with a message for an instructor."""
         try:
             yield
         except BaseException as error:
@@ -357,7 +353,7 @@ class ClassStore:
 def _decoded(
     data: bytes, form: type[_Decoded], decode: Callable[..., Any] = msgspec.json.decode
 ) -> _Decoded | None:
-    """Return the decoded value, or None if it is damaged."""
+    """Return the decoded value; None if the data is damaged."""
     try:
         found: _Decoded = decode(data, type=form)
     except msgspec.MsgspecError:

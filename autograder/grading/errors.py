@@ -1,4 +1,4 @@
-"""Errors about a class, with advice for instructors. They end the command line with exit code 2."""
+"""Errors about a class, with messages that tell an instructor what to do. Commands end with exit code 2 for them."""
 
 from __future__ import annotations
 
@@ -15,12 +15,11 @@ if TYPE_CHECKING:
 
 
 def course_command(*words: object, inside: Path | None = None) -> str:
-    """Return a command as messages show it, quoted so that a shell takes each word as one, even a path with spaces.
+    """Return a command for a message, quoted so that an instructor can paste it into a shell.
 
     Args:
-        words: The words after ``./course`` (after ``autograder`` if the wheel is installed).
-        inside: The folder in which the command has to be typed, which nbgrader's own commands require; None for any
-            folder.
+        words: The words after ``./course`` (or after ``autograder``, if the wheel is installed).
+        inside: The folder in which the command must run, as nbgrader's commands require; None for any folder.
     """
     program = ROOT / COMMAND if inside and IS_CLONE else COMMAND
     command = shlex.join(map(str, (program, *words)))
@@ -39,9 +38,7 @@ def check_known(wanted: Sequence[str], known: Sequence[str], what: str) -> None:
     """
     for name in wanted:
         if name not in known:
-            raise GradingError(
-                f"There is no {what} named {name} here. There is: {', '.join(known) or 'none'}."
-            )
+            raise GradingError(f"No {what} is named {name}. Known names: {', '.join(known) or 'none'}.")
 
 
 class NotAClass(GradingError):
@@ -50,7 +47,7 @@ class NotAClass(GradingError):
     def __init__(self, path: Path, missing: str) -> None:
         super().__init__(
             f"{path} is not a class directory: {missing}. "
-            f"Name the folder that `{COMMAND} new-class` made, or make one: {course_command('new-class', path)}"
+            f"Use the folder that `{COMMAND} new-class` made, or make a class: {course_command('new-class', path)}"
         )
 
 
@@ -59,26 +56,26 @@ class ClassExists(GradingError):
 
 
 class ClassIncomplete(GradingError):
-    """The class directory lacks something that grading needs, or two parts of it contradict each other."""
+    """The class directory lacks something that grading needs, or, for example, sources and gradebook differ."""
 
 
 class ClassBusy(GradingError):
-    """Another batch is running on this class.
+    """Another process is grading the class.
 
     Args:
         path: The class.
-        holder: The process that runs the other batch; empty if unknown.
+        holder: A description of the other process; empty if unknown.
     """
 
     def __init__(self, path: Path, holder: str) -> None:
         super().__init__(
-            f"Another grading run is at work in {path}{f' ({holder})' if holder else ''}. "
-            "Wait until it has ended, or stop it; what it has graded so far is kept."
+            f"Another run is grading {path}{f' ({holder})' if holder else ''}. "
+            "Wait until it ends, or stop it; its finished grades are stored."
         )
 
 
 class MasterUnusable(GradingError):
-    """Submissions cannot be graded against this source notebook of the class."""
+    """A source notebook of the class cannot be used for grading."""
 
 
 class DiskFull(GradingError):
@@ -86,8 +83,8 @@ class DiskFull(GradingError):
 
     def __init__(self, path: Path) -> None:
         super().__init__(
-            f"The disk that holds {path} is full. Free some room and run the same command again: "
-            "what was graded so far is kept, and no grade of an earlier run is shown instead."
+            f"The disk with {path} is full. Free some space and type the same command again: "
+            "finished grades are stored, and the gradebook has no outdated grades."
         )
 
 
@@ -96,17 +93,18 @@ class GradebookTrouble(GradingError):
 
     Args:
         path: The class.
-        said: The error message of the database.
+        said: The database's error message.
     """
 
     def __init__(self, path: Path, said: str) -> None:
         advice = next(
             (words for sign, words in _GRADEBOOK_ADVICE.items() if sign in said),
-            "Check that it exists and is not damaged; nbgrader keeps no copy of it, your backup does.",
+            "Check that the file exists and is not damaged. If it is damaged, restore your backup: nbgrader "
+            "makes none.",
         )
         super().__init__(
-            f"The gradebook of {path} cannot be read or written ({said}). {advice} What was graded so far is "
-            "kept; no student has points that were not earned."
+            f"The gradebook of {path} cannot be read or written ({said}). {advice} Finished grades are "
+            "stored, and no student has points without having earned them."
         )
 
 
@@ -115,7 +113,7 @@ class StoreTrouble(GradingError):
 
     Args:
         file: The file of the store.
-        said: The reason, for example the message of the database.
+        said: The reason, for example the database's error message.
     """
 
     def __init__(self, file: Path, said: str) -> None:
@@ -123,8 +121,8 @@ class StoreTrouble(GradingError):
             (words for sign, words in _STORE_ADVICE.items() if sign in said), _STORE_ADVICE["malformed"]
         )
         super().__init__(
-            f"{file}, which holds what was graded, cannot be read or written ({said}). {advice} The gradebook is not "
-            "touched by that, and no student has points that were not earned."
+            f"{file}, which contains the results of grading, cannot be read or written ({said}). {advice} The "
+            "gradebook is unchanged, and no student has points without having earned them."
         )
 
 
@@ -142,8 +140,8 @@ _STORE_ADVICE = {
     "unable to open": _GRADEBOOK_ADVICE["readonly"],
     "disk I/O error": "Check your quota and the health of the disk; then run the same command again.",
     "newer course": "The file is not damaged. Use the version of the course that wrote it, or a newer one.",
-    "malformed": "Restore a backup of the file. Without a backup, rename it: the next run grades everything again, and "
-    "the notes of earlier attempts, runs and appeals stay in the renamed file only.",
+    "malformed": "Restore a backup of the file. Without a backup, rename the file: the next run then grades everything "
+    "again, but without the records of earlier attempts, runs and appeals.",
 }
 
 
@@ -160,13 +158,13 @@ def is_disk_full(error: BaseException | None) -> bool:
 
 @contextlib.contextmanager
 def clear_disk_errors(path: Path) -> Iterator[None]:
-    """Turn errors of the disk and the database in the block into messages for an instructor.
+    """If the disk or the database fails in the block, raise an error with a message for an instructor.
 
     Args:
         path: The class that is in use.
 
     Raises:
-        DiskFull: The disk is full, whichever step noticed it.
+        DiskFull: The disk is full.
         GradebookTrouble: The gradebook is locked, read-only, damaged or out of reach.
         GradingError: A file may not be read or written.
     """
@@ -187,21 +185,21 @@ def clear_disk_errors(path: Path) -> Iterator[None]:
             raise GradebookTrouble(path, said) from error
         if isinstance(error, PermissionError):
             raise GradingError(
-                f"{error.filename or path} may not be read or written by you. Look at its owner and its mode."
+                f"You do not have the right to read or write {error.filename or path}. Check the file's owner and mode."
             ) from error
         raise
 
 
 @contextlib.contextmanager
 def clear_place_errors(path: Path, option: str) -> Iterator[None]:
-    """Turn errors about the path of a requested output file into messages for an instructor.
+    """If an output file cannot be written in the block, raise an error with a message for an instructor.
 
     Args:
         path: The file to write.
-        option: The command's option with which another path can be given.
+        option: The command's option for the path, which the message names.
 
     Raises:
-        GradingError: A file or folder is in the way, or the name is not allowed.
+        GradingError: The path is a folder or lies below a file, or its name is not allowed.
         OSError: The disk failed; :func:`clear_disk_errors` has messages for that.
     """
     try:
@@ -211,15 +209,15 @@ def clear_place_errors(path: Path, option: str) -> Iterator[None]:
             raise
         reason = f"{path} cannot be written: {error.strerror}"
         if isinstance(error, IsADirectoryError):
-            reason = f"{path} is a folder, but a file has to be written there"
+            reason = f"{path} is a folder, so no file can be written there"
         elif isinstance(error, FileExistsError | NotADirectoryError):
             in_the_way = [one for one in path.parents if one.exists() and not one.is_dir()]
             reason = f"{in_the_way[0]} is not a folder" if in_the_way else reason
-        raise GradingError(f"{reason}. Name another place: {option}") from error
+        raise GradingError(f"{reason}. Choose another path: {option}") from error
 
 
 def said_by_database(error: BaseException | None) -> str:
-    """Return the message of the database error behind ``error``; empty if there is none."""
+    """Return the database's message if a database error caused ``error``; empty if not."""
     while error is not None:
         if type(error).__module__.startswith(("sqlite3", "sqlalchemy")):
             return " ".join(str(getattr(error, "orig", None) or error).split())[:200]

@@ -1,4 +1,4 @@
-"""``nbgrader export`` for spreadsheets: nbgrader's own CSV columns, with correct quoting and without formulas."""
+"""A plug-in for ``nbgrader export``: writes CSV in which a spreadsheet executes no formula."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ _NUMBERS = ("raw_score", "late_submission_penalty", "score", "max_score")
 
 
 class SafeCsvExport(ExportPlugin):
-    """One line for each student and assignment, with the columns of nbgrader's ``CsvExportPlugin``.
+    """Writes one line for each student and assignment, with the columns of nbgrader's ``CsvExportPlugin``.
 
-    nbgrader's own plug-in does not quote commas and line breaks in names, and lets a spreadsheet execute formulas in
-    them.
+    nbgrader's plug-in does not quote commas and line breaks in names. With it, a spreadsheet also executes a name that
+    is a formula.
     """
 
     def export(self, gradebook: Gradebook) -> None:

@@ -1,9 +1,9 @@
 """Makes ``nbgrader autograde``, ``nbgrader generate_feedback`` and formgrader's buttons use the course's grader.
 
-nbgrader's own conversion does not use the judge, and it copies whatever is in a submission: a pipe would block it
-forever, and a sparse file of a terabyte would fill the disk. So its steps are replaced by those of ``./course
-grade``. The class's configuration names the exporters below. nbgrader makes its exporter before it converts the first
-notebook, and at that moment the exporters below take over the converter that made them.
+nbgrader's own conversion does not use the judge. It also copies every file of a submission: a pipe would block it
+forever, and a sparse file of a terabyte would fill the disk. So the steps of ``./course grade`` replace it. The
+class's configuration names the exporters of this module. nbgrader makes an exporter before it converts the first
+notebook. In that moment, the exporter replaces the class of nbgrader's converter by one of this module.
 """
 
 from __future__ import annotations
@@ -32,22 +32,22 @@ if TYPE_CHECKING:
 
 
 CANNOT = 2
-"""The exit code of ``./course grade`` if something could not be checked or had to be refused."""
+"""The exit code of ``./course grade`` if a check could not be made or a file was refused."""
 
 
 class _Ours(BaseConverter):
-    """A conversion of whole submissions by this package's grader, instead of nbgrader's converter.
+    """A converter of nbgrader that lets this package's grader convert whole submissions.
 
-    nbgrader has already listed the folders to convert in ``assignments``.
+    nbgrader itself lists the folders to convert, in ``assignments``.
     """
 
     def convert_notebooks(self) -> None:
-        """Convert the submissions that were chosen.
+        """Convert the chosen submissions.
 
         Raises:
             NbGraderException: Some submissions could not be converted. The log has a line for each.
-            SystemExit: Raised instead if nbgrader runs as a command, with the exit code of ``./course grade``, which
-                nbgrader would turn into 1.
+            SystemExit: The same, if nbgrader runs as a command. The exit code is that of ``./course grade``; after an
+                NbGraderException, it would be 1.
         """
         try:
             problems = self._convert(ClassDirectory(Path(self.coursedir.root)), self._chosen())
@@ -69,7 +69,7 @@ class _Ours(BaseConverter):
         """
         if self.coursedir.notebook_id != "*":
             raise GradingError(
-                "A submission is graded as a whole, with all of its notebooks: leave out --notebook."
+                "Only whole submissions can be graded, with all of their notebooks: leave out --notebook."
             )
         chosen: dict[str, list[str]] = {}
         for folder in sorted(map(Path, self.assignments)):
@@ -82,7 +82,7 @@ class _Ours(BaseConverter):
 
 
 class _OurAutograde(_Ours, Autograde):
-    """``nbgrader autograde``, replaced by the steps of ``./course grade`` without feedback pages."""
+    """Replaces ``nbgrader autograde`` by the steps of ``./course grade``, without making feedback pages."""
 
     def _convert(self, directory: ClassDirectory, chosen: dict[str, list[str]]) -> list[str]:
         problems: list[str] = []
@@ -95,8 +95,8 @@ class _OurAutograde(_Ours, Autograde):
                 feedback=False,
                 console=Console(quiet=True),
             )
-            # A file that could not be placed may belong to any student, so it is not a failure of the submission
-            # being graded.
+            # A collected file without a known student may belong to any student. So it is only a warning, not a
+            # failure.
             refused = [(f"{one.path}: {one.reason}", one.path.is_absolute()) for one in report.refused]
             remarks = [f"{'/'.join(key)}: {words}" for key, words in remarks_on(report.rows).items()]
             for notice in (*report.notices, *remarks, *(text for text, in_class in refused if not in_class)):
@@ -107,7 +107,7 @@ class _OurAutograde(_Ours, Autograde):
 
 
 class _OurFeedback(_Ours, GenerateFeedback):
-    """``nbgrader generate_feedback``, replaced: makes the pages of ``./course grade`` for work that is graded."""
+    """Replaces ``nbgrader generate_feedback``: makes the feedback pages of ``./course grade``."""
 
     def _convert(self, directory: ClassDirectory, chosen: dict[str, list[str]]) -> list[str]:
         check_configuration(directory)
@@ -121,7 +121,7 @@ class _OurFeedback(_Ours, GenerateFeedback):
                     continue
                 if not writer.write_feedback(submission):
                     problems.append(
-                        f"{name}: its page could not be made (see {directory.state / 'nbgrader.log'})"
+                        f"{name}: the feedback page could not be made (see {directory.state / 'nbgrader.log'})"
                     )
         return problems
 
@@ -135,10 +135,10 @@ class _OurFeedback(_Ours, GenerateFeedback):
 
 
 def _take_over(converter: object) -> None:
-    """Let this package's grader do the work of nbgrader's converter.
+    """Replace the class of nbgrader's converter by the one of this module.
 
     Args:
-        converter: A converter that has not begun to convert. Any other object is left unchanged.
+        converter: A converter that has not begun to convert. An object that is not a converter is left unchanged.
     """
     ours = {Autograde: _OurAutograde, GenerateFeedback: _OurFeedback}.get(type(converter))
     if ours is not None:
@@ -147,7 +147,7 @@ def _take_over(converter: object) -> None:
 
 
 class SubmissionExporter(NotebookExporter):
-    """The exporter that class configurations name for ``autograde``. Making it lets this package's grader take over."""
+    """The exporter for ``autograde`` in a class's configuration. Making it lets this package's grader take over."""
 
     def __init__(self, *args: Any, **kw: Any) -> None:
         initialise: Any = super().__init__
@@ -156,7 +156,7 @@ class SubmissionExporter(NotebookExporter):
 
 
 class FeedbackExporter(PageExporter):
-    """The exporter that class configurations name for ``generate_feedback``. Making it lets this package take over."""
+    """The exporter for ``generate_feedback`` in a class's configuration. Making it lets this package take over."""
 
     def __init__(self, *args: Any, **kw: Any) -> None:
         initialise: Any = super().__init__
@@ -165,13 +165,13 @@ class FeedbackExporter(PageExporter):
 
 
 class WireExecute(NbGraderPreprocessor):
-    """Replaces nbgrader's Execute preprocessor, and refuses to grade.
+    """Takes the place of nbgrader's Execute preprocessor, but only raises an error.
 
-    The configuration section with this class's name contains the grader's settings: limits, and two switches.
+    The section ``c.WireExecute`` of a class's configuration contains the grader's settings: limits, and two switches.
     """
 
     def preprocess(self, *_: Any, **__: Any) -> tuple[Any, Any]:
-        """Report that the exporter's line is missing in the configuration, the only case in which nbgrader calls this.
+        """Raise an error: nbgrader calls this only if a class's configuration lacks the line for the exporter.
 
         Raises:
             TypeError: Always.

@@ -1,4 +1,4 @@
-"""One notebook of one student, ready to be executed anywhere; and the points for the verdicts on it."""
+"""Defines a task: one notebook of one student, ready to be executed. Computes the points from the task's verdicts."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ UNREADABLE = "unreadable"
 
 @dataclass(frozen=True)
 class Task:
-    """A task for a worker. It contains everything that the worker needs, and nothing else.
+    """A notebook to execute, with everything that a worker needs for it.
 
     Attributes:
         student: The student's id, for messages.
@@ -27,14 +27,15 @@ class Task:
         notebook: The notebook's name.
         cells: The cells of the rebuilt notebook.
         seed: The seed of the judge's random inputs.
-        course: A hash of everything in the course that influences a grade.
+        course: The version of the course, a hash of all files that may influence a grade.
         limits: The limits on time, memory and output.
         files: The assignment's files next to the notebook, by relative path.
-        problem: Why nothing can be executed; empty if the notebook can be executed.
+        problem: The reason if the notebook cannot be executed; otherwise empty.
         remarks: Sentences about repairs of the notebook.
-        pictures: A hash of the pictures that the student attached. With other pictures it counts as other work.
-        boxed: True to execute the notebook only in boxes. False for the course's own notebooks, or if the instructor
-            asked for it; such a result never counts as one from a box.
+        pictures: A hash of the pictures that the student attached, so that changed pictures change the task's hash.
+        boxed: True to execute the notebook in a sandbox. False for the course's own notebooks, and if the instructor
+            allowed running submissions without a sandbox. A result without a sandbox is not reused for a task with
+            one.
     """
 
     student: str
@@ -51,20 +52,20 @@ class Task:
     boxed: bool = True
 
     def beside_others(self, beside: bool) -> Task:
-        """Return the task with its memory limit: a share of the memory if other tasks run, else all of the memory."""
+        """Return the task with the memory limit for running beside other tasks (if True), or for running alone."""
         return replace(self, limits=replace(self.limits, beside=beside))
 
     @property
     def label(self) -> str:
-        """Return the name of the task for messages."""
+        """The name of the task in messages, such as ``ada/lab_1_2/lab_1_2``."""
         return f"{self.student}/{self.assignment}/{self.notebook}"
 
     def key(self) -> str:
-        """Return a hash of everything on which the execution depends. Tasks with equal hashes have the same result."""
+        """Return a hash of the whole task. Tasks with the same hash have the same result."""
         return hashlib.sha256(msgspec.json.encode(self, order="deterministic")).hexdigest()
 
     def without_execution(self) -> Execution:
-        """Return the result of a task with a problem: no cell is run, and each check gets zero and the reason."""
+        """Return the result of a task that cannot be executed: no cell is run, and each check gets zero points."""
         verdicts = {
             index: zero_points(
                 cell.check, UNREADABLE, self.problem, "Hand in the notebook as JupyterLab saves it."
@@ -75,10 +76,10 @@ class Task:
         return Execution(cells=(), verdicts=verdicts)
 
     def in_trouble(self, reason: str) -> Execution:
-        """Return the result of a task that the grader could not execute, which is not the student's fault.
+        """Return the result of a task that was not executed because the grader failed: no check was made.
 
         Args:
-            reason: Why the task could not be executed.
+            reason: Why the grader failed.
         """
         verdicts = {
             index: grader_trouble(cell.check, reason) for index, cell in enumerate(self.cells) if cell.check
@@ -87,7 +88,7 @@ class Task:
 
 
 def points(check: CellCheck, verdict: Verdict) -> float:
-    """Return the points for a verdict: the cell's points times the share that the judge gave."""
+    """Return the points for a verdict: the points of the check cell times the share that the judge gave."""
     share = verdict.score / verdict.max_score if verdict.max_score > 0 else 0.0
     return round(min(1.0, max(0.0, share)) * check.worth, 4)
 
@@ -102,7 +103,7 @@ def scores_of(task: Task, execution: Execution) -> dict[str, float]:
 
 
 def unchecked(task: Task, execution: Execution) -> set[str]:
-    """Return the check cells of a task that could not be checked, by grade_id."""
+    """Return the grade_ids of the check cells that could not be checked."""
     return {
         cell.name
         for index, cell in enumerate(task.cells)

@@ -97,8 +97,8 @@ def test_a_course_that_expects_something_else_since_does_not_say_what_was_expect
     ("student", "exercise", "words"),
     [
         ("ada", "lab_1_2.talkr", "did you mean lab_1_2.talker"),
-        ("ben", ID, "No check of lab_1_2.talker by 'ben' was graded here"),
-        ("ada", "lab_1_2.listener", "The table says: failed, wrong_text. It says something else."),
+        ("ben", ID, "No check of lab_1_2.talker by 'ben' was graded in this class"),
+        ("ada", "lab_1_2.listener", "The state in the table is: failed, wrong_text. It says something else."),
     ],
 )
 def test_what_is_not_there_is_named(graded: TinyClass, student: str, exercise: str, words: str) -> None:
@@ -115,14 +115,16 @@ def test_damaged_evidence_is_named(graded: TinyClass, fake_engine: FakeEngine) -
         write_appeal(graded.path, "ada", ID)
     with contextlib.closing(sqlite3.connect(graded.path / ".autograder" / "class.db")) as book, book:
         book.execute("UPDATE evidence SET checks = substr(checks, 1, length(checks) - 3)")
-    with pytest.raises(GradingError, match=r"Nothing that a judge saw .*--student ada --again"):
+    with pytest.raises(GradingError, match=r"There is no evidence of .*--student ada --again"):
         write_appeal(graded.path, "ada", ID)
 
 
 def test_no_appeal_about_a_run_that_was_not_entered(graded: TinyClass) -> None:
     graded.submit("ben", 3, 3)
     graded.grade(dry_run=True)
-    with pytest.raises(GradingError, match=r"does not have the points .* Enter them first: .*--student ben"):
+    with pytest.raises(
+        GradingError, match=r"are not in the gradebook, .* Enter the points first: .*--student ben"
+    ):
         write_appeal(graded.path, "ben", ID)
     graded.grade()
     assert write_appeal(graded.path, "ben", ID).is_file()
@@ -148,7 +150,7 @@ def test_trouble_of_the_graders_own_keeps_no_evidence(graded: TinyClass, fake_en
     graded.submit("ada", "'die'")
     graded.grade()
     assert kept(graded) == {ID: evidence()}
-    with pytest.raises(GradingError, match="does not have the points"):
+    with pytest.raises(GradingError, match="are not in the gradebook"):
         write_appeal(graded.path, "ada", ID)
 
 

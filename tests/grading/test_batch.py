@@ -340,7 +340,7 @@ def test_a_second_batch_says_so_and_stops(tiny: TinyClass, fake_engine: FakeEngi
     tiny.submit("ada")
 
     def second(_: object) -> None:
-        with pytest.raises(ClassBusy, match="Another grading run"):
+        with pytest.raises(ClassBusy, match="Another run is grading"):
             tiny.grade()
 
     fake_engine.before = second
@@ -380,7 +380,7 @@ def test_a_full_disk_is_said_and_costs_nothing(
         return usual(self, task, execution)
 
     monkeypatch.setattr(ClassStore, "keep", full)
-    with pytest.raises(DiskFull, match="Free some room"):
+    with pytest.raises(DiskFull, match="Free some space"):
         tiny.grade()
     assert tiny.scores("ada")[TALKER] == 10
     monkeypatch.setattr(ClassStore, "keep", usual)
@@ -428,7 +428,7 @@ def test_a_config_that_does_not_grade_on_the_wire_is_refused(
     tiny: TinyClass, fake_engine: FakeEngine
 ) -> None:
     (tiny.path / "nbgrader_config.py").write_text("c = get_config()\n")
-    with pytest.raises(ClassIncomplete, match="does not grade with the judge"):
+    with pytest.raises(ClassIncomplete, match="does not use the judge for grading"):
         tiny.grade()
     (tiny.path / "nbgrader_config.py").write_text("c = \n")
     with pytest.raises(ClassIncomplete, match="cannot be read: SyntaxError"):

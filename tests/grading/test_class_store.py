@@ -273,7 +273,9 @@ def test_a_damaged_file_is_named_and_costs_nobody_points(
     else:
         with contextlib.closing(sqlite3.connect(file)) as book:
             book.execute("PRAGMA user_version = 1")
-    advice = r"class\.db, which holds what was graded, cannot be .*Restore a backup of the file.*rename it"
+    advice = (
+        r"which contains the results of grading, cannot be .*Restore a backup of the file.*rename the file"
+    )
     with pytest.raises(StoreTrouble, match=advice):
         tiny.grade()
     for words in (
@@ -295,7 +297,7 @@ def test_a_file_of_a_newer_course_is_sound(store: ClassStore, tmp_path: Path) ->
     with contextlib.closing(sqlite3.connect(tmp_path / "class" / ".autograder" / "class.db")) as book:
         book.execute("PRAGMA user_version = 99")
     with pytest.raises(
-        StoreTrouble, match=r"its version is 99 of a newer course.* The file is not damaged"
+        StoreTrouble, match=r"the file has version 99 of a newer course.* The file is not damaged"
     ) as caught:
         ClassStore(ClassDirectory(tmp_path / "class")).entered()
     assert "Put back" not in str(caught.value)
@@ -448,7 +450,7 @@ def test_a_full_disk_is_said_and_loses_nothing(store: ClassStore) -> None:
         filler = file_of(store).with_name("filler")
         filler.write_bytes(bytes(100_000))
         store.enter(submission(), attempt(), entered())
-        with pytest.raises(DiskFull, match="Free some room"):
+        with pytest.raises(DiskFull, match="Free some space"):
             [store.keep(task, large) for task in tasks]
         kept = len(store.results("ada", "lab"))
         with pytest.raises(DiskFull):

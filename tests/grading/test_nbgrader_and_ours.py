@@ -215,7 +215,7 @@ def test_one_student_of_plain_nbgrader_is_graded_alone(tiny: TinyClass, fake_eng
     Autograde(coursedir=course, config=config).start()
     assert fake_engine.ran == ["ben"]
     course.student_id = "eve"
-    with pytest.raises(NbGraderException, match=r"eve.*: it is a link; put the folder itself there"):
+    with pytest.raises(NbGraderException, match=r"eve.*: it is a link; put the folder itself in its place"):
         Autograde(coursedir=course, config=config).start()
     assert fake_engine.ran == ["ben"]
 
@@ -238,7 +238,9 @@ def test_a_command_of_plain_nbgrader_ends_with_the_exit_code_of_ours(
     )
     assert done.returncode == 2, done.stderr
     assert "Traceback" not in done.stderr
-    reason = "it is a link; put the folder itself there" if command == "autograde" else "rename the folder"
+    reason = (
+        "it is a link; put the folder itself in its place" if command == "autograde" else "rename the folder"
+    )
     assert reason in done.stderr
 
 
@@ -264,7 +266,7 @@ def test_an_assignment_in_the_making_holds_up_no_other(tiny: TinyClass, fake_eng
         tiny.path / "source" / "next_week" / "next_week.ipynb"
     )
     tiny.submit("ada", 3)
-    with pytest.raises(ClassIncomplete, match="does not know next_week"):
+    with pytest.raises(ClassIncomplete, match="does not contain next_week"):
         tiny.grade()
     nbgrader_autograde(tiny)
     assert tiny.scores("ada")[TALKER] == 3

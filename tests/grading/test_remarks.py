@@ -38,7 +38,7 @@ def test_it_is_said_everywhere_also_when_nothing_has_changed_since(
     notebook.cells.append(new_code_cell("def Talker():\n    return 7"))
     tiny.submit("ada")
     tiny.hand_in("eve", notebook)
-    words = "The cell `Talker` was missing. What it asks for is in another cell, and that one counts."
+    words = "The cell `Talker` was missing. Another cell contains the answer, and that cell counts."
     for report in (tiny.grade(feedback=True), tiny.grade(feedback=True)):
         assert [line for line in printed(report) if line.startswith("remark ")] == [
             f"remark       eve/lab_1_2: {words}"

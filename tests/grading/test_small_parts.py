@@ -65,7 +65,7 @@ def test_a_full_disk_is_found_at_the_bottom_of_a_chain() -> None:
     failed.__cause__ = OSError(errno.EDQUOT, "quota")
     assert is_disk_full(failed)
     assert not is_disk_full(ValueError("disk is full, says the student"))
-    assert "Free some room" in str(DiskFull(Path("class")))
+    assert "Free some space" in str(DiskFull(Path("class")))
 
 
 def test_the_score_is_the_judges_share_of_what_the_cell_carries() -> None:

@@ -1,1 +1,1 @@
-"""A class on disk: how it is made, its folders, its configuration and its lock."""
+"""Makes class directories, and reads their folders, configuration and lock."""

@@ -1,8 +1,7 @@
-"""The masters from which the sources of a class were made, and which of these masters have changed since.
+"""Warns before grading if a master has changed since a class got its source notebook from that master.
 
-A class has its own copy of each assignment, which its instructor may change. The judge does not use that copy; it
-judges by the current course. So the master from which a source was made is compared with the master as it is now.
-Only the cells that are graded or answered count.
+A class has its own copy of each notebook, in ``source``. But the judge uses the exercises of the current course, so it
+may expect something that the copy does not ask for. Only changes of graded cells and answer cells are found.
 """
 
 from __future__ import annotations
@@ -26,11 +25,11 @@ if TYPE_CHECKING:
 
 
 def note_origins(store: ClassStore, made: Mapping[str, tuple[Path, NotebookNode]]) -> None:
-    """Record the masters from which sources were just made.
+    """Record from which masters new source notebooks were made.
 
     Args:
         store: The store of the class.
-        made: For each assignment, its master and the source that was made from it.
+        made: For each assignment, the path of its master and the new source notebook.
     """
     store.note_origins(
         {
@@ -41,34 +40,34 @@ def note_origins(store: ClassStore, made: Mapping[str, tuple[Path, NotebookNode]
 
 
 def news(directory: ClassDirectory, store: ClassStore, assignments: Iterable[str]) -> list[str]:
-    """Return warnings to show before grading, about masters that were changed since the class's sources were made.
+    """Return a warning for each assignment whose master has changed since the class got its source notebook.
 
-    If it is unknown from which masters the sources were made, there is one warning about that.
+    If the class has no record of its masters, return one warning about that.
 
     Args:
         directory: The class.
-        store: The class's store, which contains the origin of each source: the master as it was then.
+        store: The class's store. It records for each source notebook its master, as the master was then.
         assignments: The assignments to be graded.
     """
     known = store.origins()
     if not known:
         return [
-            "This class was made by an older version, which did not record the masters of its sources. So it is "
-            "unknown whether the course's tasks have changed since. The judge expects what the course says now. "
-            "Compare a source with the course, or hand out and grade the new text, which then records its masters: "
+            "This class was made by an older version, so it is unknown whether the course's tasks have changed "
+            "since. The judge expects what the tasks in the course ask for now. Compare a notebook in source with "
+            "the course; or update the class's notebooks, and hand out the new ones: "
             + course_command("renew-class", directory.path)
         ]
     return [warning(directory, name) for name in assignments if name in known and _has_moved(known[name])]
 
 
 def warning(directory: ClassDirectory, assignment: str) -> str:
-    """Return the warning about an assignment whose task has changed, with what to do."""
+    """Return the warning that the master of an assignment has changed."""
     return (
-        f"{assignment}: its master in the course was changed since this class got its source. The judge expects what "
-        "the course says now, so work that was written for the old text may fail. See first who would: "
-        f"{course_command('grade', directory.path, '--dry-run')}. To hand out and grade the new text: "
+        f"{assignment}: the course's tasks have changed since this class got its notebook. The judge expects what the "
+        "tasks ask for now, so answers to the old tasks may fail. To see whose points would change: "
+        f"{course_command('grade', directory.path, '--dry-run')}. To hand out and grade the new tasks: "
         f"{course_command('renew-class', directory.path, '--assignment', assignment)}. "
-        "To grade the old one: use the version of the course that it was handed out from."
+        "To grade answers to the old tasks, use the version of the course that you handed out."
     )
 
 
@@ -77,16 +76,16 @@ def _has_moved(origin: Origin) -> bool:
     try:
         if _digest([master.read_text("utf-8")]) == origin.text:
             return False
-        # Imported here because it takes a second and is rarely needed.
+        # Imported here because this import takes a second and is rarely needed.
         from autograder.masters.source import source_notebook
 
         return _work(source_notebook(master)) != origin.work
     except (OSError, UnicodeDecodeError, MasterError):
-        return False  # the course has been moved, or is being edited
+        return False  # the master cannot be read, for example while an author edits it
 
 
 def _in_course(master: Path) -> str:
-    """Return the master's path relative to the course, so that the course may be moved; else the whole path."""
+    """Return the path of a master relative to the course, so that the course may be moved; or else the full path."""
     path, root = master.resolve(), course.root().resolve()
     return str(path.relative_to(root) if path.is_relative_to(root) else path)
 

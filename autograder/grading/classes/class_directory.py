@@ -1,4 +1,4 @@
-"""A class on disk: its folders, the rules for their names, and its lock."""
+"""Reads a class directory: its configuration, assignments and submissions, and the rules for folder names."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ if TYPE_CHECKING:
 CONFIG_NAME = "nbgrader_config.py"
 STATE_NAME = ".autograder"
 COURSE_NAME = "course"
-"""The name of the file, in the class's state folder, that contains the path of the course's top folder. It is needed
-because an installed package cannot find the course from its own location.
+"""The name of a file in the class's state folder. It contains the path of the course's top folder, which an installed
+package cannot find otherwise.
 """
 SUFFIX = ".ipynb"
 _LONGEST_NAME = 100
 _STUDENTS_FILES = ("submitted", "autograded", "feedback", "downloaded")
-"""The folders of a class that contain students' files; the names are nbgrader's."""
+"""nbgrader's names for the folders of a class that contain students' files."""
 
 
 @dataclass(frozen=True)
 class Submission:
-    """The work of one student for one assignment.
+    """The folder with the files that one student submitted for one assignment.
 
     Attributes:
         student: The student's id.
@@ -63,7 +63,7 @@ class RefusedFile:
 
     Attributes:
         path: The file or folder.
-        reason: The reason, and what to do about it.
+        reason: The reason, and what the instructor has to do.
     """
 
     path: Path
@@ -94,19 +94,19 @@ class ClassDirectory:
 
     @property
     def state(self) -> Path:
-        """The folder of the autograder's own files: secret, lock, store and log. It contains nothing for students."""
+        """The folder ``.autograder`` for the grader's own files about the class: secret, lock, store and log."""
         return self.path / STATE_NAME
 
     @property
     def gradebook_url(self) -> str:
-        """The address by which SQLAlchemy opens the gradebook."""
+        """The database URL with which SQLAlchemy opens the gradebook."""
         return str(
             self._as_written.CourseDirectory.get("db_url") or f"sqlite:///{self.path / 'gradebook.db'}"
         )
 
     @functools.cached_property
     def config(self) -> Config:
-        """Return the class's nbgrader configuration, with its root set to the folder in which the class is now.
+        """The class's nbgrader configuration, with the present path of the class as ``CourseDirectory.root``.
 
         Raises:
             ClassIncomplete: The configuration is not valid Python, or does not use the judge for grading.
@@ -115,15 +115,14 @@ class ClassDirectory:
         steps = [str(step) for step in config.Autograde.get("autograde_preprocessors", ())]
         if not any("WireExecute" in step for step in steps):
             raise ClassIncomplete(
-                f"{self.path / CONFIG_NAME} does not grade with the judge. Make a class with "
-                f"`{COMMAND} new-class` and copy the lines on Autograde from its {CONFIG_NAME}."
+                f"{self.path / CONFIG_NAME} does not use the judge for grading. Make another class with "
+                f"`{COMMAND} new-class` and copy the lines with c.Autograde from its {CONFIG_NAME}."
             )
         url = str(config.CourseDirectory.get("db_url") or "sqlite:")
         if not url.startswith("sqlite:") and not config.CourseDirectory.get("course_id"):
-            # nbgrader stores the course's id as a foreign key. Only SQLite accepts an id that does not exist as a
-            # course.
+            # nbgrader stores the course's id as a foreign key. Without an id, only SQLite accepts that key.
             raise ClassIncomplete(
-                f"A gradebook in a database server needs the name of the course. Add a line to "
+                f"A gradebook on a database server needs a name of the course. Add a line to "
                 f'{self.path / CONFIG_NAME}: c.CourseDirectory.course_id = "ros2"'
             )
         config.CourseDirectory.root = str(self.path)
@@ -133,7 +132,7 @@ class ClassDirectory:
     def time_zone(self) -> ZoneInfo:
         """The time zone of due dates in formgrader, and of all times that this package shows.
 
-        It is set by nbgrader's own option ``c.NbGraderAPI.timezone``; the default is UTC.
+        nbgrader's option ``c.NbGraderAPI.timezone`` sets it; the default is UTC.
 
         Raises:
             ClassIncomplete: The zone does not exist.
@@ -151,14 +150,14 @@ class ClassDirectory:
     def _as_written(self) -> Config:
         try:
             return PyFileConfigLoader(CONFIG_NAME, path=str(self.path)).load_config()
-        except Exception as error:  # the configuration file is a program, so it may raise anything
+        except Exception as error:  # the configuration file is a program, so it may raise any error
             raise ClassIncomplete(
                 f"{self.path / CONFIG_NAME} cannot be read: {type(error).__name__}: {error}"
             ) from error
 
     @functools.cached_property
     def secret(self) -> bytes:
-        """Return the secret of the class. If the class has none, make one.
+        """The secret of the class. If the class has no secret, a new one is made and stored.
 
         Raises:
             ClassIncomplete: The file of the secret is damaged.
@@ -171,35 +170,35 @@ class ClassDirectory:
             return read_secret(path)
         except ValueError as error:
             raise ClassIncomplete(
-                f"{path} is damaged ({error}). Put back a copy of it, or delete it: "
-                "then every student gets new inputs."
+                f"{path} is damaged ({error}). Restore a backup of the file, or delete the file. "
+                "After deleting it, every student gets different random inputs."
             ) from error
 
     def assignments(self) -> list[str]:
-        """The names of the assignments, sorted."""
+        """Return the names of the class's assignments, sorted."""
         return sorted(
             folder.name for folder in (self.path / "source").iterdir() if any(folder.glob(f"*{SUFFIX}"))
         )
 
     def notebooks(self, assignment: str) -> list[str]:
-        """The names of an assignment's notebooks, sorted."""
+        """Return the names of an assignment's notebooks, sorted."""
         return sorted(path.stem for path in (self.path / "source" / assignment).glob(f"*{SUFFIX}"))
 
     def master(self, assignment: str, notebook: str) -> NotebookNode:
         """Return the trusted master of a notebook.
 
         Raises:
-            MasterUnusable: Submissions cannot be graded against this master.
+            MasterUnusable: The source notebook cannot be used for grading.
         """
         from autograder.grading.rebuilding.master import (
-            read_master,  # imported here because it imports nbgrader, which takes a second
+            read_master,  # imported here, because this import loads nbgrader, which takes a second
         )
 
         return read_master(self.path / "source" / assignment / f"{notebook}{SUFFIX}", self.config)
 
     @functools.cached_property
     def named_cells(self) -> NamedCells:
-        """Return the named cells of all notebooks of the class, as they are now."""
+        """The names of the cells in all source notebooks of the class."""
         from autograder.grading.rebuilding.named_cells import NamedCells
 
         return NamedCells(
@@ -211,7 +210,7 @@ class ClassDirectory:
         )
 
     def files(self, assignment: str) -> dict[str, bytes]:
-        """Return the files next to the assignment's notebooks, by relative path."""
+        """Return the files next to an assignment's source notebooks, by relative path."""
         folder = self.path / "source" / assignment
         found = (path for path in sorted(folder.rglob("*")) if path.is_file() and path.suffix != SUFFIX)
         return {
@@ -223,9 +222,10 @@ class ClassDirectory:
         }
 
     def submissions(self) -> tuple[list[Submission], list[RefusedFile]]:
-        """Return everything that was handed in, and everything that cannot be graded where it is.
+        """Return the submissions in ``submitted``, and the files and folders there that cannot be graded.
 
-        A notebook that is not an ordinary file is in both lists: it gets zero points, and the reason is reported.
+        A notebook that is not an ordinary file, such as a link, is in both lists: the submission gets zero points, and
+        the instructor a line with the reason.
         """
         notebooks = {assignment: self.notebooks(assignment) for assignment in self.assignments()}
         taken: list[Submission] = []
@@ -238,7 +238,9 @@ class ClassDirectory:
                 else:
                     known = ", ".join(notebooks) or "none"
                     refused.append(
-                        RefusedFile(folder, f"the class has no assignment of that name (it has: {known})")
+                        RefusedFile(
+                            folder, f"the class has no assignment with this name (its assignments: {known})"
+                        )
                     )
         return taken, refused
 
@@ -254,13 +256,13 @@ class ClassDirectory:
 
     @contextlib.contextmanager
     def lock(self) -> Iterator[None]:
-        """Keep a second batch out during the block, and first clean up after one that was killed.
+        """Lock the class during the block, so that only one process grades it. Clean up after a killed process first.
 
         The lock also ends when this process ends.
 
         Raises:
             ClassBusy: Another process holds the lock.
-            GradingError: The disk or the gradebook failed in the block; the message is for an instructor.
+            GradingError: The disk or the gradebook failed in the block.
         """
         with clear_disk_errors(self.path):
             self.state.mkdir(mode=0o700, exist_ok=True)
@@ -271,37 +273,37 @@ class ClassDirectory:
 
     @property
     def scratch_prefix(self) -> str:
-        """The prefix of the names of this class's temporary folders; short, because sockets are made in them."""
+        """The prefix of this class's temporary folders. It is short, because a socket's path may not be long."""
         return f"autograder-{hashlib.sha256(str(self.path).encode()).hexdigest()[:8]}-"
 
 
 def refuse_students_folder(folder: Path) -> None:
-    """Raise an error if a folder lies among the students' files of a class.
+    """Raise an error if a folder is inside a class's folder for students' files.
 
-    Otherwise a student could hand in a whole class directory, whose configuration is a program that would be run.
+    Otherwise, a student could hand in a class directory whose configuration file, a program, would then be run.
 
     Raises:
-        ClassIncomplete: The folder does lie there. The message names the class around it.
+        ClassIncomplete: The folder is among students' files. The message names the class around it.
     """
     place = folder.resolve()
     for outer in place.parents:
         if place.relative_to(outer).parts[0] in _STUDENTS_FILES and (outer / CONFIG_NAME).is_file():
             raise ClassIncomplete(
-                f"{folder} contains files of students, so it is not used as a class. The class is "
-                f"{outer}: name that folder."
+                f"{folder} is among students' files, so it cannot be a class. Use the class around it: "
+                f"{outer}"
             )
 
 
 def in_zone(when: datetime, zone: tzinfo) -> str:
-    """Return a time for a person to read, in this time zone and with its name."""
+    """Return a time as text in a time zone, such as ``2026-01-31 12:00 Europe/Berlin``."""
     return f"{when.astimezone(zone):%Y-%m-%d %H:%M} {zone}"
 
 
 def reason_against_name(name: str) -> str:
     """Return why the name of a folder cannot be a student's id; empty if it can.
 
-    nbgrader looks for folders with wildcards and splits paths at separators. So with some characters in a name, it
-    would find another student's folder or none. Control characters would forge lines in a terminal or log.
+    nbgrader uses the name in search patterns. So with a character such as ``*`` in the name, nbgrader would find
+    another student's folder or none. With control characters, a student could forge lines in a terminal or log.
     """
     if len(name.encode("utf-8", "surrogateescape")) > _LONGEST_NAME:
         return f"the name is longer than {_LONGEST_NAME} bytes"
@@ -310,7 +312,7 @@ def reason_against_name(name: str) -> str:
     if not name or name.startswith("."):
         return "the name is empty or begins with a dot"
     if name != name.strip() or name != unicodedata.normalize("NFC", name):
-        return "the name begins or ends with a space, or its letters are not in composed form"
+        return "the name begins or ends with a space, or has accents as separate characters (Unicode NFD)"
     return ""
 
 
@@ -322,13 +324,13 @@ def _odd_files(paths: Iterable[Path]) -> Iterator[RefusedFile]:
 
 
 def _folders(parent: Path, refused: list[RefusedFile]) -> list[Path]:
-    """Return the folders in ``parent`` that have usable names. Hidden entries and plain files are ignored."""
+    """Return the folders in ``parent`` with usable names. Add other folders and special files to ``refused``."""
     found = []
     for entry in _entries(parent, refused):
         if entry.name.startswith("."):
             continue
         if entry.is_symlink():
-            refused.append(RefusedFile(entry, "it is a link; put the folder itself there"))
+            refused.append(RefusedFile(entry, "it is a link; put the folder itself in its place"))
         elif entry.is_dir():
             reason = reason_against_name(entry.name)
             if reason:

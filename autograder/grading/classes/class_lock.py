@@ -1,4 +1,4 @@
-"""Allows only one batch at a time in a class, whichever command or button started it."""
+"""Locks a class, so that only one process grades it at a time, even if nbgrader started the process."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Holder:
     Attributes:
         pid: The process id.
         host: The name of the machine on which it runs.
-        since: The local time at which it took the lock.
+        since: The local time at which the process took the lock.
     """
 
     pid: int
@@ -36,30 +36,30 @@ class Holder:
     since: str
 
     def __str__(self) -> str:
-        """Return the holder in a few words."""
+        """Return a description for messages, such as ``process 123 on lab-pc, since 2026-01-31 12:00:00``."""
         where = "" if self.host == socket.gethostname() else f" on {self.host}"
         return f"process {self.pid}{where}, since {self.since}"
 
 
 _own: dict[Path, Holder] = {}
-"""The locks that this process holds. They are recorded because the system would let a process take the same lock twice.
-"""
+"""The locks that this process holds. The system itself would let a process take the same lock twice."""
 _changing = threading.Lock()
 
 
 @contextlib.contextmanager
 def held(path: Path, of: Path) -> Iterator[bool]:
-    """Hold the lock of a class during the block. The value is True if its last holder was killed.
+    """Hold the lock of a class during the block. Yield True if the previous holder was killed.
 
-    This is a POSIX record lock: the system releases it when the process ends, and no child inherits it. While the
-    lock is held, the file contains the holder's name. So a name without a lock means that the holder was killed.
+    The lock is a POSIX record lock: the system releases it when the process ends, and child processes do not inherit
+    it. The holder writes its name into the file, and removes the name at the end. So a name in a file that is not
+    locked shows that the holder was killed.
 
     Args:
         path: The lock file, which is created if it does not exist.
-        of: The class, for use in messages.
+        of: The class, for messages.
 
     Raises:
-        ClassBusy: Another process holds the lock. The message names it.
+        ClassBusy: A process already holds the lock. The message names this process.
         OSError: The lock file cannot be written.
     """
     path = path.resolve()
@@ -96,7 +96,7 @@ def _take(file: IO[bytes], holder: Holder, of: Path) -> bool:
 
 
 def _who(file: IO[bytes]) -> str:
-    """Return the holder that the file names; empty if the holder has not written its name yet."""
+    """Return the description of the holder in the file; empty if the holder has not written it yet."""
     file.seek(0)
     try:
         return str(msgspec.json.decode(file.read(), type=Holder))

@@ -1,7 +1,7 @@
-"""Checks which options of ``nbgrader_config.py`` that affect grading are set to supported values.
+"""Checks that ``nbgrader_config.py`` sets no option of grading to a value that this grader does not support.
 
-Every command uses the same conversion into the gradebook. If a class sets an option of nbgrader's conversion that
-this one does not support, a command refuses before it changes anything, so that no option is silently ignored.
+This grader replaces nbgrader's grading, and supports only some of nbgrader's options. If a class sets another option,
+no command grades it: otherwise, the option would be ignored without notice.
 """
 
 from __future__ import annotations
@@ -42,12 +42,12 @@ _MAY_BE: Mapping[str, Mapping[str, tuple[Any, ...]]] = {
     "HTMLExporter": {
         "filters": ({"markdown2html": "autograder.grading.returning.page_exporter.markdown_to_html"},)
     },
-    # The last three options limit what nbgrader's exchange accepts.
+    # nbgrader's exchange uses the last three options.
     "CourseDirectory": dict.fromkeys(
         ("root", "db_url", "course_id", "include", "max_file_size", "max_dir_size"), (_ANYTHING,)
     ),
     "WireExecute": dict.fromkeys((*_LIMITS, "unsafe_no_sandbox", "demonstrations"), (_ANYTHING,)),
-    # No option of these sections has an effect here, so none is supported.
+    # The options of these sections belong to nbgrader's own grading, and would have no effect.
     **{
         section: {}
         for section in (
@@ -71,20 +71,18 @@ _MAY_BE: Mapping[str, Mapping[str, tuple[Any, ...]]] = {
         )
     },
 }
-"""The supported values of options, by section. A section that is not listed does not affect the conversion, or is fully
-supported.
-"""
+"""The supported options by section, with their supported values. Sections that are not listed may have any option."""
 
 
 _INSTEAD = {
     f"{section}.timeout": "c.WireExecute.cell_seconds limits the time of a cell"
     for section in ("Execute", "ExecutePreprocessor", "NotebookClient")
 }
-"""For an unsupported option, the supported one that the instructor probably meant."""
+"""For an unsupported option, a sentence about the option to use instead."""
 
 
 def check_configuration(directory: ClassDirectory) -> None:
-    """Check that the class's configuration sets only supported options.
+    """Check that a class's configuration sets only supported options.
 
     Raises:
         ClassIncomplete: An option is not supported. The message names it and says what to do.
@@ -93,7 +91,7 @@ def check_configuration(directory: ClassDirectory) -> None:
     for option in _not_honoured(directory.config):
         instead = f" {_INSTEAD[option]}." if option in _INSTEAD else ""
         raise ClassIncomplete(
-            f"{path} sets c.{option}, which has no effect on how submissions are graded here: delete that line, or "
+            f"{path} sets c.{option}, but this grader does not support that value: delete the line, or "
             f"write it as in a class that `{COMMAND} new-class` makes.{instead}"
         )
     for section in ("Autograde", "GenerateFeedback"):
@@ -106,7 +104,7 @@ def check_configuration(directory: ClassDirectory) -> None:
 
 
 def limits_of(directory: ClassDirectory) -> Limits:
-    """Return the limits that the class's configuration sets; for all others, the defaults.
+    """Return the limits for a class's submissions, from its configuration or the defaults.
 
     Raises:
         ClassIncomplete: A limit is not a number greater than zero.
@@ -118,7 +116,7 @@ def limits_of(directory: ClassDirectory) -> Limits:
             found[name] = _LIMITS[name](configured[name])
         if not 0 < found.get(name, 0) < math.inf:
             raise ClassIncomplete(
-                f"{directory.path / CONFIG_NAME} sets c.WireExecute.{name} to {configured[name]!r}: it has to be a "
+                f"{directory.path / CONFIG_NAME} sets c.WireExecute.{name} to {configured[name]!r}: write a "
                 f"number above zero, such as {getattr(Limits(), name)}."
             )
     return Limits(**found)

@@ -1,4 +1,4 @@
-"""Makes a class, that is, an nbgrader course directory with the course's masters; and updates its sources."""
+"""Makes a class, an nbgrader course directory with notebooks from the course's masters, and updates its notebooks."""
 
 from __future__ import annotations
 
@@ -55,33 +55,32 @@ from autograder.masters.release_steps import ReleaseSteps
 c = get_config()  # noqa: F821  (nbgrader defines it)
 c.CourseDirectory.root = os.path.dirname(os.path.abspath(__file__))
 
-# Students get this: each solution replaced by its TODO comment, given cells locked.
+# How notebooks for students are made: each solution is replaced by a TODO comment, and given cells are locked.
 c.GenerateAssignment.preprocessors = ReleaseSteps()
 
-# How a submission is graded: the judge watches each check cell on the wire, whether it is `{command} grade`,
-# `nbgrader autograde` or formgrader's button that starts it. Without the first line, the second one refuses to grade.
+# How submissions are graded: by the judge, with `{command} grade`, `nbgrader autograde` and formgrader's button alike.
+# Both lines are needed: if the first is missing, nbgrader's own commands refuse to grade.
 c.Autograde.exporter_class = "autograder.grading.nbgrader_commands.SubmissionExporter"
 c.Autograde.autograde_preprocessors = ["autograder.grading.nbgrader_commands.WireExecute"]
 
-# You and the students read this: no script, frame or address from a submission.
+# How feedback pages are made: without scripts, frames and addresses of other hosts from a submission.
 c.GenerateFeedback.exporter_class = "autograder.grading.nbgrader_commands.FeedbackExporter"
 c.HTMLExporter.filters = {{"markdown2html": "autograder.grading.returning.page_exporter.markdown_to_html"}}
 
 # The time zone of due dates in formgrader, and of the times that `{command} grade` shows.
 c.NbGraderAPI.timezone = "{timezone}"
 
-# `nbgrader export` and `{command} grade` each write a table: give nbgrader's a name of its own. In neither does
-# a spreadsheet find a formula.
+# `nbgrader export` writes CSV that a spreadsheet does not execute. The file needs another name than grades.csv, which
+# `{command} grade` writes.
 c.ExportApp.plugin_class = "autograder.grading.export.SafeCsvExport"
 c.ExportPlugin.to = "nbgrader_export.csv"
 
-# In seconds: the time limit of one cell, and of a whole notebook. On a busy machine the limit of a cell is extended.
-# Check cells have the limit of their exercise.
+# The time limits of a cell and of a whole notebook, in seconds. On a busy machine, the limit of a cell is extended.
+# A check cell has the time limit of its exercise instead.
 c.WireExecute.cell_seconds = {cell_seconds:g}
 c.WireExecute.notebook_seconds = {notebook_seconds:g}
 
-# For `nbgrader validate`, which runs a notebook without the judge's box: nbgrader takes 0 points for a log
-# line on stderr, where ROS writes them by default.
+# For `nbgrader validate`: nbgrader gives 0 points if a cell writes to stderr. By default, ROS writes its log there.
 os.environ.setdefault("RCUTILS_LOGGING_USE_STDOUT", "1")
 os.environ.setdefault("RCUTILS_COLORIZED_OUTPUT", "0")
 '''
@@ -102,14 +101,15 @@ class NewClass:
     timezone: str
 
     def summary(self) -> str:
-        """Return a few lines that describe the new class and the next steps."""
+        """Return lines for the instructor about the new class and the next steps."""
         return "\n".join(
             (
                 f"{self.path} is a class with these assignments: {', '.join(self.assignments)}.",
-                f"Due dates in formgrader are times in {self.timezone}: see {CONFIG_NAME}.",
-                f"Hand out       what {COMMAND} hand-out FOLDER makes: the notebooks with all that they need",
-                f"Collect work   {course_command('collect', self.path)} DOWNLOAD, as your learning system gives it",
-                f"or put it into {self.path / 'submitted'}/<student>/<assignment>/<assignment>.ipynb",
+                f"The time zone of due dates in formgrader is {self.timezone}: see {CONFIG_NAME}.",
+                f"Hand out       {COMMAND} hand-out FOLDER makes the folder for students",
+                f"Collect        {course_command('collect', self.path)} DOWNLOAD (files as your LMS lets you "
+                "download them)",
+                f"or put them in {self.path / 'submitted'}/<student>/<assignment>/<assignment>.ipynb",
                 f"Then           {course_command('grade', self.path)}",
             )
         )
@@ -127,15 +127,15 @@ def new_class(
     """Make a class directory with its gradebook, sources and release.
 
     Args:
-        path: A new or empty folder outside the course's repository.
+        path: The folder for the class. It must be empty or not exist, and lie outside the course's repository.
         course_root: The top folder of the course, which contains ``solutions``.
-        assignments: The names of the masters to use; by default all that have a graded cell.
+        assignments: The names of the assignments; by default all labs with a graded cell.
         timezone: The name of the time zone of due dates, such as ``Europe/Berlin``; by default this machine's.
         cell_seconds: Time limit of a cell, in seconds of wall time.
         notebook_seconds: Time limit of a notebook, in seconds of wall time.
 
     Raises:
-        ClassExists: The folder is not empty, or is inside the repository.
+        ClassExists: The folder is not empty, or is inside the course's repository.
         GradingError: An assignment does not exist, a master cannot be used, or nbgrader could not make the class.
     """
     path = path.absolute()
@@ -152,7 +152,7 @@ def new_class(
             _fill(path, sources, config)
             (path / STATE_NAME / COURSE_NAME).write_text(str(course_root.resolve()), encoding="utf-8")
     except BaseException:
-        # An unfinished class would only be in the way of the next attempt, so it is removed.
+        # Remove an unfinished class, so that the folder is empty for the next attempt.
         for entry in path.iterdir() if path.is_dir() else ():
             shutil.rmtree(entry) if entry.is_dir() else entry.unlink()
         if made_folder and path.is_dir():
@@ -162,7 +162,7 @@ def new_class(
 
 
 def machine_timezone() -> str:
-    """Return the name of this machine's time zone; ``UTC`` if it is not set by name (see ``man 5 localtime``)."""
+    """Return the name of this machine's time zone; ``UTC`` if it has no name (see ``man 5 localtime``)."""
     linked = os.path.realpath("/etc/localtime").partition("/zoneinfo/")[2]
     name = os.environ.get("TZ", "").removeprefix(":") or linked
     return name if name in available_timezones() else "UTC"
@@ -171,10 +171,10 @@ def machine_timezone() -> str:
 def _check_place(path: Path, course_root: Path) -> None:
     refuse_students_folder(path)
     if path.is_symlink() or (path.exists() and not path.is_dir()):
-        raise ClassExists(f"{path} is there already and is not a folder. Choose another name.")
+        raise ClassExists(f"{path} already exists and is not a folder. Choose another name.")
     if path.is_dir() and any(path.iterdir()):
         raise ClassExists(
-            f"{path} is not empty. Choose another name, or grade the class there: {course_command('grade', path)}"
+            f"{path} is not empty. Choose another name, or grade the class in it: {course_command('grade', path)}"
         )
     repository = course_root.resolve()
     place = path.resolve()
@@ -186,15 +186,15 @@ def _check_place(path: Path, course_root: Path) -> None:
 
 
 Sources = dict[str, "tuple[Path, NotebookNode]"]
-"""For each assignment, the path of its master and the source notebook made from the master."""
+"""For each assignment, the path of its master, and the source notebook made from the master."""
 
 
 def sources_of(course_root: Path, wanted: Sequence[str]) -> Sources:
-    """Return the masters, and the source notebooks that a class gets from them.
+    """Return the masters for a class's assignments, and a source notebook made from each.
 
     Args:
         course_root: The top folder of the course, which contains ``solutions``.
-        wanted: The names of the assignments; by default all that have a graded cell.
+        wanted: The names of the assignments; by default all labs with a graded cell.
 
     Raises:
         GradingError: An assignment does not exist, or its master cannot be used.
@@ -203,7 +203,7 @@ def sources_of(course_root: Path, wanted: Sequence[str]) -> Sources:
         known = {lab_name(master): master for master in masters(course_root)}
         for name in wanted:
             if name not in known:
-                raise GradingError(f"The course has no master named {name}. It has: {', '.join(known)}.")
+                raise GradingError(f"The course has no lab named {name}. Its labs are: {', '.join(known)}.")
         made = {name: (known[name], source_notebook(known[name])) for name in wanted or known}
     except MasterError as error:
         raise GradingError(str(error)) from error
@@ -232,16 +232,16 @@ def _fill(path: Path, sources: Sources, config: str) -> None:
 def write_source(
     directory: ClassDirectory, name: str, notebook: NotebookNode, assignments: Container[str]
 ) -> None:
-    """Write the source of an assignment into a class, with links that work there.
+    """Write a source notebook into a class, and adapt its links to other notebooks.
 
-    In the course, all notebooks of a chapter are in one folder; in a class, each is in a folder of its own. A
-    notebook that is not in the class is mentioned without a link.
+    In the course, all notebooks of a chapter are in one folder. In a class, each notebook has a folder of its own. A
+    link to a notebook that the class does not have becomes plain text.
 
     Args:
-        directory: The class. The assignment's folder exists already.
-        name: The assignment.
-        notebook: The source notebook as it was made from the master.
-        assignments: The assignments of the class.
+        directory: The class. The assignment's folder must exist.
+        name: The name of the assignment.
+        notebook: The source notebook, made from the master.
+        assignments: The names of all assignments of the class.
 
     Raises:
         OSError: The file could not be written.
@@ -260,11 +260,11 @@ def write_source(
 
 
 def release(directory: ClassDirectory, assignments: Sequence[str] = ()) -> None:
-    """Make the notebooks for students, as ``nbgrader generate_assignment`` does.
+    """Make the notebooks for students in ``release``, as ``nbgrader generate_assignment`` does.
 
     Args:
         directory: The class.
-        assignments: The assignments to release; by default all of the class.
+        assignments: The names of the assignments to release; by default all of the class.
 
     Raises:
         GradingError: nbgrader failed. The class's ``nbgrader.log`` has the details.
@@ -285,29 +285,33 @@ def release(directory: ClassDirectory, assignments: Sequence[str] = ()) -> None:
 
 
 def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> list[str]:
-    """Write the sources of a class again from the course's masters, and the release from the sources.
+    """Make the notebooks in ``source`` and ``release`` of a class again from the course's masters.
 
     Args:
         path: The class directory.
         course_root: The top folder of the course, which contains ``solutions``.
-        assignments: The assignments to renew; by default all that have a master in the course.
+        assignments: The names of the assignments to renew; by default all that the course has.
 
     Returns:
-        One line for each assignment, which says what was done.
+        A line for each renewed assignment, and one about the copies of the earlier notebooks.
 
     Raises:
-        GradingError: An assignment is missing in the course or in the class, no assignment is in both, or nbgrader
-            rejects the new text.
-        OSError: The sources could not be written. After any error they are unchanged.
+        GradingError: The course or the class does not have an assignment, they have none in common, or nbgrader
+            rejects a notebook.
+        OSError: The notebooks could not be written. After any error, those in ``source`` are unchanged.
     """
     directory = ClassDirectory(path)
     there = directory.assignments()
     for name in assignments:
         if name not in there:
-            raise GradingError(f"The class has no assignment {name}. It has: {', '.join(there)}.")
+            raise GradingError(
+                f"The class has no assignment {name}. Its assignments are: {', '.join(there)}."
+            )
     made = {name: one for name, one in sources_of(course_root, assignments).items() if name in there}
     if not made:
-        raise GradingError(f"The class has none of the course's assignments. It has: {', '.join(there)}.")
+        raise GradingError(
+            f"The class has none of the course's assignments. Its assignments are: {', '.join(there)}."
+        )
     kept = directory.state / "sources-before" / f"{datetime.now(tz=UTC):%Y-%m-%dT%H-%M-%S.%f}"
     with directory.lock(), ClassStore(directory) as store:
         for name in made:
@@ -316,23 +320,23 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
             for name, (_, notebook) in made.items():
                 write_source(directory, name, notebook, there)
             release(directory, list(made))
-        except BaseException:  # any error, including a full disk or Ctrl-C: put the earlier sources back
+        except BaseException:  # restore the earlier notebooks after any error, also after Ctrl-C
             for name in made:
                 shutil.copytree(kept / name, directory.path / "source" / name, dirs_exist_ok=True)
             raise
         note_origins(store, made)
     lines = [
-        f"{name}: as the course has it now; hand out {directory.path / 'release' / name}" for name in made
+        f"{name}: updated from the course; hand out {directory.path / 'release' / name}" for name in made
     ]
-    return [*lines, f"the earlier files are in {kept}"]
+    return [*lines, f"the earlier source notebooks are in {kept}"]
 
 
 @contextlib.contextmanager
 def _version_read_here() -> Iterator[None]:
-    """Make nbgrader read the version of its tables in this process, for as long as the block lasts.
+    """During the block, replace nbgrader's slow way to find the version of the gradebook's tables.
 
-    nbgrader runs an Alembic command for this (``nbgrader.api.get_alembic_version``), which takes four seconds of
-    processor time for each new gradebook. This reads the same files much faster.
+    nbgrader starts an Alembic command (``nbgrader.api.get_alembic_version``), which takes four seconds of processor
+    time for each new gradebook. Reading the same files in this process is much faster.
     """
     theirs = api.get_alembic_version
     api.get_alembic_version = _newest_version
@@ -343,7 +347,7 @@ def _version_read_here() -> Iterator[None]:
 
 
 def _newest_version() -> str:
-    """Return the version of the database tables that this nbgrader makes."""
+    """Return the version of the database tables in the installed nbgrader."""
     settings = Config()
     settings.set_main_option("script_location", dbutil.ALEMBIC_DIR.replace("%", "%%"))
     return str(ScriptDirectory.from_config(settings).get_current_head())

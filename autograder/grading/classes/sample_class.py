@@ -1,4 +1,4 @@
-"""The sample class: right, wrong and broken submissions, made by this program from one data file."""
+"""Makes the sample class of ``demo``, with right, wrong and broken submissions, as a data file describes them."""
 
 from __future__ import annotations
 
@@ -32,18 +32,16 @@ if TYPE_CHECKING:
 
 DATA = Path(__file__).with_suffix(".toml")
 CELL_SECONDS = 8.0
-"""The time limit of a cell in seconds. It is short, so that the student with the endless loop does not slow down the
-demonstration.
-"""
+"""The time limit of a cell in seconds. It is short, because one sample student wrote an endless loop."""
 NOTEBOOK_SECONDS = 120.0
 BANK = Path("tests", "submissions", "notebooks")
-"""The folder, in the course, that contains answers as students write them, right and wrong."""
+"""The path, in the course, of a folder with right and wrong sample answers."""
 _STAMP = "sample"
 
 
 @dataclass(frozen=True)
 class SampleNotebook:
-    """One notebook of one student. The data file explains the fields."""
+    """The description of one student's notebook. The data file ``sample_class.toml`` explains the fields."""
 
     student: str
     assignment: str
@@ -61,20 +59,20 @@ class SampleNotebook:
 
 @dataclass(frozen=True)
 class _Answer:
-    """A student's text in a solution cell, and in the cells that the student added before it."""
+    """A student's text for a solution cell, and the texts of the cells that the student added before it."""
 
     source: str
     extra: tuple[str, ...]
 
 
 def sample_notebooks() -> tuple[SampleNotebook, ...]:
-    """Return the notebooks of the sample class."""
+    """Return the descriptions of the sample class's notebooks."""
     data = tomllib.loads(DATA.read_text(encoding="utf-8"))
     return msgspec.convert(data["notebook"], tuple[SampleNotebook, ...])
 
 
 def submit_sample(path: Path) -> None:
-    """Hand in every sample notebook to the class at ``path``."""
+    """Write every sample notebook into ``submitted`` of the class at ``path``."""
     for notebook in sample_notebooks():
         folder = path / "submitted" / notebook.student / notebook.assignment
         folder.mkdir(parents=True, exist_ok=True)
@@ -83,13 +81,13 @@ def submit_sample(path: Path) -> None:
 
 
 def demo(path: Path, *, console: Console | None = None) -> GradeReport:
-    """Make the sample class, grade it, and print the table and the paths of all results.
+    """Make the sample class, grade it, and print the results.
 
-    If an earlier call made the class from the same course, it is only graded, which takes seconds. If no sandbox is
-    possible, it is graded without one, because the samples come from the course itself.
+    If an earlier call made the class from the same version of the course, it is only graded, which takes seconds. If
+    this machine cannot run sandboxes, the class is graded without them, because the course's own samples are harmless.
 
     Args:
-        path: The class directory, which is made if it does not exist.
+        path: The class directory. It is made if it does not exist.
         console: The console to print on; by default standard output.
 
     Raises:
@@ -113,7 +111,9 @@ def _make(path: Path, console: Console) -> None:
         console.print(f"The course has changed: making {path} again.", highlight=False)
         shutil.rmtree(path)
     elif (path / CONFIG_NAME).exists():
-        raise ClassExists(f"{path} is a class of your own. Name another folder: autograder demo FOLDER")
+        raise ClassExists(
+            f"{path} contains another class than the sample. Choose another folder: autograder demo FOLDER"
+        )
     new_class(
         path,
         course.root(),
@@ -126,7 +126,7 @@ def _make(path: Path, console: Console) -> None:
 
 
 def _version(root: Path) -> str:
-    """Return a hash of the masters, of the sample's answers and data, and of the class configuration."""
+    """Return a hash of all files from which the sample class is made."""
     digest = hashlib.sha256(DATA.read_bytes() + CONFIG.encode())
     notebooks = sample_notebooks()
     names = {notebook.assignment for notebook in notebooks}
@@ -140,11 +140,11 @@ def _version(root: Path) -> str:
 
 
 def made_notebook(path: Path, wanted: SampleNotebook) -> NotebookNode:
-    """Return the notebook as the student saved it.
+    """Return a sample student's notebook.
 
     Args:
-        path: The class, which has its sources and its release.
-        wanted: The notebook to make.
+        path: The class, with notebooks in ``source`` and ``release``.
+        wanted: The description of the notebook.
     """
     name = f"{wanted.assignment}{SUFFIX}"
     made = nbformat_nodes.read((path / "release" / wanted.assignment / name).read_text(encoding="utf-8"))
@@ -161,7 +161,7 @@ def made_notebook(path: Path, wanted: SampleNotebook) -> NotebookNode:
 def _changed(
     cell: NotebookNode, wanted: SampleNotebook, right: dict[str, str], answers: dict[str, _Answer]
 ) -> list[NotebookNode]:
-    """Return the cells with which the student's notebook replaces one cell of the released notebook."""
+    """Return the cells that replace one cell of the released notebook in the student's notebook."""
     name = grade_id(cell)
     if not name:
         return [cell]
@@ -184,7 +184,7 @@ def _changed(
 
 
 def _bank_answers(file: str) -> dict[str, _Answer]:
-    """Return the cells of an answer from the bank. A line ``# %% extra`` or ``# %% solution NAME`` begins a cell."""
+    """Read a sample answer from a file in which each cell begins with ``# %% extra`` or ``# %% solution NAME``."""
     text = (course.root() / BANK / file).read_text(encoding="utf-8")
     found: dict[str, _Answer] = {}
     extra: list[str] = []

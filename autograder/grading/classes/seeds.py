@@ -1,4 +1,4 @@
-"""Seeds for random inputs that a student cannot guess, that differ between students, and that can be reproduced."""
+"""Computes the seed of a notebook's random inputs. Students cannot guess it, but the grader can compute it again."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _BYTES = 32
 
 
 def create_secret(path: Path) -> None:
-    """Write a new class secret, which only its owner can read.
+    """Write a new secret of a class into a file that only the owner can read.
 
     Raises:
-        FileExistsError: A secret exists already. A new one would change every student's inputs.
+        FileExistsError: The file exists. A new secret would change the inputs of every student.
     """
     descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     with os.fdopen(descriptor, "w") as file:
@@ -26,7 +26,7 @@ def create_secret(path: Path) -> None:
 
 
 def read_secret(path: Path) -> bytes:
-    """Return the class secret.
+    """Return the secret of a class.
 
     Raises:
         OSError: The file cannot be read.
@@ -39,16 +39,16 @@ def read_secret(path: Path) -> bytes:
 
 
 def seed_for(secret: bytes, student: str, assignment: str, notebook: str, work: str) -> str:
-    """Return the seed of one student's notebook. From this the judge derives a seed for each exercise.
+    """Return the seed of one student's notebook. The judge derives the seed of each exercise from it.
 
     Args:
         secret: The class secret.
         student: The student's id.
         assignment: The assignment's name.
         notebook: The notebook's name.
-        work: A hash of what was handed in. So a student who copies inputs from the feedback into the next submission
-            gets different inputs there.
+        work: A hash of the submitted cells. Because of it, a changed submission gets different inputs. So a student
+            cannot copy inputs from the feedback into the next submission.
     """
-    # The message contains the lengths, so that ("ab", "c") and ("a", "bc") never give the same seed.
+    # With the lengths in the message, ("ab", "c") and ("a", "bc") give different seeds.
     message = "".join(f"{len(part)}:{part};" for part in (student, assignment, notebook, work))
     return hmac.new(secret, message.encode(), hashlib.sha256).hexdigest()[:32]

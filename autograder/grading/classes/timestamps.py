@@ -1,4 +1,4 @@
-"""The time of handing in, from nbgrader's timestamp file. A student may have forged that file."""
+"""Reads the submission time from nbgrader's timestamp file, which a student may have forged."""
 
 from __future__ import annotations
 
@@ -13,24 +13,26 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 TIMESTAMP = "timestamp.txt"
-"""The name of the timestamp file, which lies next to the notebooks."""
+"""The name of nbgrader's timestamp file, which lies next to the notebooks of a submission."""
 SECRET = "submission_secret.txt"
-"""The name of the file that nbgrader's exchange writes next to collected notebooks. nbgrader uses it to decide which
-student a feedback page is for.
+"""The name of a file that nbgrader's exchange writes next to collected notebooks. From this file, nbgrader knows for
+which student a feedback page is.
 """
 _LONGEST = 200
 _HEX = frozenset("0123456789abcdef")
 _EARLIEST = datetime(2024, 5, 23)
 """The earliest accepted time: the release day of ROS 2 Jazzy."""
 _AHEAD = timedelta(days=1)
-"""The maximum time by which a recorded time may be ahead of this machine's clock. It may come from another machine."""
+"""A submission time may be later than this machine's clock by at most this, because it may come from another
+machine.
+"""
 
 
 def read_timestamp(folder: Path) -> str:
-    """Return the text of the timestamp file; empty if it does not exist or is not an ordinary file.
+    """Return the submission time as text, from the timestamp file; empty if there is no such ordinary file.
 
-    If ``./course collect`` collected the work, the file counts only if that command wrote it, because a student can
-    include such a file in a submission.
+    In a class that uses ``./course collect``, return the time that this command recorded instead: the file may come
+    from the student.
     """
     records = CollectedRecords(folder.parent.parent.parent / STATE_NAME)
     if records.is_used:
@@ -48,9 +50,9 @@ def _text(path: Path) -> str | None:
 
 
 def companions(folder: Path) -> dict[str, bytes]:
-    """Return nbgrader's files that accompany a submission into ``autograded`` and ``feedback``, by name.
+    """Return the contents of the files that nbgrader copies from a submission to ``autograded`` and ``feedback``.
 
-    Without these files, `nbgrader release_feedback` does not know which student a page is for.
+    Without these files, `nbgrader release_feedback` does not know for which student a page is.
     """
     found = {}
     stamp = read_timestamp(folder)
@@ -63,7 +65,7 @@ def companions(folder: Path) -> dict[str, bytes]:
 
 
 def is_not_believed(folder: Path) -> bool:
-    """Return True if a submission's timestamp file differs from the time that ``./course collect`` recorded."""
+    """Return True if the timestamp file is ignored, because ``./course collect`` recorded a different time."""
     records = CollectedRecords(folder.parent.parent.parent / STATE_NAME)
     if not records.is_used or not (folder / TIMESTAMP).exists():
         return False
@@ -71,7 +73,7 @@ def is_not_believed(folder: Path) -> bool:
 
 
 def timestamp_text(when: datetime) -> str:
-    """Return a time in nbgrader's format.
+    """Return a time as text in the format of nbgrader's timestamp file.
 
     Args:
         when: A time in UTC.
@@ -80,22 +82,22 @@ def timestamp_text(when: datetime) -> str:
 
 
 def handed_in_at(folder: Path, *, believed: datetime | None = None) -> datetime | None:
-    """Return the time at which the work in a folder was handed in, in UTC; None if no file records it.
+    """Return the submission time of a submission, in UTC; None if it is unknown.
 
     Args:
         folder: The folder of the submission.
-        believed: A time that was accepted earlier, such as the one in the gradebook. It stays accepted even if this
-            machine's clock is wrong today.
+        believed: A time that was accepted earlier, such as the time in the gradebook. It is not checked against this
+            machine's clock again.
 
     Raises:
-        ValueError: The text is not a time, or is a time at which no student can have handed in work.
+        ValueError: The recorded text is not a time, or the time is impossible: in the future, or before ROS 2 Jazzy.
     """
     stamp = read_timestamp(folder)
     if not stamp:
         return None
     from nbgrader.utils import (
         parse_utc,
-    )  # imported here because it takes half a second, and few classes need it
+    )  # imported here because the import takes half a second, and few classes need it
 
     try:
         at: datetime = parse_utc(stamp)
@@ -103,7 +105,7 @@ def handed_in_at(folder: Path, *, believed: datetime | None = None) -> datetime 
         raise ValueError(f"{folder / TIMESTAMP} does not contain a time: {stamp[:60]!r}") from error
     if at != believed and not _EARLIEST <= at <= datetime.now(tz=UTC).replace(tzinfo=None) + _AHEAD:
         raise ValueError(
-            f"{folder / TIMESTAMP} says {stamp[:60]}, when no student can have handed in work for this course: "
-            "write the right time into it, or remove it"
+            f"{folder / TIMESTAMP} contains {stamp[:60]}, which is in the future or before this course existed: "
+            "write the right time into the file, or remove the file"
         )
     return at

@@ -73,7 +73,7 @@ def test_what_the_conversion_honours_is_not_refused(tiny: TinyClass, line: str) 
 )
 def test_what_it_does_not_know_is_refused(tiny: TinyClass, line: str, option: str) -> None:
     tiny.configure(line)
-    with pytest.raises(ClassIncomplete, match=rf"sets c\.{option}, .*delete that line"):
+    with pytest.raises(ClassIncomplete, match=rf"sets c\.{option}, .*delete the line"):
         check_configuration(ClassDirectory(tiny.path))
 
 

@@ -163,7 +163,7 @@ def test_an_assignment_that_the_judge_cannot_grade_holds_up_no_other(
     tiny.submit("ada", 4, 7)
     report = tiny.grade()
     assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
-    assert "carries points, but" in refused(report)
+    assert "has points, but" in refused(report)
     assert report.exit_code == 2
     assert tiny.grade(assignments=["lab_1_2"]).exit_code == 0
     with pytest.raises(MasterUnusable, match="own"):

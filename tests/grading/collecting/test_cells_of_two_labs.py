@@ -79,7 +79,7 @@ def test_the_instructor_says_for_which_of_them_it_is_and_grade_repeats_what_is_l
         report = gathered(klass, tmp_path, file, assignment=assignment)
         assert [one.assignment for one in report.having(State.PLACED)] == [assignment]
     remarks = remarks_on(klass.grade(assignments=["lab_1_2"]).rows)
-    assert remarks["ada", "lab_1_2"].startswith("This notebook has the checks of lab_1_3, too.")
+    assert remarks["ada", "lab_1_2"].startswith("This notebook also has the checks of lab_1_3.")
 
 
 def test_a_copied_answer_of_another_lab_makes_no_second_lab(klass: TinyClass, tmp_path: Path) -> None:

@@ -187,7 +187,7 @@ def test_a_cell_that_is_not_clear_changes_nothing_and_has_a_sentence(
 
 def test_two_instructors_at_once_are_told_so(klass: TinyClass, tmp_path: Path) -> None:
     archive = blackboard(klass, tmp_path, ada=(3, 1))
-    with ClassDirectory(klass.path).lock(), pytest.raises(ClassBusy, match="is at work in"):
+    with ClassDirectory(klass.path).lock(), pytest.raises(ClassBusy, match="is grading"):
         collect(klass.path, [archive])
     assert placed(collect(klass.path, [archive])).keys() == {"ada"}
 

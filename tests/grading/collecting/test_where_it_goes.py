@@ -154,7 +154,10 @@ def test_what_has_no_place_is_repeated_until_it_has_one(
     assert any(label in notice for notice in export(klass.path, "csv").notices)
     klass.submit("ada", 1, 1)
     edit(klass, "rar", use="no")
-    assert any("it was edited since: type" in one.reason for one in klass.grade().refused)
+    assert any(
+        "the file was edited after the last collect: to use the changes, type" in one.reason
+        for one in klass.grade().refused
+    )
     collect(klass.path)
     assert klass.grade().exit_code == 0
     assert not any(label in notice for notice in export(klass.path, "csv").notices)
@@ -288,7 +291,7 @@ def test_a_notebook_of_another_assignment_that_was_put_there_by_hand_is_refused_
     assert fake_engine.ran == ["ben"]
     said = {row.reason for row in report.rows if row.student == "ada" and row.assignment == "lab_1_2"}
     reason = (
-        "The cells of lab_1_2.ipynb are those of another assignment: the notebook of this one is missing."
+        "The cells of lab_1_2.ipynb belong to another assignment: hand in the notebook of this assignment."
     )
     assert said == {reason}
     page = (klass.path / "feedback" / "ada" / "lab_1_2" / "lab_1_2.html").read_text()

@@ -47,10 +47,10 @@ def said(tiny: TinyClass) -> tuple[str, str]:
 
 def test_a_class_hears_of_a_task_that_was_changed(tiny: TinyClass, course: Path) -> None:
     tiny.submit("ada", 4, 7)
-    assert "was changed since" not in "".join(said(tiny))
+    assert "have changed since" not in "".join(said(tiny))
     change(course, "TODO: return ten.", "TODO: return twelve.")
     for words in said(tiny):
-        assert "lab_1_2: its master in the course was changed since this class got its source" in words
+        assert "lab_1_2: the course's tasks have changed since this class got its notebook" in words
         assert f"./course renew-class {tiny.path} --assignment lab_1_2" in words
 
 
@@ -64,29 +64,29 @@ def test_a_class_hears_of_a_change_in_a_course_that_has_moved(
     shutil.copytree(course, tmp_path / "clone")
     change(tmp_path / "clone", "TODO: return ten.", "TODO: return twelve.")
     monkeypatch.setattr(changed_masters, "course", SimpleNamespace(root=lambda: tmp_path / "clone"))
-    assert "lab_1_2: its master in the course was changed" in "\n".join(said(tiny))
+    assert "lab_1_2: the course's tasks have changed" in "\n".join(said(tiny))
 
 
 def test_a_class_that_wrote_nothing_down_says_so_until_it_is_renewed(tiny: TinyClass, course: Path) -> None:
     tiny.submit("ada", 4, 7)
     (tiny.path / ".autograder" / "class.db").unlink()
     for words in said(tiny):
-        assert "did not record the masters of its sources" in words
+        assert "was made by an older version" in words
         assert f"./course renew-class {tiny.path}" in words
     renew(tiny.path, course)
-    assert "made before" not in "".join(said(tiny))
+    assert "made by an older version" not in "".join(said(tiny))
 
 
 def test_a_corrected_typo_is_no_news(tiny: TinyClass, course: Path) -> None:
     tiny.submit("ada", 4, 7)
     change(course, "Two answers, two checks.", "Two answers and two checks.")
-    assert "was changed since" not in "".join(said(tiny))
+    assert "have changed since" not in "".join(said(tiny))
 
 
 def test_a_course_that_has_gone_is_no_news(tiny: TinyClass, course: Path) -> None:
     tiny.submit("ada", 4, 7)
     shutil.rmtree(course)
-    assert "was changed since" not in "".join(said(tiny))
+    assert "have changed since" not in "".join(said(tiny))
 
 
 def test_a_class_is_brought_up_to_date_and_keeps_what_it_had(tiny: TinyClass, course: Path) -> None:
@@ -99,7 +99,7 @@ def test_a_class_is_brought_up_to_date_and_keeps_what_it_had(tiny: TinyClass, co
     (kept,) = (tiny.path / ".autograder" / "sources-before").glob("*/lab_1_2/lab_1_2.ipynb")
     assert "return ten" in kept.read_text()
     assert str(kept.parents[1]) in lines[-1]
-    assert "was changed since" not in "".join(said(tiny))
+    assert "have changed since" not in "".join(said(tiny))
     assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
 
 
@@ -124,7 +124,7 @@ def test_only_what_the_class_has_is_brought_up_to_date(tiny: TinyClass, course: 
 def test_a_class_of_ones_own_assignments_is_not_renewed(tiny: TinyClass, course: Path) -> None:
     (tiny.path / "source" / "lab_1_2").rename(tiny.path / "source" / "own")
     released = sorted((tiny.path / "release").rglob("*"))
-    with pytest.raises(GradingError, match=r"none of the course's assignments\. It has: own"):
+    with pytest.raises(GradingError, match=r"none of the course's assignments\. Its assignments are: own"):
         renew(tiny.path, course)
     assert sorted((tiny.path / "release").rglob("*")) == released
 

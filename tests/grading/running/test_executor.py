@@ -214,7 +214,7 @@ def test_a_second_batch_in_another_process_says_so_and_stops(tiny: TinyClass, wi
             check=False,
         )
     assert second.returncode != 0
-    assert f"Another grading run is at work in {tiny.path} (process {os.getpid()}, since" in second.stderr
+    assert f"Another run is grading {tiny.path} (process {os.getpid()}, since" in second.stderr
 
 
 def test_the_worker_says_why_it_could_not_begin(tiny: TinyClass, monkeypatch: pytest.MonkeyPatch) -> None:
