@@ -41,9 +41,7 @@ all of this would be shown as typed.
 
 
 def prepare() -> None:
-    """Load everything that a desk needs, such as every highlighted language, because the desk itself cannot open
-    files.
-    """
+    """Load everything that a desk needs, such as all lexers, because the desk itself cannot open files."""
     gc.disable()
     for name, *_ in pygments.lexers.get_all_lexers():
         pygments.lexers.find_lexer_class(name)
