@@ -9,9 +9,9 @@ An edit looks like a diff without line numbers::
     -        self.i += 1
     +        self.i += 2
 
-A line that begins with ``-`` is removed from the base. A line that begins with ``+`` is added. A line that begins
-with a space stays unchanged: it shows where the edit belongs, in case the removed lines occur several times. An
-empty line stands for an unchanged empty line. ``...`` separates two places of the base.
+A line that begins with ``-`` is removed from the base. A line that begins with ``+`` is added. A line that begins with
+a space stays unchanged. Such a line shows which place is meant if the removed lines occur several times. An empty line
+stands for an unchanged empty line. ``...`` separates two places of the base.
 
 The edit of a workspace begins with a line that says what the answer shows. Sections follow, each for a file or
 folder:

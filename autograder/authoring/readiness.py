@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 ENOUGH = {"right": 5, "wrong": 8}
 """The minimum numbers of right and wrong answers that an exercise needs in the bank. An exercise with fewer answers
-works, but nobody knows whether its judge is fair.
+works, but its author cannot know whether its verdicts are fair.
 """
 MISTAKES = "docs/mistakes.md"
 """The page that explains each diagnosis to students. The key of the diagnosis is the heading of its paragraph."""

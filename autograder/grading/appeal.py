@@ -108,7 +108,7 @@ def _why_nothing(
         for row in known.rows if known else ():
             if row.exercise == exercise_id:
                 return (
-                    f"There is no evidence of {exercise_id} by {student}. The state in the table is: {row.state}"
+                    f"No evidence of {exercise_id} by {student} is stored. The state in the table is: {row.state}"
                     f"{f', {row.diagnosis}' if row.diagnosis else ''}. {row.reason}".rstrip()
                     + " If the check never began, for example after a cell that raised an error, no evidence exists. "
                     f"If an older version of the course graded the check, type: {again} --again"

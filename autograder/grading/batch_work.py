@@ -69,7 +69,7 @@ class Work:
         results: The results by notebook, until they are entered into the gradebook.
         rows: The results as rows of the report; None if the submission has not been graded yet.
         written: True if the gradebook contains these results.
-        shown: The hash of the gradebook's entry from which the feedback pages were made; empty if there are no pages.
+        shown: The hash of the gradebook's entry from which the feedback pages were made; empty without pages.
     """
 
     submission: Submission

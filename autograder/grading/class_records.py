@@ -59,7 +59,7 @@ class Entered:
         scores: The points of each check cell, by notebook and grade_id.
         rows: The results as rows of the report, with the recognized mistakes.
         course: The version of the course that graded the submission.
-        shown: The hash of the gradebook's entry from which the feedback pages were made; empty if there are no pages.
+        shown: The hash of the gradebook's entry from which the feedback pages were made; empty without pages.
     """
 
     fingerprint: str

@@ -115,7 +115,7 @@ def test_damaged_evidence_is_named(graded: TinyClass, fake_engine: FakeEngine) -
         write_appeal(graded.path, "ada", ID)
     with contextlib.closing(sqlite3.connect(graded.path / ".autograder" / "class.db")) as book, book:
         book.execute("UPDATE evidence SET checks = substr(checks, 1, length(checks) - 3)")
-    with pytest.raises(GradingError, match=r"There is no evidence of .*--student ada --again"):
+    with pytest.raises(GradingError, match=r"No evidence of .*--student ada --again"):
         write_appeal(graded.path, "ada", ID)
 
 

@@ -131,9 +131,9 @@ def test_only_the_named_students_and_assignments(tiny: TinyClass, fake_engine: F
     tiny.submit("ben", 2)
     tiny.grade(students=["ben"])
     assert "ada,lab_1_2,lab_1_2.talker,10,10,passed" in (tiny.path / "grades.csv").read_text()
-    with pytest.raises(GradingError, match="no student named eve"):
+    with pytest.raises(GradingError, match="No student is named eve"):
         tiny.grade(students=["eve"])
-    with pytest.raises(GradingError, match="no assignment named big"):
+    with pytest.raises(GradingError, match="No assignment is named big"):
         tiny.grade(assignments=["big"])
 
 

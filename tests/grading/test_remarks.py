@@ -45,9 +45,9 @@ def test_it_is_said_everywhere_also_when_nothing_has_changed_since(
         ]
         assert words in report_json(report).decode()
     page = (tiny.path / "feedback" / "eve" / "lab_1_2" / "lab_1_2.html").read_text()
-    assert "What it asks for is in another cell" in page
-    assert "What it asks for is in another cell" in write_report(tiny.path).read_text()
-    assert "What it asks for is in another cell" not in write_report(tiny.path, names=False).read_text()
+    assert "Another cell contains the answer" in page
+    assert "Another cell contains the answer" in write_report(tiny.path).read_text()
+    assert "Another cell contains the answer" not in write_report(tiny.path, names=False).read_text()
 
 
 def test_nbgraders_own_command_says_it_too(

@@ -59,7 +59,7 @@ class Submission:
 
 @dataclass(frozen=True)
 class RefusedFile:
-    """A file or folder in ``submitted`` that cannot be graded where it is.
+    """A file or folder in ``submitted`` that cannot be graded.
 
     Attributes:
         path: The file or folder.

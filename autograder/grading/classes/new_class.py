@@ -70,8 +70,8 @@ c.HTMLExporter.filters = {{"markdown2html": "autograder.grading.returning.page_e
 # The time zone of due dates in formgrader, and of the times that `{command} grade` shows.
 c.NbGraderAPI.timezone = "{timezone}"
 
-# `nbgrader export` writes CSV that a spreadsheet does not execute. The file needs another name than grades.csv, which
-# `{command} grade` writes.
+# `nbgrader export` writes CSV that a spreadsheet does not execute. The file must not have the name grades.csv, because
+# `{command} grade` writes a file with that name.
 c.ExportApp.plugin_class = "autograder.grading.export.SafeCsvExport"
 c.ExportPlugin.to = "nbgrader_export.csv"
 

@@ -112,7 +112,7 @@ def _make(path: Path, console: Console) -> None:
         shutil.rmtree(path)
     elif (path / CONFIG_NAME).exists():
         raise ClassExists(
-            f"{path} contains another class than the sample. Choose another folder: autograder demo FOLDER"
+            f"{path} contains a class that is not the sample. Choose another folder: autograder demo FOLDER"
         )
     new_class(
         path,

@@ -29,7 +29,7 @@ machine.
 
 
 def read_timestamp(folder: Path) -> str:
-    """Return the submission time as text, from the timestamp file; empty if there is no such ordinary file.
+    """Return the submission time as text, from the timestamp file; empty if no ordinary file has that name.
 
     In a class that uses ``./course collect``, return the time that this command recorded instead: the file may come
     from the student.

@@ -127,7 +127,7 @@ class SubmissionEntry:
         return min(self.penalty, max(0.0, self.raw))
 
     def why_late(self, zone: tzinfo) -> str:
-        """Return the submission time and the due date in a sentence, in a time zone; empty if there is no penalty."""
+        """Return the submission time and the due date as text, in a time zone; empty without a late penalty."""
         if not self.taken_off:
             return ""
         # The due date may have been removed after the penalty was entered.

@@ -7,8 +7,8 @@ separate ROS domain.
 The master marks these cells with a tag. A cell that makes something, such as ``colcon build``, has no such tag,
 because a later check may need the result.
 
-After the last cell with points, there is no check. All cells that write files or run terminal commands are skipped
-there, too.
+After the last cell with points, all cells that write files or run terminal commands are skipped, too, because no check
+follows.
 """
 
 from __future__ import annotations

@@ -182,8 +182,8 @@ class _Sorting:
     def _choose(self, name: str, places: Sequence[int]) -> int:
         """Return the index of the copy of a cell that counts: the last copy before its check.
 
-        An unchanged stub counts only if all copies are unchanged. A copy after the check counts only if there is no
-        copy before the check.
+        An unchanged stub counts only if all copies are unchanged. A copy after the check counts only if none stands
+        before the check.
         """
         stub = self._master[name].source.strip()
         answered = [place for place in places if self._submitted[place].source.strip() != stub] or places
@@ -202,7 +202,7 @@ class _Sorting:
         return before[max(before)] if before else _START
 
     def _is_in_its_place(self, name: str, place: int) -> bool:
-        """Return True if the cell at an index stands where the missing answer cell should stand."""
+        """Return True if the cell at an index stands at the place of the missing answer cell."""
         names, anchor = list(self._master), self._anchor(place)
         behind = {at: other for other, at in self._chosen.items() if at > place}
         return (

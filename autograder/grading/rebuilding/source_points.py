@@ -75,7 +75,7 @@ def check_release(directory: ClassDirectory, cells: dict[str, tuple[GradedCell, 
     """Check that the gradebook contains each cell of the sources with the same points.
 
     Raises:
-        ClassIncomplete: There is no assignment, or the gradebook lacks a cell or has different points for it.
+        ClassIncomplete: The class has no assignment, or the gradebook lacks a cell or has different points for it.
     """
     if not cells:
         raise ClassIncomplete(

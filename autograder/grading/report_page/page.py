@@ -65,7 +65,7 @@ def write_report(
         table = read_table(directory, sections)
         table.check_usable()
         if not figures.handed_in(table):
-            raise GradingError("There are no submissions yet, so there is nothing to report.")
+            raise GradingError("The class has no submissions yet, so nothing can be reported.")
         page = _page(directory, store, table, names=names, folder=to.parent)
         with clear_place_errors(to, "--output"):
             write_whole(to, page.encode())

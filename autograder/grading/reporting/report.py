@@ -33,7 +33,7 @@ class GradeReport:
     Attributes:
         path: The class.
         rows: The rows, sorted by student and then in the order of the course.
-        refused: Files in ``submitted`` that cannot be graded where they are.
+        refused: Files and folders in ``submitted`` that cannot be graded, each with the reason.
         problems: Sentences about other failures. No student has points because of a failure.
         notices: Sentences for the instructor that are not about a failure.
         would_change: After a dry run, the points that would change; None if points were entered.

@@ -172,8 +172,7 @@ def markdown_to_html(context: Any, source: str) -> str:
     """Return a Markdown cell as HTML, cleaned unless the cell comes from the master. Replaces nbconvert's filter.
 
     For formgrader, ``nbgrader_config.py`` sets this filter as ``HTMLExporter.filters["markdown2html"]``. A picture
-    that is not attached to the cell is left out. nbconvert's filter would raise an error, so that there would be no
-    page.
+    that is not attached to the cell is left out. nbconvert's filter would raise an error, and no page would be made.
     """
     cell = context.get("cell", {})
     rendered = MarkdownWithMath(renderer=Renderer(escape=False)).render(source)

@@ -59,7 +59,7 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
         assignment: The assignment whose submissions are compared; all assignments if empty.
 
     Raises:
-        GradingError: There are no submissions, the assignment does not exist, or a source notebook cannot be used.
+        GradingError: No submission exists, the assignment does not exist, or a source notebook cannot be used.
     """
     known = directory.assignments()
     check_known([assignment] if assignment else [], known, "assignment")
@@ -68,7 +68,7 @@ def find_similar(directory: ClassDirectory, assignment: str = "") -> Similar:
     troubles = list(_not_looked_at(directory, refused, assignment))
     if not submissions and not troubles:
         raise GradingError(
-            f"There are no submissions yet{f' for {assignment}' if assignment else ''}, so there is nothing to compare."
+            f"The class has no submissions yet{f' for {assignment}' if assignment else ''}, so nothing can be compared."
         )
     given = GivenTexts(given_texts(directory))
     pairs: list[Pair] = []

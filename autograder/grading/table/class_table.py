@@ -32,7 +32,7 @@ class ClassTable:
         roster: The students of the class.
         entries: The entries of the gradebook, by student and assignment.
         stale: Submissions, as student/assignment, that were never graded, or changed after they were graded.
-        unplaced: Collected files for which a person has to decide where they belong.
+        unplaced: Collected files that belong to no known submission. A person has to assign them.
         unusable: Assignments without rows because a source notebook cannot be used, by name, each with the reason.
         notices: Sentences about probable mistakes of the instructor in ``students.csv``. They contain students' ids.
         absent: The points of students who handed in nothing: None for no points, or zero if the instructor chose zero.

@@ -23,7 +23,7 @@ class Difference:
         assignment: The assignment's name.
         exercise: The exercise's id, or ``late``.
         before: The points before; None if there were none.
-        after: The points now; None if there are no points now.
+        after: The points after; None if there are none.
         diagnosis_before: The diagnosis before.
         diagnosis_after: The diagnosis now.
         note: A remark for the instructor; empty if there is none.

@@ -181,5 +181,5 @@ def test_the_command_says_where_the_page_is(graded: TinyClass, tiny: TinyClass, 
 
 
 def test_without_work_there_is_nothing_to_report(tiny: TinyClass) -> None:
-    with pytest.raises(GradingError, match="There are no submissions yet"):
+    with pytest.raises(GradingError, match="The class has no submissions yet"):
         write_report(tiny.path)

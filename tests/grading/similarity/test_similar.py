@@ -139,7 +139,7 @@ def test_the_command_prints_a_table_a_hint_and_the_page(class_: TinyClass, tmp_p
     assert (tmp_path / "there" / "page.html").is_file()
     code, output = run(class_, "lab_9_9")
     assert code == 2
-    assert "no assignment named lab_9_9" in output
+    assert "No assignment is named lab_9_9" in output
 
 
 def test_two_students_are_one_pair_however_many_cells_they_share(class_: TinyClass) -> None:
@@ -236,7 +236,7 @@ def test_one_student_is_compared_with_nobody(class_: TinyClass) -> None:
 def test_where_nothing_was_handed_in_there_is_nothing_to_compare(class_: TinyClass) -> None:
     code, output = run(class_)
     assert code == 2
-    assert "There are no submissions yet" in output
+    assert "The class has no submissions yet" in output
     assert not (class_.path / "similar.html").exists()
     with pytest.raises(GradingError, match="for lab_1_2"):
         found(class_, "lab_1_2")
