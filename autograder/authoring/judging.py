@@ -35,7 +35,7 @@ T = TypeVar("T", bound=Judgeable)
 
 @dataclass(frozen=True)
 class Turn(Generic[T]):
-    """An order to judge an answer once, with one seed.
+    """An answer to judge once, with one seed.
 
     Attributes:
         subject: The answer to judge.

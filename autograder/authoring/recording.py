@@ -94,7 +94,7 @@ def recording(exercise_id: str) -> str:
 
 
 def unsolved(exercise_id: str) -> Verdict | None:
-    """Judge the notebook without a solution, as students get it. Return None if it ends before its check.
+    """Return the verdict on the notebook as students get it; None if the notebook ends before its check.
 
     Raises:
         CannotRecord: No master checks the exercise, or its master cannot be used.

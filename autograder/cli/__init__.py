@@ -23,8 +23,8 @@ GROUPS = {
 _HERE = (instructors.new_class, instructors.hand_out, students.lab, students.progress, students.reset)
 IN_A_COURSE = {str(command.name) for command in (*_HERE, *authors.COMMANDS)}
 """The names of the commands that use the course that contains the current folder. The command `check` uses it as well,
-except with --box. The other commands never do, because the current folder may contain students' work with a changed
-copy of a course. They use the course of a class, which `new-class` recorded.
+except with --box. Commands for a class never do, because the current folder may contain students' work with a changed
+copy of a course. They use the course that `new-class` recorded.
 """
 
 

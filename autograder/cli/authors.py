@@ -83,7 +83,7 @@ def record(exercises: tuple[str, ...], only_check: bool) -> None:
     "interfaces",
     multiple=True,
     metavar="PACKAGE/KIND/TYPE",
-    help="A new interface type that the chapter has to define; may be given several times.",
+    help="A new message, service or action type that the chapter defines; may be given several times.",
 )
 def new_exercise(exercise: str, recipe: str, chapter: str | None, interfaces: tuple[str, ...]) -> None:
     """Make the folder of a new lab with one working EXERCISE, which you then change.

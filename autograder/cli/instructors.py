@@ -259,7 +259,7 @@ def grade(
 @click.option(
     "--unsafe-no-sandbox",
     is_flag=True,
-    help="Run submissions even if no sandbox is possible on this machine. They then have all your rights.",
+    help="Run submissions even if no sandbox is possible on this machine. The submissions then have all your rights.",
 )
 def worker(scheduler: str | None, jobs: int | None, name: str | None, unsafe_no_sandbox: bool) -> None:
     """Run submissions for `grade --scheduler`, until you press Ctrl-C or the scheduler ends."""

@@ -115,8 +115,8 @@ class ClassStore:
     def keep(self, task: Task, execution: Execution) -> Execution:
         """Store the result and the evidence of a notebook. Return the result without the evidence.
 
-        They replace the notebook's earlier result and evidence. But evidence for points in the gradebook stays,
-        because an appeal may need it. If the grader itself failed, store nothing, so that the next run tries again.
+        The notebook's earlier result and evidence are deleted, except evidence for points in the gradebook, which an
+        appeal may need. If the grader itself failed, store nothing, so that the next run tries again.
         """
         result = replace(execution, evidence={})
         if execution.trouble:

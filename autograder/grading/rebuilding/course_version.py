@@ -30,10 +30,10 @@ def course_version() -> str:
     Results are stored under this hash. When it changes, for example after a fix of an exercise, graded submissions are
     run again. All machines of a cluster must have the same hash.
 
-    The hash covers every file of the folders ``autograder`` and ``environment``, without exceptions. Of
-    ``solutions/``, it covers the exercises, their reference outputs, the chapters' interfaces and the workspace. It
-    does not cover the masters, because a class is graded by its own copies in ``source/``, whose changes are found
-    separately.
+    The hash covers the files of the folders ``autograder`` and ``environment``, even files that seem to influence no
+    grade. Of ``solutions/``, it covers the exercises, their reference outputs, the chapters' interfaces and the
+    workspace. It does not cover the masters, because a class is graded by its own copies in ``source/``, whose changes
+    are found separately.
     """
     digest = hashlib.sha256()
     for name, path in counted_files():

@@ -166,7 +166,7 @@ class _Matching:
         return [(place, cell) for place, cell in enumerate(self._submitted) if place not in taken]
 
     def _is_telling(self, missing: Known) -> bool:
-        """Return True if this cell's given part identifies the cell: no other cell of the master contains that part."""
+        """Return True if the given part of a cell identifies it: no other cell of the master contains this part."""
         others = (text for cell in self._master.values() if cell is not missing for text in cell.texts)
         return bool(missing.given.strip()) and not any(_has_lines(text, missing.given) for text in others)
 

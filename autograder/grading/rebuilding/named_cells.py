@@ -47,7 +47,7 @@ class NamedCells:
         return [target for target, count in shared.items() if most and count == most]
 
     def assignments(self, cells: Iterable[SubmittedCell]) -> list[str]:
-        """Return the assignments with a graded cell that has the name or the id of one of the given cells."""
+        """Return the assignments whose graded cells are among the given cells, recognized by their names or ids."""
         marks = {mark for cell in cells for mark in _marks(cell)}
         return sorted({self._graded[mark] for mark in marks & self._graded.keys()})
 

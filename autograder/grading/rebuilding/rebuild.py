@@ -212,9 +212,9 @@ class _Sorting:
         )
 
     def _late_checks(self) -> dict[str, str]:
-        """Return the checks that have to move down, because their answer is in a later cell.
+        """Return the checks that have to move down, because the answer is in a later cell.
 
-        Each is returned with the named cell after which it has to stand.
+        The value for each check is the name of the cell after which the check has to stand.
         """
         names = list(self._master)
         late: dict[str, str] = {}

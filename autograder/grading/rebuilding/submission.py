@@ -26,7 +26,7 @@ MAX_CELL_CHARACTERS = 100_000
 MAX_CHARACTERS = 1_000_000
 """The maximum length of the text of all cells together, in characters."""
 LONGEST_REASON = 300
-"""The maximum length of a reason from the desk why a file cannot be read, in characters."""
+"""The maximum length, in characters, of the desk's reason why a file cannot be read."""
 LONGEST_NAME = 200
 """The maximum length of the name of a cell or picture, in characters."""
 HARMLESS_LENGTH = 6_000

@@ -72,7 +72,7 @@ def cards_first(notebook: NotebookNode) -> list[tuple[bool, bool]]:
 
 
 def mark_waiting(notebook: NotebookNode, cells: Mapping[str, CellEntry]) -> None:
-    """Mark the cells without final points, which a person or the judge still has to give.
+    """Mark the cells whose points a person or the judge still has to give.
 
     Args:
         notebook: A graded notebook. It is changed.

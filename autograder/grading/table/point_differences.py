@@ -1,4 +1,4 @@
-"""Finds differences in points, between two runs, or between the gradebook and a dry run."""
+"""Finds the points that differ between two runs, or between the gradebook and a dry run."""
 
 from __future__ import annotations
 
