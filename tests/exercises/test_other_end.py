@@ -49,4 +49,4 @@ def test_a_string_with_braces_left_in_it_lacks_its_f() -> None:
     said = Event(0.6, "log", "node", {"text": "I heard: {message.data}"})
     parts = [Part(part.name, part.inputs, [survey, sent, said]) for part in stored.parts]
     told, _ = trial.diagnose(exercises.get("lab_1_2.listener"), Evidence(parts, stored))
-    assert "with an f before the string" in told.next_step
+    assert "with an f before the quotation mark" in told.next_step

@@ -37,5 +37,5 @@ def test_what_is_said_again_is_told_with_its_count(times: tuple[int, ...], words
 
 
 def test_empty_lines_are_no_words() -> None:
-    assert "it says nothing" in told("not_logged", seen((TEXTS[0], [""]), (TEXTS[1], ["", " "])))
+    assert "prints nothing when" in told("not_logged", seen((TEXTS[0], [""]), (TEXTS[1], ["", " "])))
     assert "said “hello”" in told("not_logged", seen((TEXTS[0], ["", "hello"])))

@@ -1,1 +1,1 @@
-"""One module for each kind of subject: its scenario, criteria and common mistakes."""
+"""The recipes: one module for each kind of subject, with its scenario, criteria and common mistakes."""

@@ -1,8 +1,8 @@
-"""The common part of declared exercises: an author declares the right output, and everything else follows from that.
+"""The common part of declared exercises: the author declares the right output, and the kit makes everything else.
 
-The kit makes the scenario, the verdict and the mistakes. A ``Relay`` listens on one topic and publishes on another. A
-``Machine`` has a state that a service changes and a topic reports. A common wrong answer is described as a variant of
-the function that returns the right output.
+The kit makes the scenario, the criteria and the mistakes. A ``Relay`` listens on one topic and publishes on another. A
+``Machine`` has a state that a service changes and a topic reports. The author describes a common wrong answer as a
+variant of the function that returns the right output.
 """
 
 from __future__ import annotations
@@ -21,21 +21,22 @@ if TYPE_CHECKING:
     from autograder.kit.model import Bench, Exercise
 
 SILENCE = object()
-"""What the author's function returns if the subject must publish nothing: no value, or no word of a state."""
+"""The author's function returns this if the subject must publish nothing: no value, or no word about a state."""
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class Declared:
-    """The base class of declared exercises.
+    """The base class of exercises in which the author declares the right output.
 
     Args:
         exercise_id: The lab's folder and the file's name, such as ``"lab_8_1.filter"``.
         title: The title of the card, naming the lab and the subject.
         task: One sentence that states the task.
         scenario: Drives the bench.
-        roles: The roles of the subject's endpoints, the most telling first.
-        given: The kind of event that records an input that the subject has certainly received. A subject that got
-            fewer inputs than the reference solution passes no criterion about its outputs.
+        roles: The roles of the subject's endpoints. The first role is the one whose endpoint shows most about the
+            subject.
+        given: The kind of event that records an input that the subject has certainly received. If a subject got fewer
+            inputs than the reference solution, it fails the criteria about its outputs.
     """
 
     def __init__(
@@ -54,7 +55,7 @@ class Declared:
         self._tolerance = 1e-6
 
     def asks(self, name: str, points: float, title: str, role: str, words: str = "") -> None:
-        """Add a criterion: the subject's endpoints of a role have the same names and types as the reference solution's.
+        """Add the criterion that the subject's endpoints of a role have the same names and types as the reference's.
 
         Args:
             name: A stable key for the criterion.
@@ -105,26 +106,26 @@ class Declared:
 
 
 def variant(right: Function, changed: Function | Mapping[str, Any]) -> Function | partial[Any]:
-    """Return a wrong function: the given one, or the right one with other values for some of its arguments."""
+    """Return a wrong function: ``changed`` itself, or ``right`` with other values for some of its arguments."""
     return partial(right, **changed) if isinstance(changed, Mapping) else changed
 
 
 def fields(seen: Part, kind: str) -> list[Mapping[str, Any]]:
-    """Return the fields of each event of this kind."""
+    """Return the fields of each event of a kind."""
     return [event.data["fields"] for event in seen.of(kind)]
 
 
 def picked(seen: Part, kind: str, path: str) -> list[Any]:
-    """Return one field, given by its path, of each event of this kind."""
+    """Return the value of one field of each event of a kind."""
     return [pick(one, path) for one in fields(seen, kind)]
 
 
 def pick(fields: Any, path: str) -> Any:
-    """Return the value of the field with a path such as ``"pose.position.x"``."""
+    """Return the value of a field, given by its path, such as ``"pose.position.x"``."""
     return reduce(lambda part, key: part[key], path.split("."), fields)
 
 
 def put(fields: dict[str, Any], path: str, given: Any) -> None:
-    """Set the value of the field with this path."""
+    """Set the value of a field, given by its path."""
     *above, last = path.split(".")
     reduce(lambda part, key: part.setdefault(key, {}), above, fields)[last] = given

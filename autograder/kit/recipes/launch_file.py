@@ -1,8 +1,9 @@
-"""A launch file that starts two programs, a publisher and a listener that says what it hears, and remaps their topic.
+"""A recipe for a launch file that starts a publisher and a listener, and remaps their topic to a new name.
 
-The judge listens to one and publishes to the other under the new name. The programs are not changed: the launch
-reports its processes, which shows which of them got a rule. Each program is then started again without its rule: if
-it still uses the new name, the name is in its code.
+The judge listens to the publisher and publishes to the listener, both under the new name. The remapping must come from
+the launch file, not from the programs' code. So the launch reports the command line of each process, which shows its
+remapping rules. The judge then starts each program again without its rule: if the program still uses the new name, the
+name is in its code.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Part
 
 NODES = 2
-"""The number of programs that should be started, each with a rule."""
+"""The number of programs that the launch file should start, each with a remapping rule."""
 MESSAGES = 2
 """The number of messages from the publisher to wait for."""
 SAYING = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
@@ -36,18 +37,18 @@ SAYING = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
 BEGINNING = {Pace.FAST: 20.0, Pace.REAL_TIME: 40.0}
 """Time limit in seconds of wall time for a launch to start its first process or to end."""
 PAUSE = {Pace.FAST: 3.0, Pace.REAL_TIME: 10.0}
-"""The maximum pause of a launch between its first process and its second, in seconds of wall time."""
+"""The maximum time between the first process of a launch and its second, in seconds of wall time."""
 LATE = 4.5
-"""Time limit in seconds of wall time for the publisher to be heard, even if its first message was lost and the next
-ones are delayed until its writer's heartbeat, 3 s later (Fast DDS).
+"""Time limit in seconds of wall time to receive the publisher's messages. In Fast DDS, if the first message is lost,
+the next ones may be delayed until the heartbeat of the publisher, 3 s later.
 """
 PART = "launching"
 MOST = 4
-"""The maximum number of programs that are started without their rules, if a launch file starts many."""
+"""The maximum number of programs that the judge starts without their rules, if a launch file starts many."""
 
 
 class Launched:
-    """The programs that a launch file started, as the judge saw them.
+    """What the judge saw of the programs that a launch file started.
 
     Args:
         evidence: All evidence.
@@ -77,7 +78,8 @@ class Launched:
             {process for role, name, process in self._ends if (role, name) == (side, self.topic)}
             for side in ("publisher", "subscription")
         )
-        """The ids of the processes that publish under the new name, and of those that subscribe; 0 for an unknown one.
+        """The ids of the processes that publish under the new name, and of those that subscribe to it. The id 0 stands
+        for an unknown process.
         """
         self._given = {_lower(process.pid) for process in self._processes if self._has_a_rule(process.argv)}
         self._own = {
@@ -85,13 +87,13 @@ class Launched:
             for process in self._processes
             if any(package in word for word in process.argv) and not _is_a_tool(process.argv)
         }
-        """The processes of the package's programs. A tool that has a program's name among its arguments may also be
-        included.
+        """The ids of the processes that run programs of the package. A tool whose arguments contain the package's name
+        may be included.
         """
 
     @property
     def heard(self) -> list[str]:
-        """The texts of the messages that came under the new name, except the judge's own."""
+        """The texts of the messages that arrived under the new name, except the judge's own."""
         own = str(self._part.inputs.get("text"))
         texts = [str(event.data["fields"].get("data")) for event in self._part.of("message", self.topic)]
         return [text for text in texts if text != own]
@@ -103,12 +105,12 @@ class Launched:
 
     @property
     def elsewhere(self) -> list[str]:
-        """The names of endpoints other than the new name."""
+        """The names of the endpoints that do not have the new name."""
         return sorted((self.publishers | self.subscriptions) - {self.topic})
 
     @property
     def old_names(self) -> list[str]:
-        """The other names that are the name in the code, in any namespace."""
+        """Those of the other names that are the old name, in any namespace."""
         return [name for name in self.elsewhere if name.rpartition("/")[2] == self._old_name]
 
     @property
@@ -118,7 +120,7 @@ class Launched:
 
     @property
     def not_moved(self) -> list[str]:
-        """The programs that use the new name even without their rules."""
+        """The programs that use the new name even if they are started without their rules."""
         seen = [(one.main, Launched(one, self._package, self._old_name)) for one in self._alone]
         return [
             str(part.inputs["program"]) for part, it in seen if it.topic in it.publishers | it.subscriptions
@@ -126,10 +128,10 @@ class Launched:
 
     @property
     def without_rules(self) -> list[tuple[str, ...]]:
-        """The programs that use the new name when started without rules: package, program, arguments.
+        """The programs to start again without their rules, each as its package, its name and its arguments.
 
-        A program that got no rule for the topic is started without arguments, because they may contain a rule of
-        another form.
+        These are the programs that used the new name. A program whose rule was not recognized is started without
+        arguments, because they may contain a rule in another form.
         """
         ends = self._talk | self._listen
         there = [one for one in self._processes if {0, _lower(one.pid)} & ends]
@@ -142,20 +144,20 @@ class Launched:
 
     @property
     def talkers(self) -> int:
-        """The number of programs that publish under the new name. An additional subscriber does no harm."""
+        """The number of programs that publish under the new name. Additional subscribers do no harm."""
         return len(self._talk)
 
     @property
     def given_a_rule(self) -> int:
-        """The number of programs under the new name that got a rule for it."""
+        """The number of programs that use the new name and got a rule for it."""
         return len(self._given & (self._talk | self._listen))
 
     @property
     def moved_by_rules(self) -> bool:
         """True if each program that uses the new name got a rule for it.
 
-        If the process of an endpoint is unknown, it may be any process with a rule. Other subscribers, such as ``ros2
-        topic echo``, need no rule.
+        An endpoint of an unknown process may belong to any process with a rule. Subscribers that are not programs of
+        the package, such as ``ros2 topic echo``, need no rule.
         """
         given, listen = self._given, self._listen
         listeners = listen & (given | self._own) or listen
@@ -163,30 +165,30 @@ class Launched:
 
     @property
     def has_a_talker(self) -> bool:
-        """True if a program of the package publishes under the new name, or a renamed program may do so."""
+        """True if a program of the package publishes under the new name, as far as the judge can tell."""
         return self._has_one_of_its_own(self._talk)
 
     @property
     def has_a_listener(self) -> bool:
-        """True if a program of the package subscribes under the new name, or a renamed program may do so."""
+        """True if a program of the package subscribes under the new name, as far as the judge can tell."""
         return self._has_one_of_its_own(self._listen)
 
     def _has_one_of_its_own(self, side: set[int]) -> bool:
-        # If the package's name differs from the course's, its programs are told from tools by their rules. An
+        # If the student's package has another name than the course's, a rule shows which processes are its programs. An
         # endpoint of an unknown process, 0, may belong to any program.
         without_a_rule = (self._talk | self._listen) & self._own - self._given
         return bool(side & (self._own | self._given) or 0 in side or without_a_rule)
 
     @property
     def is_settled(self) -> bool:
-        """True if the launch is fully known: each program's endpoints are on the graph, or one endpoint too many."""
+        """True if nothing about the launch can change any more: all endpoints are on the graph, or a wrong one is."""
         if self.elsewhere or not (self.publishers and self.subscriptions):
             return True
         return self.moved_by_rules and self.talkers < NODES and self.all_are_there
 
     @property
     def rules(self) -> list[str]:
-        """The topic names to which the programs' rules apply."""
+        """The names that the programs' rules replace."""
         return [old for process in self._processes for old, _ in remappings(process.argv)]
 
     @property
@@ -199,7 +201,7 @@ class Launched:
 
     @cached_property
     def _programs(self) -> list[tuple[str, str]]:
-        """For each program of the workspace, its module with slashes for dots, and the end of the program's path."""
+        """For each program of the workspace, its module with slashes instead of dots, and the end of its path."""
         report = report_of(self._part)
         packages = report.packages if report is not None else ()
         named = [(package.name, entry.partition("=")) for package in packages for entry in package.programs]
@@ -212,7 +214,7 @@ class Launched:
         return any(self._leads_there(old, new) for old, new in remappings(argv))
 
     def _leads_there(self, old: str, new: str) -> bool:
-        """True if a rule maps the name in the code, with any node name or namespace before it, to the topic."""
+        """Return True if a rule maps the old name, with any node name or namespace before it, to the new name."""
         begins = old.rpartition(":")[2].rpartition("/")[2] == self._old_name
         return begins and _leads_to(self.topic, new)
 
@@ -222,7 +224,7 @@ class LaunchFile:
 
     Args:
         package: The package of the two programs.
-        old_name: The topic's name in their code.
+        old_name: The topic's name in the programs' code.
     """
 
     roles = ("publisher",)
@@ -232,7 +234,7 @@ class LaunchFile:
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:
-        """The common mistakes, the most informative first."""
+        """The common mistakes, most specific first."""
         return (
             *workspace.BUILD,
             OWN,
@@ -244,15 +246,15 @@ class LaunchFile:
         )
 
     def seen(self, evidence: Evidence) -> Launched:
-        """The programs, as the judge saw them."""
+        """Return what the judge saw of the student's programs."""
         return Launched(evidence, self._package, self._old_name)
 
     def expected(self, evidence: Evidence) -> Launched:
-        """The reference's programs, which equal the subject's, because only the new name comes from the reference."""
+        """Return the same view as :meth:`seen`, because the reference solution only provides the new name."""
         return self.seen(evidence)
 
     def scenario(self, bench: Bench) -> None:
-        """Launch the file. Listen to the publisher, and publish to the listener, under the new name."""
+        """Launch the file, listen to the publisher, and publish to the listener, under the new name."""
         topic, type_name = bench.reference.only("publisher")
         text = f"status {bench.random.randrange(10_000, 100_000)} from the judge"
         bench.part(PART, text=text)
@@ -261,7 +263,7 @@ class LaunchFile:
         bench.start()
         bench.wait_until(_has_begun, BUILDING + BEGINNING[bench.pace], quiet=BUILDING)
         bench.wait_until(lambda evidence: len(_of_nodes(evidence.main)) >= NODES, PAUSE[bench.pace])
-        # After the first program is on the graph, the others may still need seconds on a busy machine.
+        # On a busy machine, the other programs may appear on the graph seconds after the first one.
         bench.watch_graph(lambda evidence: self.seen(evidence).all_are_there, PAUSE[bench.pace])
         talks = bench.await_endpoint("publisher", topic)
         listens = bench.await_endpoint("subscription", topic)
@@ -272,7 +274,7 @@ class LaunchFile:
         if talks:
             bench.wait_until(lambda evidence: len(self.seen(evidence).heard) >= MESSAGES, LATE)
         if talks and listens:
-            # The graph does not show processes, so a third one may be about to appear there.
+            # The graph does not show processes, so the endpoint of a third program may still appear.
             bench.watch_graph(lambda evidence: self.seen(evidence).is_settled, PAUSE[bench.pace])
         seen = self.seen(Evidence([bench.seen()], bench.reference))
         bench.stop()
@@ -280,14 +282,14 @@ class LaunchFile:
             self._run_alone(bench, words)
 
     def _run_alone(self, bench: Bench, words: Sequence[str]) -> None:
-        """Start a program without its rules, and wait until it uses the topic under either name."""
+        """Start a program without its rules, and wait until it uses the old or the new name of the topic."""
         bench.part(f"{words[1]} without its rule", program=words[1])
         bench.start(ALONE, *words)
         bench.watch_graph(lambda evidence: self.seen(evidence).is_there, BEGINNING[bench.pace])
         bench.stop()
 
     def _launch_error(self, evidence: Evidence) -> Advice | None:
-        """The launch failed and reports the reason."""
+        """Return advice if the launch failed and reported the reason."""
         what = _complaint(evidence.main)
         if not what:
             return None
@@ -302,16 +304,16 @@ class LaunchFile:
 _TODO = (
     (
         r"remappings",
-        "remappings takes a list of pairs: square brackets outside, and in them a pair of two strings in parentheses, "
-        'as in remappings=[("image", "/left/image")].',
+        'remappings is a list of pairs. Each pair is two strings in parentheses, as in remappings=[("image", '
+        '"/left/image")].',
     ),
     (
         r"must return|NoneType",
-        "Put `return` in front of the LaunchDescription: generate_launch_description has to hand it back.",
+        "Write `return` before the LaunchDescription, because generate_launch_description must return it.",
     ),
     (
         r"LaunchDescription|is not iterable",
-        "Give LaunchDescription one list: square brackets around all the Nodes, and a comma between them.",
+        "Pass one list to LaunchDescription: square brackets around all the Nodes, and a comma between them.",
     ),
     (
         r"(?i)\b(?:package|executable)\b.* not found|libexec",
@@ -319,14 +321,14 @@ _TODO = (
     ),
     (
         r"Node\.__init__\(\) (?:takes|missing)",
-        'Write the name of each value before it: Node(package="{package}", executable="...", output="screen"). Names '
-        "on older pages, such as node_executable, have changed.",
+        'Write the name of each argument, as in Node(package="{package}", executable="...", output="screen"). '
+        "Some names have changed since older tutorials, such as node_executable.",
     ),
     (r"keyword argument", "Compare the names of the arguments with those in the example, letter by letter."),
     (r"^NameError", "Compare the name with the imports at the top of the file, letter by letter."),
 )
-"""The advice for each message of ``ros2 launch`` itself, the most specific first."""
-_COMPARE = "Compare the file with the example, first the line that is named."
+"""The advice for messages of ``ros2 launch``, most specific pattern first."""
+_COMPARE = "Compare the file with the example. Begin with the line that the message names."
 
 
 def _has_begun(evidence: Evidence) -> bool:
@@ -338,17 +340,17 @@ def _says_its_text(part: Part) -> bool:
 
 
 def _lower(pid: int) -> int:
-    """Return the part of a process id that its endpoints' identifiers contain."""
+    """Return the lower 16 bits of a process id, because the identifiers of its endpoints contain only these."""
     return pid & 0xFFFF
 
 
 def _is_a_tool(argv: tuple[str, ...]) -> bool:
-    """True if a command line is one of the command ``ros2``, perhaps after its Python."""
+    """Return True if a command line starts the command ``ros2``, with or without a Python before it."""
     return any(word.rpartition("/")[2] == "ros2" for word in argv[:2])
 
 
 def _leads_to(topic: str, target: str) -> bool:
-    """True if a rule's target is the topic; a relative name has the node's namespace in front."""
+    """Return True if the target of a rule is the topic. A relative target may have any namespace before it."""
     return topic == target or topic.endswith(f"/{target.removeprefix('~').lstrip('/')}")
 
 
@@ -358,7 +360,7 @@ def _of_nodes(part: Part) -> list[Process]:
 
 
 def _complaint(part: Part) -> str:
-    """Return the launch's own message about the file, without the text around it."""
+    """Return the launch's error message without the text around it; empty if there is none."""
     lines = [str(event.data["text"]) for event in part.of("output")]
     for number, line in enumerate(lines):
         if "[ERROR] [launch]:" not in line and not line.startswith("ros2: "):
@@ -371,11 +373,11 @@ def _complaint(part: Part) -> str:
 
 
 def _syntax_error(evidence: Evidence) -> Advice | None:
-    """Python cannot parse the launch file."""
+    """Return advice if Python cannot parse the launch file."""
     what = _complaint(evidence.main)
     if not re2.match(r"(?:Syntax|Indentation|Tab)Error", what):
         return None
     return Advice(
         f"Python could not read the launch file: {what}.",
-        "A bracket, a quote, a comma or the indentation is off there or just before it.",
+        "In this line or just before it, a bracket, a quotation mark, a comma or the indentation is wrong.",
     )

@@ -1,4 +1,4 @@
-"""A recipe for a node with a state that a service changes. The author declares how each request changes the state."""
+"""A recipe for a node with a state that a service changes; the author declares how each request changes it."""
 
 from __future__ import annotations
 
@@ -21,24 +21,24 @@ if TYPE_CHECKING:
 __all__ = ["SOME_TEXT", "Machine"]
 
 QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
-"""If no event comes for this many seconds of wall time, the judge stops waiting for an answer or a message."""
+"""The judge stops waiting for an answer or a message if no event comes for this many seconds of wall time."""
 PAUSE = 0.5
-"""Seconds of the subject's time that the judge waits after each answer, because a timer of the subject may report the
-change.
+"""Seconds of the subject's time that the judge waits after each answer, because the subject may report a change from a
+timer.
 """
 ON_AND_OFF = (False, True, True, False, False, True, True, False, False, True, False)
-"""Requests for a state that is on or off. Each state is requested twice in a row."""
+"""Requests for a state that is either on or off. After each state is requested, it is requested once more."""
 
 Step = Callable[..., tuple[Any, Mapping[str, Any]]]
-"""A function of the state and the request that returns the new state and the fields of the reply."""
+"""A function that returns the new state and the fields of the reply, given the state and the request."""
 
 
 @dataclass(frozen=True)
 class Call:
-    """One call of the service, with the result that the declaration requires.
+    """One call of the service, with the reply and the state that must follow from it.
 
     Attributes:
-        asked: The request: the value of its field ``data``, or all fields if it has no such field.
+        asked: The request: its field ``data``, or all its fields if it has no such field.
         reply: The required fields of the reply.
         state: The required state after the call.
         changed: True if the call changes the state.
@@ -51,7 +51,9 @@ class Call:
 
 
 class Machine(Declared):
-    """A node with a state that a service changes. A topic reports each change, and the last one also to late listeners.
+    """An exercise about a node with a state that a service changes, and a topic that reports each change.
+
+    The last message must also reach subscribers that join late.
 
     Args:
         exercise_id: The lab's folder and the file's name, such as ``"lab_8_1.mode"``.
@@ -60,9 +62,9 @@ class Machine(Declared):
         state: The state at the beginning.
         step: Returns the new state and the reply, given the state and the request. :data:`SOME_TEXT` in a reply
             allows any text.
-        asks: The requests, one after the other, or a function that draws them, the same number in each run. A
-            dictionary is a whole request, anything else the value of its field ``data``.
-        late_after: The judge subscribes to the topic after this number of calls.
+        asks: The requests in order, or a function that draws them; it must draw the same number of requests in each
+            run. A dictionary is a whole request; anything else is the value of its field ``data``.
+        late_after: The number of calls after which the judge subscribes to the topic.
         field: The path of the field that contains the state in the topic's messages.
     """
 
@@ -83,7 +85,9 @@ class Machine(Declared):
         self._late_after, self._field = late_after, field
 
     def replies(self, field: str, points: float, title: str, words: str = "") -> None:
-        """Add a criterion, named after a field of the reply: that field is right in each reply if ``step`` sets it.
+        """Add the criterion that a field of each reply is right. Its name is that of the field.
+
+        Replies for which ``step`` does not return this field are not compared.
 
         Args:
             field: The field of the reply.
@@ -102,7 +106,7 @@ class Machine(Declared):
         self._compares(field, points, title, due, came, words)
 
     def once_at_each_change(self, name: str, points: float, title: str, words: str = "") -> None:
-        """Add a criterion: exactly one message comes at each change. For the arguments see :meth:`asks`."""
+        """Add the criterion that exactly one message comes at each change. For the arguments see :meth:`asks`."""
 
         def judge(seen: Part, expected: Part) -> Finding:
             course = self._course(seen, self._step)
@@ -121,7 +125,7 @@ class Machine(Declared):
         self._judges(name, words)
 
     def late_joiner_gets_the_last(self, name: str, points: float, title: str, words: str = "") -> None:
-        """Add a criterion: a late subscriber receives the current state. For the arguments see :meth:`asks`."""
+        """Add the criterion that a late subscriber receives the current state. For the arguments see :meth:`asks`."""
 
         def due(seen: Part) -> list[Any]:
             return [call.state for call in self._course(seen, self._step)][: self._late_after][-1:]
@@ -137,7 +141,7 @@ class Machine(Declared):
         self._compares(name, points, title, due, came, words)
 
     def wrong(self, key: str, step: Step | Mapping[str, Any], says: str, next_step: str) -> None:
-        """Add a mistake: all replies are those of a variant of ``step``. For the arguments see :meth:`Relay.wrong`."""
+        """Add the mistake that all replies follow a variant of ``step``. For the arguments see :meth:`Relay.wrong`."""
         wrong = variant(self._step, step)
 
         def replied(seen: Part, step: Step) -> bool:
@@ -152,7 +156,7 @@ class Machine(Declared):
         self._knows(key, found, says, next_step)
 
     def told_too_often(self, key: str = "told_too_often") -> None:
-        """Add a mistake: the node publishes more messages than there are changes."""
+        """Add the mistake that the node publishes more messages than there are changes."""
 
         def found(seen: Part) -> bool:
             most = sum(call.changed for call in self._course(seen, self._step))
@@ -161,17 +165,17 @@ class Machine(Declared):
         self._knows(
             key,
             found,
-            "Your node publishes more often than anything changes.",
-            "Publish only if the new value differs from the old one, once for each change.",
+            "Your node publishes more messages than there are changes.",
+            "Publish only if the new value differs from the old one, and only once for each change.",
         )
 
     def not_latched(self, key: str = "not_latched") -> None:
-        """Add a mistake: the publisher does not keep its last message for late subscribers."""
+        """Add the mistake that the publisher does not store its last message for late subscribers."""
         self._knows(
             key,
             lambda seen: any(event.data["policy"] == "durability" for event in seen.of("mismatch")),
-            "Your publisher keeps no message: a subscription that is made later hears nothing.",
-            "Give create_publisher QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) in place of 10.",
+            "Your publisher does not store its last message, so a subscriber that joins later receives nothing.",
+            "Pass QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL) to create_publisher instead of 10.",
         )
 
     def _scenario(self, bench: Bench) -> None:
@@ -209,7 +213,7 @@ class Machine(Declared):
             bench.listen(topic, type_name)
 
     def _course(self, seen: Part, step: Step) -> list[Call]:
-        """Return the calls, each with the result that a machine with this step function would give."""
+        """Return the calls, each with the reply and the state that follow from a step function."""
         state, course = self._state, []
         for asked in map(value, seen.of("asked")):
             new, reply = step(state, asked)

@@ -1,4 +1,4 @@
-"""Recipes for subjects for which the exercise writes its own scenario. The recipe adds the common mistakes."""
+"""Recipes for exercises that write their own scenario; the recipe adds the common mistakes."""
 
 from __future__ import annotations
 
@@ -23,18 +23,19 @@ if TYPE_CHECKING:
 _NOUN = {"publisher": "a publisher on", "subscription": "a subscription to", "client": "a client of"}
 _NOUN |= {"service": "a service", "action_client": "a client of the action", "action_server": "an action"}
 SERVED = 3.0
-"""Time limit in seconds of wall time for a service that is on the graph to become callable."""
+"""Time limit in seconds of wall time until the judge can call a service that is on the ROS graph."""
 
 
 @dataclass(frozen=True)
 class Met:
-    """A subject that the judge has discovered and that is spun, together with the judge's endpoints for it.
+    """A subject that is spun and that the judge has discovered, with the judge's endpoints for it.
 
     Attributes:
         bench: The bench of the scenario.
-        topics: The topics on which the reference solution publishes. Like the other lists, sorted by name.
-        speakers: A publisher of the judge for each topic to which the reference solution subscribes.
-        callers: A client of the judge for each service of the reference solution.
+        topics: The topics on which the reference solution publishes, sorted by name.
+        speakers: A publisher of the judge for each topic to which the reference solution subscribes, sorted by the
+            topic's name.
+        callers: A client of the judge for each service of the reference solution, sorted by the service's name.
     """
 
     bench: Bench
@@ -44,16 +45,16 @@ class Met:
 
     @property
     def heard(self) -> int:
-        """The number of messages received so far on the first of the topics, which is often the only one."""
+        """The number of messages that the judge has received so far on the first topic, which is often the only one."""
         return self.bench.heard(self.topics[0])
 
 
 def once_met(happens: Callable[[Met], bool]) -> Callable[[Bench], None]:
-    """Return a scenario with one part: the judge discovers all endpoints of the subject, then calls ``happens``.
+    """Return a scenario with one part: the judge waits for all endpoints of the subject, then calls ``happens``.
 
     Args:
-        happens: Returns True if everything that it waited for arrived. If not, the judge checks whether the subject
-            is spun.
+        happens: Returns True if everything for which it waited has arrived. If it returns False, the judge checks
+            whether the subject is spun.
     """
 
     def scenario(bench: Bench) -> None:
@@ -78,13 +79,14 @@ def once_met(happens: Callable[[Met], bool]) -> Callable[[Bench], None]:
 
 
 class OwnScenario:
-    """The recipe for a subject with endpoints of some roles. Its view is the record of the first part.
+    """The recipe for a subject with endpoints of given roles. Its view is the record of the first part.
 
     Args:
-        scenario: Drives the bench; for example one made by :func:`once_met`. A scenario of your own gets an
-            endpoint's name and type from ``bench.reference.only(role)``; if a role has several endpoints,
+        scenario: The scenario, for example one made by :func:`once_met`. If you write it yourself,
+            ``bench.reference.only(role)`` is the name and type of an endpoint; if a role has several endpoints,
             ``bench.reference.interface[role]`` has their types by name.
-        roles: The roles of the subject's endpoints, such as ``"publisher"``, the most telling first.
+        roles: The roles of the subject's endpoints, such as ``"publisher"``. The first role is the one whose endpoint
+            shows most about the subject.
     """
 
     def __init__(self, scenario: Callable[[Bench], None], *roles: str) -> None:
@@ -96,9 +98,9 @@ class OwnScenario:
         return evidence.main
 
     def expected(self, evidence: Evidence) -> Part:
-        """Return the record of the reference solution, with its endpoints.
+        """Return the record of the reference solution, including its endpoints.
 
-        While the reference is being recorded, this is the record that is being made.
+        While the reference is being recorded, return the record that is being made.
         """
         if not evidence.reference.parts:
             return evidence.main
@@ -106,7 +108,7 @@ class OwnScenario:
         return replace(recorded, events=[Event(0.0, "interface", "graph", interface), *recorded.events])
 
     def has(self, role: str) -> Callable[[Evidence], Finding]:
-        """Return a criterion for :meth:`autograder.kit.draft.Draft.asks`: names and types equal the reference's."""
+        """Return the criterion that the names and types of a role equal the reference's, for :meth:`.Draft.asks`."""
 
         def judge(evidence: Evidence) -> Finding:
             wanted, made = evidence.reference.interface.get(role, {}), evidence.main.endpoints(role)
@@ -144,13 +146,13 @@ def _in_words(role: str, endpoints: Mapping[str, str]) -> str:
 
 
 class OwnLadder(SeenAsItIs):
-    """The recipe for a subject without endpoints. The exercise lists which common mistakes the subject may show.
+    """The recipe for a subject without endpoints, such as a function that only reads the ROS graph.
 
-    The view of this recipe is the whole evidence.
+    The exercise lists the common mistakes that the subject may show. The view of this recipe is the whole evidence.
 
     Args:
         scenario: Drives the bench.
-        ladder: The common mistakes, most specific first, with placeholders for the exercise's own.
+        ladder: The common mistakes, most specific first, with placeholders for the exercise's mistakes.
     """
 
     roles = ()

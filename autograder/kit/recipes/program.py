@@ -1,4 +1,4 @@
-"""A recipe for a program of a package. The judge builds and runs it; it must have a node and log a line."""
+"""A recipe for a program of a package. The judge builds and runs the program, which must have a node and log a line."""
 
 from __future__ import annotations
 
@@ -20,16 +20,15 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence, Part
 
 SAYING = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
-"""Time limit in seconds of wall time for the program to log its line, from the moment its node appeared."""
+"""Time limit in seconds of wall time from the appearance of the program's node until the program logs its line."""
 LATE = 0.3
-"""Seconds without any event, after the program has logged its line, until its log counts as complete."""
+"""The number of seconds without any event, after the program has logged its line, until its log counts as complete."""
 COMPARED, LONG = 200, 400
-"""The maximum number of lines, and of characters of a line, to compare: comparing a flood of output would take minutes.
-"""
+"""The maximum number of lines to compare, and of characters in each. Comparing more could take minutes."""
 
 
 class Ran:
-    """A program as it behaved in its run.
+    """What the judge saw of a program.
 
     Args:
         evidence: The whole evidence.
@@ -52,23 +51,23 @@ class Ran:
 
     @property
     def has_node(self) -> bool:
-        """True if the program made a node. The name of a node that existed only for a moment may be unknown."""
+        """True if the program made a node, even if that node existed so briefly that its name is unknown."""
         return any(part.had_node for part in self._evidence)
 
     @property
     def words(self) -> list[str]:
-        """What the program logged and printed, without messages of ``ros2`` about a program that it cannot run."""
+        """The lines that the program logged and printed, without messages of ``ros2`` about a missing program."""
         return [word for part in self._evidence for word in _words(part)]
 
     @property
     def says_it(self) -> bool:
-        """True if the program logged or printed the line."""
+        """True if the program logged or printed the expected line."""
         line = self.line
         return bool(line) and any(_says(said, line) for part in self._evidence for said in part.said())
 
     @property
     def nearest(self) -> str:
-        """The program's line that is most similar to the expected one; empty if the program said nothing."""
+        """The program's line that is most similar to the expected one; empty if the program printed nothing."""
         if self.says_it:
             return self.line
         words = self.words
@@ -78,7 +77,7 @@ class Ran:
 
     @property
     def first_difference(self) -> str:
-        """A sentence that says where the most similar line begins to differ from the expected one."""
+        """A sentence that says where the most similar line first differs from the expected one."""
         return first_difference(self.nearest, self.line)
 
 
@@ -87,7 +86,7 @@ _LETTER = re2.compile(r"[A-Za-z0-9]")
 
 
 def _says(said: str, line: str) -> bool:
-    """Return True if a text contains a line, with no letter or digit directly before or after it."""
+    """Return True if a text contains a line, without a letter or digit directly before or after it."""
     before, found, after = _COLOUR.sub(" ", said).partition(line)
     return bool(found) and not _LETTER.match(before[-1:]) and not _LETTER.match(after)
 
@@ -120,11 +119,11 @@ class Program:
         return Ran(evidence)
 
     def expected(self, evidence: Evidence) -> Ran:
-        """Return the same view: it already takes the expected line from the reference output."""
+        """Return the same view as :meth:`seen`, because it also contains the line of the reference output."""
         return Ran(evidence)
 
     def scenario(self, bench: Bench) -> None:
-        """Build and run the program, and look for its node and its line."""
+        """Build and run the program, and wait for its node and its line."""
         bench.part(self._part)
         bench.start()
         programs.await_build(bench)
@@ -141,15 +140,15 @@ class Program:
         report = workspace.build_report(evidence.main)
         ends = ("constructed", "returned", "raised")
         if any(part.of("subject", name) for part in evidence for name in ends):
-            return Finding(False, expected, "something from a notebook, which is not a package")
+            return Finding(False, expected, "a class or function from a notebook, which is not a package")
         if report is not None and not report.built:
             return Finding(False, expected, workspace.seen_of_build(report))
         if report is not None and report.missing:
-            return Finding(False, expected, f"built; there is no {report.missing} in it")
+            return Finding(False, expected, f"built, but it does not contain {report.missing}")
         if programs.entry_point(evidence, self._entry):
-            return Finding(False, expected, "built; its entry point leads nowhere")
+            return Finding(False, expected, "built, but its entry point points to nothing")
         seen = Ran(evidence)
-        # A program that raised an exception did start. The other criteria judge what it failed to do.
+        # A program that raised an exception did start. Other criteria judge what it failed to do.
         ran = seen.has_node or bool(seen.words) or any(part.traceback for part in evidence)
         return Finding(ran, expected, "built and started" if ran else "the program did nothing")
 

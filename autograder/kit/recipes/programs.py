@@ -1,6 +1,6 @@
-"""A recipe for the programs of a package.
+"""A recipe for an exercise about several programs of a package.
 
-Each program is run as in a terminal, judged like the node of its own exercise, and ended with Ctrl-C.
+The judge runs each program as in a terminal, judges it like the node in that node's exercise, and ends it with Ctrl-C.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ class Program:
         node: The exercise about the program's node. The program must meet all criteria of that exercise.
         title: The title of the criterion about this program, as the card shows it.
         points: The points that this criterion is worth.
-        file: The name of the program's file without ``.py``; empty if it equals the program's name.
-        ends_by_itself: True if the program ends by itself, as a client does after its answer. If it does not, the
-            judge presses Ctrl-C.
+        file: The name of the program's file without ``.py``; empty if the file has the program's name.
+        ends_by_itself: True if the program should end by itself, as a client does after its answer. If False, the judge
+            presses Ctrl-C.
     """
 
     name: str
@@ -56,12 +56,12 @@ class Program:
         return f"{self.name}: "
 
     def parts(self, every: Iterable[Part]) -> list[Part]:
-        """Return this program's runs, under the names that the exercise about its node uses."""
+        """Return this program's runs, with the part names of the exercise about its node."""
         own = [part for part in every if part.name.startswith(self.prefix)]
         return [replace(part, name=part.name.removeprefix(self.prefix)) for part in own]
 
     def view(self, evidence: Evidence) -> Evidence:
-        """Return the evidence for the exercise about its node: this program's runs, up to Ctrl-C."""
+        """Return the evidence for the exercise about the program's node: this program's runs until Ctrl-C."""
         expected = evidence.reference
         ends = {role: expected.interface.get(role, {}) for role in self.node.roles}
         return Evidence(
@@ -72,11 +72,11 @@ class Program:
         )
 
     def judge(self, evidence: Evidence) -> Finding:
-        """Return the first finding that fails in the exercise about its node; if none fails, a finding that says so."""
+        """Return the first finding that fails in the node's exercise; if none fails, a finding that passes."""
         return self.node.judge_as_one(self.view(evidence), "all that is asked of its node")
 
     def ending(self, evidence: Evidence) -> str:
-        """Return in a few words how the program reacted to Ctrl-C; empty if Ctrl-C ended it."""
+        """Return in a few words what is wrong with the program's end; empty if it ended as it should."""
         parts = self.parts(evidence)
         if self.ends_by_itself and parts:
             return _its_own_end(parts)
@@ -90,7 +90,7 @@ class Program:
 
 
 class _OneProgram:
-    """A bench for the scenario of one program's node. It passes on all calls except those of the methods below."""
+    """A bench for the scenario of one program's node. Other methods than these are passed on to the judge's bench."""
 
     def __init__(self, bench: Bench, program: Program) -> None:
         self._bench, self._program = bench, program
@@ -136,14 +136,14 @@ def _before_ctrl_c(part: Part) -> Part:
 
 
 def _its_own_end(parts: Sequence[Part]) -> str:
-    """Return what is wrong with the end of a program that should end by itself; empty if it did."""
+    """Return what is wrong with the end of a program that should end by itself; empty if nothing is wrong."""
     if any(part.ending is None and part.first("subject", INTERRUPTED) for part in parts):
         return "went on"
-    # A program that had fallen silent counts as hung, however it ended after the judge asked for its stacks.
+    # A program that had fallen silent counts as hung even if it ended after the judge had requested its stacks.
     if any(part.ending is None or part.of("stack") for part in parts):
         return "did not come to its end"
-    # A program that waits in vain may report that with an exception. But if every run ended so, the program never did
-    # its work.
+    # A program may report with an exception that it waited in vain. But if it raised an exception in every run, it
+    # never did its work.
     return "failed each time" if all(_before_ctrl_c(part).traceback for part in parts) else ""
 
 
@@ -152,19 +152,20 @@ def _after_ctrl_c(part: Part) -> Part:
 
 
 class Programs:
-    """An exercise about the programs of a package, which the judge builds and runs one after the other.
+    """An exercise about several programs of a package, which the judge builds and runs one after the other.
 
     Args:
         name: The name of the package.
         programs: The programs, in the order of the task.
-        keeps: Programs of an earlier lab. If the package has their modules, it must also have their entry points.
+        keeps: The programs of an earlier lab. If the package still contains their modules, it must also have their
+            entry points.
     """
 
     def __init__(self, name: str, *programs: Program, keeps: Sequence[str] = ()) -> None:
         self._name, self._programs, self._keeps = name, programs, keeps
 
     def exercise(self, exercise_id: str, title: str, task: str, **more: Any) -> Exercise:
-        """Return the exercise: two points each for the entry points and for the ends, and the criteria of the programs.
+        """Return the exercise: a criterion about entry points, one for each program, and one about Ctrl-C.
 
         Args:
             exercise_id: The exercise's id, such as ``"lab_1_2.programs"``.
@@ -217,7 +218,7 @@ class Programs:
         lost = self._lost(evidence)
         if lost:
             expected += f", and setup.py has an entry point for {_and(lost)}, too"
-        return Finding(not lost, expected, f"none for {_and(lost)}" if lost else "started")
+        return Finding(not lost, expected, f"no entry point for {_and(lost)}" if lost else "started")
 
     def _is_there(self, program: Program, evidence: Evidence) -> bool:
         view = program.view(evidence)
@@ -242,7 +243,7 @@ class Programs:
 
     def _ending(self, program: Program, evidence: Evidence) -> str:
         if program.ends_by_itself and not self._is_there(program, evidence):
-            # A program that did not start has an ending event as well, so this is checked first.
+            # This is checked first, because a program that did not start also has an event about its end.
             return "did not start"
         view, entry = program.view(evidence), self._entry(program)
         ending = program.ending(evidence)
@@ -250,7 +251,7 @@ class Programs:
         return "did not start" if nowhere else ending
 
     def _ends(self, all_on_ctrl_c: str) -> str:
-        """Return in words how the programs should end; ``all_on_ctrl_c`` if none of them ends by itself."""
+        """Return in words how the programs should end; the given text if all of them should end on Ctrl-C."""
         alone = [program.name for program in self._programs if program.ends_by_itself]
         others = [program.name for program in self._programs if not program.ends_by_itself]
         return f"{_and(others)} ends on Ctrl-C, {_and(alone)} by itself" if alone else all_on_ctrl_c
@@ -276,7 +277,7 @@ class Programs:
             yield Mistake("ignores_ctrl_c", partial(_ignores_ctrl_c, program))
 
     def _another_program(self, evidence: Evidence) -> Advice | None:
-        """Return advice if a program does nothing of its own task, but everything that another program should do."""
+        """Return advice if a program does what another program should do, and nothing of its own task."""
         for program in self._programs:
             shown = {role for part in program.view(evidence) for role in _ROLES if part.endpoints(role)}
             for other in self._programs:
@@ -284,8 +285,8 @@ class Programs:
                     entry = self._entry(program)
                     return Advice(
                         f"`ros2 run {self._name} {program.name}` starts a node that does what {other.name} should do.",
-                        f"In setup.py, {entry.line} leads to the file {entry.module}.py. Is that so, and is the right "
-                        "class in that file?",
+                        f"In setup.py, {entry.line} must lead to the file {entry.module}.py, and that file must "
+                        "contain the right class.",
                     )
         return None
 
@@ -306,10 +307,10 @@ def _of_the_view(mistake: Mistake, program: Program, evidence: Evidence) -> Advi
 
 
 class _Wrong:
-    """A program that fails its criterion, in which one mistake after the other is looked for.
+    """Recognizes mistakes in a program that fails its criterion.
 
-    Whether a program fails is decided only once for each evidence. There are about a hundred mistakes, and each
-    decision may take a tenth of a second of the few seconds that the judge has for all of them.
+    The decision whether the program fails is stored, because there are about a hundred mistakes: each decision may take
+    a tenth of a second of the few seconds that the judge has for all of them.
     """
 
     def __init__(self, program: Program) -> None:
@@ -323,7 +324,7 @@ class _Wrong:
         return self._known[1]
 
     def recognise(self, mistake: Mistake, evidence: Evidence) -> Advice | None:
-        """Return the advice of a common mistake if this program fails and shows the mistake."""
+        """Return the advice on a mistake if this program fails its criterion and shows the mistake."""
         view = self._view(evidence)
         advice = mistake.recognise(view) if view else None
         return replace(advice, text=f"{self._program.name}: {advice.text}") if advice else None
@@ -342,8 +343,8 @@ def _class_not_in_its_file(program: Program, evidence: Evidence) -> Advice | Non
         return None
     file = f"{program.file or program.name}.py"
     return Advice(
-        f"{file} makes a node of the class {found['made']}, and this class is not in the file (NameError).",
-        f"Copy your class {found['made']} into {file}, above main, and write the file again.",
+        f"{file} uses the class {found['made']}, but does not contain it (NameError).",
+        f"Copy your class {found['made']} into {file}, above main(), and save the file.",
         traceback,
     )
 
@@ -352,9 +353,9 @@ def _ignores_ctrl_c(program: Program, evidence: Evidence) -> Advice | None:
     if program.ending(evidence) != "went on":
         return None
     return Advice(
-        f"After Ctrl-C {program.name} went on running.",
-        "Ctrl-C raises KeyboardInterrupt in the line that the program has reached: catch it outside of the loop or of "
-        "rclpy.spin, so that main comes to its end.",
+        f"{program.name} did not end after Ctrl-C.",
+        "Ctrl-C raises KeyboardInterrupt in the line that is running. Catch it outside of your loop or of "
+        "rclpy.spin, so that main() ends.",
     )
 
 

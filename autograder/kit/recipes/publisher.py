@@ -22,38 +22,38 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Reference
 
 USUAL_PERIOD = 0.5
-"""The period in seconds to assume while the reference itself is being recorded."""
+"""The period in seconds that the judge assumes while it records the reference."""
 LONG_STEP = 2 * STEP
-"""The length of a step, in simulated seconds, while the judge listens for more messages.
+"""The length of a step, in simulated seconds, while the judge listens for more messages than at first.
 
-A timer whose period is shorter than a step fires once a step. As the judge uses steps of two lengths, its messages
-then seem uneven, and are checked again in real time.
+A timer with a shorter period than a step fires once in each step. The judge uses steps of two lengths, so the messages
+of such a timer seem uneven, and are checked again in real time.
 """
 SILENCE = {Pace.FAST: 3.0, Pace.REAL_TIME: 4.5}
-"""Seconds without any event, by pace, after which the judge stops waiting.
+"""The seconds without any event after which the judge stops listening, for each pace.
 
-A message that was lost during discovery delays all later ones until the publisher's next heartbeat, 3 s later (Fast
-DDS, ``heartbeatPeriod``).
+In Fast DDS, a message that was lost during discovery delays all later messages until the publisher's next heartbeat, 3
+s later (``heartbeatPeriod``).
 """
 PERSISTENT = 13
-"""The minimum number of messages in real time after which a publisher is assumed to go on: more than the ten of many
-loops.
+"""The number of messages in real time after which the judge assumes that a publisher goes on. Many loops send only ten.
 """
 LOST = 1
-"""The maximum number of messages that a program may have sent before the judge can receive them, on an idle machine."""
+"""The maximum number of messages that a right program may send, on an idle machine, before the judge can receive them.
+"""
 PERSISTS = 1.0
-"""Seconds for which a program must still run after it was heard, because simulated time may have passed within a
-moment.
+"""The number of seconds for which a program must still run after the judge has its messages. Simulated time may have
+passed within a moment, so this shows whether the program ends.
 """
 
 
 class Hears:
-    """The recipe for a publisher.
+    """The recipe for a publisher, whose views are of the type :class:`Publisher`.
 
     Args:
-        messages: The number of messages to wait for in simulated time, and if nothing else is known.
-        long_run: The number of messages to wait for if they take little time or something looks wrong: some faults
-            come late.
+        messages: The number of messages to wait for at first, in simulated time.
+        long_run: The number of messages to wait for in simulated time if they take little time, or if something looks
+            wrong. Some faults show only late.
     """
 
     roles = ("publisher",)
@@ -66,19 +66,19 @@ class Hears:
         self._variable = "self.count"
 
     def each_text(self, judge: Judge[Publisher]) -> Judge[Publisher]:
-        """Mark a criterion as one about each single message. A wrong rate is reported only if this criterion holds."""
+        """Mark a criterion as one about single messages. A wrong rate is diagnosed only if this criterion holds."""
         self._text = judge
         return judge
 
     def whole_course(self, judge: Judge[Publisher]) -> Judge[Publisher]:
-        """Mark a criterion as one about all messages together. If it fails, the judge listens for more messages."""
+        """Mark a criterion as one about all messages together. If it fails, the judge waits for more messages."""
         self._course = judge
         return judge
 
     # --- the bench -------------------------------------------------------------------------------------------
 
     def scenario(self, bench: Bench) -> None:
-        """Listen until enough messages were received, or until twice the time needed for them has passed."""
+        """Listen until enough messages have arrived, or until twice the time that they need has passed."""
         topic, type_name = bench.reference.only("publisher")
         bench.part("talking")
         bench.listen(topic, type_name)
@@ -92,14 +92,14 @@ class Hears:
         enough = self._enough(bench.before) if bench.pace is Pace.REAL_TIME else self._messages
         _listen(bench, topic, enough, period)
         if bench.wait_until(lambda evidence: _lost(evidence, topic) > LOST, 0.0):
-            bench.doubt()  # only times in real time distinguish a burst from a slow start
+            bench.doubt()  # Only times in real time tell a burst from a slow start.
         if bench.pace is Pace.FAST and bench.wait_until(self._is_simulated, 0.0):
             enough = self._long_run
             _listen(bench, topic, enough, period, LONG_STEP)
             if not bench.in_a_cell:
                 bench.await_end(PERSISTS)
         elif bench.pace is Pace.REAL_TIME and bench.heard(topic) >= enough:
-            # The time limit is twice the time that such a row of messages takes, because one of them may be late.
+            # The wait may last as long as these messages once more, because one of them may be late.
             bench.wait_until(
                 lambda evidence: self.keeps_rate(evidence).passed, self._row(bench.before) * period
             )
@@ -107,19 +107,19 @@ class Hears:
             bench.note_whether_it_spins()
 
     def _is_simulated(self, evidence: Evidence) -> bool:
-        """Return True if the messages follow the simulated clock; the first ones may precede simulated time."""
+        """Return True if enough messages follow the simulated clock; the first ones may come before simulated time."""
         topic, _ = evidence.reference.only("publisher")
         return len(simulated(evidence.main.of("message", topic))) >= self._messages // 2
 
     def _enough(self, before: Evidence | None) -> int:
         """Return how many messages to wait for in real time.
 
-        If the first look already got enough messages in simulated time, only those that the rate needs.
+        If the first look received enough messages in simulated time, the rate alone decides the number.
         """
         return self._row(before) if before is not None and self._is_simulated(before) else PERSISTENT
 
     def _row(self, before: Evidence | None) -> int:
-        """Return how many successive messages in real time must come at the right rate.
+        """Return how many successive messages must come at the right rate in real time.
 
         The number is larger if the first look, in simulated time, showed a fault.
         """
@@ -142,7 +142,7 @@ class Hears:
         else:
             enough = self._long_run if self._is_simulated(evidence) else self._messages
         heard = evidence.main.of("message", topic)
-        # A program that ended by itself has never published enough, because the task has no end.
+        # A program that ended by itself never published enough, because the task has no end.
         return Publisher(
             topic, evidence.main, max(enough, len(heard) + 1) if evidence.main.ending else enough
         )
@@ -155,15 +155,15 @@ class Hears:
     # --- criteria --------------------------------------------------------------------------------------------
 
     def says_text(self) -> Callable[[Evidence], Finding]:
-        """Return a criterion: each text equals the reference's, apart from the number. Also add its mistakes."""
+        """Return the criterion that each text equals the reference's, apart from the number. Also add its mistakes."""
         self._text = counting.says_text
         return self._criterion(counting.says_text)
 
     def counts(self, variable: str = "self.count") -> Callable[[Evidence], Finding]:
-        """Return a criterion: the numbers are the reference's. Also add its mistakes.
+        """Return the criterion that the numbers are those of the reference. Also add its mistakes.
 
-        The number of a message is the last whole number of its text, or the number that the message contains. The
-        first number and the step are those of the reference solution, which may count down.
+        The number of a message is the last whole number in its text, or its field if that is a number. The first number
+        and the step are those of the reference solution, which may count down.
 
         Args:
             variable: The name that the advice uses for the counter.
@@ -197,8 +197,8 @@ class Hears:
         wanted = reference_period(evidence.reference)
         messages = evidence.main.of("message", topic)
         before = self._simulated_rate(evidence.before)
-        # Simulated time is exact; real time on a busy machine is not. If a program ends by itself, chance decides how
-        # much of it was seen in simulated time.
+        # Simulated time is exact, but real time on a busy machine is not. If a program ends by itself, chance decides
+        # how many messages the judge received in simulated time.
         exact = (
             evidence.before
             and before
@@ -220,7 +220,7 @@ class Hears:
         return Finding(rate.kept, expected, seen)
 
     def _burst(self, evidence: Evidence) -> str:
-        """Return in words the burst with which it began, even if the burst was not heard; empty if there was none."""
+        """Return in words the burst with which the publisher began, even if the judge missed it; empty if none."""
         seen, expected = self.seen(evidence), self.expected(evidence)
         if not seen.counters or not expected.counters:
             return ""
@@ -229,7 +229,7 @@ class Hears:
         return burst_at_the_start(counting, unheard, reference_period(evidence.reference))
 
     def _simulated_rate(self, evidence: Evidence | None) -> Rate | None:
-        """Return the rate in simulated time; None if the messages do not follow the simulated clock, or are too few."""
+        """Return the rate in simulated time; None if too few messages follow the simulated clock."""
         if evidence is None or not self._is_simulated(evidence):
             return None
         topic, _ = evidence.reference.only("publisher")
@@ -282,7 +282,7 @@ class Hears:
         )
 
     def _never_published(self, evidence: Evidence) -> Advice | None:
-        """Return advice if the node works, or keeps printing its texts in a loop, but publishes nothing."""
+        """Return advice if the node is spun, or prints its texts in a loop, but publishes nothing."""
         seen = self.seen(evidence)
         part = seen.part
         if seen.topic not in part.endpoints("publisher") or seen.messages or part.ending is not None:
@@ -293,31 +293,32 @@ class Hears:
         return Advice(
             "Your node is there with its publisher, but no message arrives while the judge listens."
             + (f" Two nodes are called {twin}, and a spin takes only one." if twin else ""),
-            "If your class makes another Node(...), leave it out: self is the node, so write self.create_publisher and "
-            "self.create_timer."
+            "If your class makes another Node(...), leave it out: self is the node, so write self.create_publisher "
+            "and self.create_timer."
             if twin
             else "If your code still has its TODO, begin there. Let the timer's method call publish(...), with the "
-            "message between the parentheses: a log line is not a message. Give the timer its period in seconds, "
-            f"{reference_period(evidence.reference):g} and not {1000 * reference_period(evidence.reference):g}.",
+            "message between the parentheses: a log line is not a message. Give the timer its period in "
+            f"seconds, {reference_period(evidence.reference):g} and not "
+            f"{1000 * reference_period(evidence.reference):g}.",
         )
 
     def _wrong_rate(self, evidence: Evidence) -> Advice | None:
-        """Return advice if each message is right and the rate is not."""
+        """Return advice if each message is right, but the rate is wrong."""
         finding = self.keeps_rate(evidence)
         if finding.passed or not self._holds(self._text, evidence) or "every" not in finding.seen:
             return None
         period = reference_period(evidence.reference)
         return Advice(
             f"Your node publishes at another pace: {finding.seen}. The task asks for {finding.expected}.",
-            f"Use one create_timer({period:g}, your_method), and publish one message in that method: without a loop, a "
-            "sleep or an `if`."
+            f"Use one create_timer({period:g}, your_method), and publish one message in that method: without a loop, "
+            "a sleep or an `if`."
             if "unevenly" in finding.seen
             else f"The time between two messages is a period in seconds ({period:g}), not a frequency: the first "
             "argument of create_timer or, in a loop, that of the sleep. Leave sleep out of callbacks.",
         )
 
     def _stopped_publishing(self, evidence: Evidence) -> Advice | None:
-        """Return advice if the node still runs and is spun, but no longer publishes."""
+        """Return advice if the node is still spun, but no longer publishes."""
         seen = self.seen(evidence)
         came, part = len(seen.messages), seen.part
         if not 0 < came < seen.enough or part.ending is not None or part.of("unanswered"):
@@ -338,9 +339,9 @@ def reference_period(reference: Reference) -> float:
 
 
 def _was_faster(messages: Sequence[Event], wanted: float) -> bool:
-    """Return True if simulated time passed faster than real time: then no callback can have slept for a period.
+    """Return True if simulated time passed faster than real time, so no callback can have slept for a period.
 
-    On a busy machine the judge waits for a callback that sleeps, and then sees an exact rate.
+    On a busy machine, the judge waits for a callback that sleeps, and would then measure an exact rate.
     """
     times = [message.t for message in messages]
     return median(after - before for before, after in pairwise(times)) < wanted
@@ -357,7 +358,7 @@ def _listen(bench: Bench, topic: str, enough: int, period: float, step: float = 
 
 
 def _lost(evidence: Evidence, topic: str) -> int:
-    """Return the number of messages that were sent before the first one that the judge received."""
+    """Return the number of messages that the publisher sent before the first one that the judge received."""
     first = evidence.main.first("message", topic)
     return int(first.data.get("number", 1)) - 1 if first is not None else 0
 

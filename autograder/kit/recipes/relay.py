@@ -1,4 +1,4 @@
-"""A recipe for a node that listens on one topic and publishes on another. The author declares the right output."""
+"""A recipe for a node that listens on one topic and publishes on another; the author declares the right output."""
 
 from __future__ import annotations
 
@@ -20,16 +20,17 @@ __all__ = ["NAN", "NUMBER", "SILENCE", "WHOLE", "Relay"]
 
 NAN = float("nan")
 NUMBER, WHOLE = object(), object()
-"""Placeholders in the inputs for random numbers: multiples of a quarter, or whole numbers. No number is drawn twice."""
+"""Placeholders in the inputs for random numbers: multiples of a quarter, or whole numbers. All drawn numbers differ."""
 PATIENCE = {Pace.FAST: 2.0, Pace.REAL_TIME: 6.0}
-"""Time limit in seconds of wall time for the last message to come."""
+"""Time limit in seconds of wall time until the last message must have arrived."""
 
 Due = Callable[..., Any]
-"""A function of all inputs so far that returns the value to publish after the last one, or :data:`SILENCE`."""
+"""A function that is given all inputs so far and returns the value to publish after the last one, or :data:`SILENCE`.
+"""
 
 
 class Relay(Declared):
-    """A node that listens on one topic, and publishes on another a value computed from all inputs so far.
+    """An exercise about a node that publishes on one topic a value computed from all its inputs on another topic.
 
     Args:
         exercise_id: The lab's folder and the file's name, such as ``"lab_8_1.filter"``.
@@ -38,8 +39,8 @@ class Relay(Declared):
         field: The path of the field that contains the value in inputs and outputs, such as ``"range"`` or
             ``"pose.position.x"``.
         due: Returns the value to publish after the last of the inputs so far, or :data:`SILENCE`.
-        gives: The inputs, with :data:`NUMBER` or :data:`WHOLE` for each random number; or a function that draws all
-            of them, the same number in each run.
+        gives: The inputs, with :data:`NUMBER` or :data:`WHOLE` in place of each random number; or a function that draws
+            all inputs. It must draw the same number of inputs in each run.
         copies: The path of a field that each output copies from its input, such as ``"header.stamp"``. A field not
             named ``stamp`` must be a text.
         tolerance: The absolute or relative tolerance for numbers.
@@ -63,26 +64,26 @@ class Relay(Declared):
         self._tolerance = tolerance
 
     def answers(self, name: str, points: float, title: str, words: str = "") -> None:
-        """Add a criterion: exactly the right values come, in order. For the arguments see :meth:`asks`."""
+        """Add the criterion that exactly the right values come, in order. For the arguments see :meth:`asks`."""
         self._compares(name, points, title, lambda seen: self._made(seen, self._due), self._outputs, words)
 
     def copies(self, name: str, points: float, title: str, words: str = "") -> None:
-        """Add a criterion: each output contains the copied field of the input that it answers.
+        """Add the criterion that each output contains the copied field of the input that it answers.
 
-        Outputs are matched with inputs from the end, so that an additional or a missing message is not counted as
-        several errors.
+        Outputs are matched with inputs from the end, so that one additional or missing message counts as one error
+        only.
         """
         self._compares(name, points, title, self._copies_due, self._copies_made, words)
 
     def wrong(self, key: str, due: Due | Mapping[str, Any], says: str, next_step: str) -> None:
-        """Add a mistake: all outputs are those of a variant of ``due``, for as many inputs as the subject answered.
+        """Add the mistake that all outputs follow a variant of ``due``, for as many inputs as the subject answered.
 
         Args:
             key: A stable name for the mistake.
             due: The variant as a function, or other values for arguments of the right function, such as ``{"window":
                 99}``.
-            says: The text that tells the student what happened.
-            next_step: The text that tells the student what to do.
+            says: The text for the student that says what happened.
+            next_step: The text for the student that says what to do.
         """
         wrong = variant(self._due, due)
 
@@ -94,16 +95,16 @@ class Relay(Declared):
         self._knows(key, found, says, next_step)
 
     def not_copied(self, key: str = "not_copied") -> None:
-        """Add a mistake: the field that has to be copied is empty."""
+        """Add the mistake that the field to copy is empty."""
         self._knows(
             key,
             lambda seen: any(map(_is_empty, picked(seen, "message", self._copied))),
-            f"{self._copied} of your messages is empty: it was not copied.",
+            f"{self._copied} of your messages is empty: your code did not copy it.",
             f"Copy it from the message that came: out.{self._copied} = message.{self._copied}.",
         )
 
     def too_early(self, key: str = "too_early") -> None:
-        """Add a mistake: the subject publishes before it has had enough inputs."""
+        """Add the mistake that the subject publishes before it has had enough inputs."""
 
         def found(seen: Part) -> bool:
             inputs = self._inputs(seen)
@@ -117,8 +118,8 @@ class Relay(Declared):
         self._knows(
             key,
             found,
-            "Your node publishes before enough messages have come.",
-            "Keep what comes, and leave the callback without publishing until there is enough.",
+            "Your node publishes before it has received enough messages.",
+            "Store each message. Return from the callback without publishing until you have enough messages.",
         )
 
     def _happens(self, met: Met) -> bool:

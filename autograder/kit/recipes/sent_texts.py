@@ -1,4 +1,4 @@
-"""The texts that the judge sends to a listener. No student can guess them; careless programs change some."""
+"""Draws the texts that the judge sends to a listener: no program can guess them, and careless programs change some."""
 
 from __future__ import annotations
 
@@ -8,15 +8,17 @@ if TYPE_CHECKING:
     from random import Random
 
 SINGLY = 12
-"""The number of texts that are sent singly, each after the subject said the one before."""
+"""The number of texts that are sent one by one, each after the subject has reported the text before."""
 AT_PACE = 8
-"""The number of texts that are sent in real time at the given pace, without waiting for the subject."""
+"""The number of texts in a series that is sent in real time at the given pace, without waiting for the subject."""
 TRIES = 3
-"""The maximum number of tries, because a busy machine may be too slow for a moment."""
+"""The maximum number of series at the given pace. Several are needed, because a busy machine may be too slow for a
+moment.
+"""
 GREETING = "Hello, world!"
-"""The text with which many talkers begin their messages; some of the texts contain it."""
+"""The text with which many talkers begin their messages. Some of the judge's texts contain it."""
 KINDS = 6
-"""The number of kinds of unusual texts in each of the two series. In addition, one text comes twice."""
+"""The number of unusual texts in each series. In addition, one text comes twice."""
 
 _WORDS = (
     "amber", "birch", "cedar", "delta", "ember", "fjord", "grove", "harbour", "islet", "juniper", "kelp", "lagoon",
@@ -27,10 +29,11 @@ _ELSEWHERE = ("mgła", "łąka", "řeka", "erdő", "tűz")
 
 
 def random_texts(random: Random) -> list[str]:
-    """Return texts of words and a number. None contains another, and in each series one comes twice in a row.
+    """Return random texts, each with two words and a number. None contains another.
 
-    Some texts in each series are unusual: with the greeting of many talkers before or after; long and in capitals;
-    with braces and a percent sign; with letters beyond ASCII and two spaces; or without any space.
+    In each series, one text comes twice in a row. Others are unusual: with the greeting of many talkers before or after
+    it; long and in capitals; with braces and a percent sign; with letters beyond ASCII and two spaces; or without any
+    space.
     """
     count = 1 + TRIES * AT_PACE + SINGLY
     words = [f"{random.choice(_WORDS)} {random.choice(_WORDS)}" for _ in range(count)]

@@ -1,4 +1,4 @@
-"""A recipe for a service server. The judge calls it one call at a time, then several at once, then once more."""
+"""A recipe for a service server. The judge makes single calls, then several calls at once, then one more."""
 
 from __future__ import annotations
 
@@ -20,26 +20,26 @@ if TYPE_CHECKING:
 
 CALLS = "calls"
 AT_ONCE = 6
-"""The number of simultaneous calls. A service's queue holds 10; with 12 calls, even a right server loses some
-(measured).
+"""The number of simultaneous calls. The queue of a service holds 10 requests; with 12 calls, even a right server lost
+some (measured).
 """
 SERVER_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
-"""Time limit in seconds for a server on the graph to be matched with the judge's client."""
+"""Time limit in seconds until a server on the ROS graph is connected with the judge's client."""
 QUIET = {Pace.FAST: 2.0, Pace.REAL_TIME: 6.0}
-"""Seconds without any event, by pace, after which an answer is no longer expected."""
+"""The seconds without any event after which the judge no longer waits for an answer, for each pace."""
 SURE = 2
-"""The minimum number of answers that prove, for a server that ended by itself, that it did serve."""
+"""The minimum number of answers that prove that a server answers calls, even if it then ended by itself."""
 
 Fields = Mapping[str, Any]
 """The fields of a request or of a response, by name."""
 Objection = Callable[[Fields, Fields | None], str]
-"""A function that returns in words what is wrong with an answer to a request (None for no answer); empty if nothing is.
+"""A function of a request and its answer (None for no answer) that returns in words what is wrong; empty if nothing is.
 """
 
 
 @dataclass(frozen=True)
 class Server:
-    """A server as it behaved in its run.
+    """What the judge saw of a server.
 
     Attributes:
         part: The run in which the judge called the server.
@@ -56,17 +56,17 @@ class Server:
 
     @property
     def singly(self) -> list[Event]:
-        """The calls that are sent one at a time, each after the answer to the one before."""
+        """The calls that were sent one at a time, each after the answer to the call before."""
         return self.asked[: self.calls - AT_ONCE - 1]
 
     @property
     def together(self) -> list[Event]:
-        """The calls that are sent at the same time."""
+        """The calls that were sent at the same time."""
         return self.asked[self.calls - AT_ONCE - 1 : self.calls - 1]
 
     @property
     def last(self) -> list[Event]:
-        """The single call after all others, if it was made."""
+        """The single call after all others; empty if it was not made."""
         return self.asked[self.calls - 1 :]
 
     @cached_property
@@ -80,20 +80,20 @@ class Server:
         return common.servers(self.part)
 
     def objections(self, calls: Sequence[Event], objection: Objection) -> list[str]:
-        """Return in words what is wrong with the answers to these calls."""
+        """Return in words what is wrong with the answers to the given calls."""
         found = (objection(e.data["fields"], self.answers.get(int(e.data["call"]))) for e in calls)
         return [words for words in found if words]
 
     def all_right(self, calls: Sequence[Event], objection: Objection, expected: str) -> Finding:
-        """Judge whether these calls were made and each was answered correctly.
+        """Decide whether all given calls were made and answered correctly.
 
-        If two servers share the name, chance decides which of them answers a call. So one wrong answer counts against
-        all calls, because any of them could have received it.
+        If two servers have the same name, chance decides which of them answers a call. So one wrong answer counts
+        against every call, because any of them could have received it.
 
         Args:
             calls: Some of the calls in :attr:`asked`.
-            objection: Returns what is wrong with one answer.
-            expected: What the card says that these calls should bring.
+            objection: Returns in words what is wrong with one answer.
+            expected: The expected behavior in words for the card.
         """
         wrong = self.objections(self.asked if self.count > 1 else calls, objection)
         many = "1 more call answered" if len(calls) == 1 else f"{len(calls)} calls answered"
@@ -105,8 +105,8 @@ class Asks:
     """The recipe for a service server.
 
     Args:
-        singly: Draws the requests for the calls that are made one at a time.
-        ordinary: Draws one request, for each of the simultaneous calls and for the last one.
+        singly: Draws the requests for the calls that are made one after the other.
+        ordinary: Draws one request; it is called for each of the simultaneous calls and for the last one.
     """
 
     roles = ("service",)
@@ -117,7 +117,7 @@ class Asks:
         self._singly, self._ordinary = singly, ordinary
 
     def scenario(self, bench: Bench) -> None:
-        """Make one run: calls one at a time, several at once, and one more."""
+        """Make one run: single calls, several calls at once, and one more call."""
         service, type_name = bench.reference.only("service")
         bench.part(CALLS)
         caller = bench.call(service, type_name)
@@ -142,21 +142,22 @@ class Asks:
         return True
 
     def seen(self, evidence: Evidence) -> Server:
-        """Return the calls in the evidence, and how the subject answered them."""
+        """Return the subject's server, with the calls that the judge made and the answers."""
         return Server(evidence.main, len(evidence.reference.part(CALLS).of("asked")))
 
     def expected(self, evidence: Evidence) -> Server:
-        """Return the same for the recorded reference solution."""
+        """Return the server of the recorded reference solution."""
         part = evidence.reference.part(CALLS)
         return Server(part, len(part.of("asked")))
 
     def serves(self, evidence: Evidence) -> Finding:
-        """Decide whether there is exactly one server of the right name and type, and it answers."""
+        """Decide whether the subject has exactly one server with the right name and type, and it answers."""
         name, type_name = evidence.reference.only("service")
         seen, expected = self.seen(evidence), f"one server of {name} ({type_name}) that answers"
         if wrong := common.misfit(evidence, "service"):
             return Finding(False, expected, wrong)
-        # If a program answers and ends at once, the answer may or may not arrive; if it crashes, it has not sent one.
+        # If a program answers and then ends at once, chance decides whether the answer arrives. If it crashes, it has
+        # not sent an answer.
         enough = SURE if seen.part.traceback else max(SURE, len(seen.asked))
         if seen.part.ending is not None and len(seen.answers) < enough:
             return Finding(False, expected, "it ended by itself while it was called")
@@ -168,11 +169,11 @@ class Asks:
         return (
             common.two_servers(
                 "service",
-                "Each call reaches both, and whichever is quicker answers.",
-                "Call create_service once, and make one node only.",
+                "Each call reaches both servers, and the quicker one answers.",
+                "Call create_service only once, and make only one node.",
             ),
-            # A wrong answer is checked before any crash, because it may be the cause: if it does not fit into its
-            # field, rclpy's server crashes.
+            # A wrong answer is checked before crashes, because rclpy's server crashes if an answer does not fit into
+            # its field.
             OWN,
             *common.connecting("service"),
             *common.spinning("service"),

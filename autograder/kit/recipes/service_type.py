@@ -1,4 +1,4 @@
-"""A recipe for a package that defines a service type. The judge reads the file, builds the package, compares types."""
+"""A recipe for a package that defines a service type. The judge builds it and compares the generated type."""
 
 from __future__ import annotations
 
@@ -19,21 +19,23 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Evidence
 
 GROUP = "rosidl_interface_packages"
-"""The group that marks a package, in its package.xml, as one that defines interfaces."""
+"""The group in package.xml that marks a package as one that defines interfaces."""
 NEEDED = {
     "rosidl_default_generators": ("buildtool_depend", "building the package needs the generators"),
     "rosidl_default_runtime": ("exec_depend", "a program that uses its types needs this library"),
 }
-"""The dependencies of such a package, each with its tag in the ROS documentation ("Creating custom msg and srv files",
-section 5) and the reason for it. Any dependency tag is accepted.
+"""For each dependency that an interface package needs: its tag in the ROS documentation ("Creating custom msg and srv
+files", section 5) and the reason for it. The judge accepts any dependency tag.
 """
 SERVICE = "/interface_of_the_workspace"
-"""The service that a program of the judge serves with the student's type, so that the type is visible on the wire."""
+"""The name of the service that a program of the judge serves with the student's type, so that the type is visible on
+the network.
+"""
 BEGINNING = 15.0
 """Time limit in seconds of wall time for reading the packages."""
 PART = "building"
 Fields = list[tuple[str, str]]
-"""The type and the name of each field, in order."""
+"""The fields of a request or a response: the type and the name of each, in order."""
 
 
 class ServiceType(SeenAsItIs):
@@ -41,7 +43,7 @@ class ServiceType(SeenAsItIs):
 
     Args:
         file: The name of the file in the task, such as ``"AddTwoInts.srv"``.
-        package: A good name for the package, for use in advice; the judge accepts any name.
+        package: The package's name in advice; the judge accepts any name.
     """
 
     roles = ("service",)
@@ -51,7 +53,7 @@ class ServiceType(SeenAsItIs):
         self.runner = ServesInterface(file, SERVICE)
 
     def scenario(self, bench: Bench) -> None:
-        """Read the file, build the package, and compare the generated type on the wire."""
+        """Read the file, build the package, and serve the generated type to compare its type hashes."""
         bench.part(PART)
         bench.start()
         bench.wait_until(lambda e: report_of(e.main, "found") is not None, BEGINNING)
@@ -67,11 +69,11 @@ class ServiceType(SeenAsItIs):
         return [(p, i) for p in packages for i in p.interfaces if i.file.rpartition("/")[2] == self._file]
 
     def _texts(self, evidence: Evidence) -> list[tuple[str, str]]:
-        """Return the path and the text of each file with this name, if the report contains the text."""
+        """Return the path and the text of each file with the task's name whose text the report contains."""
         return [(file.file, file.text) for _, file in self._holders(evidence) if file.text is not None]
 
     def has_the_fields(self, evidence: Evidence) -> Finding:
-        """Decide whether the file has the reference's fields: the same names, types and order."""
+        """Decide whether the file has the reference's fields: the same types and names in the same order."""
         expected, texts = _expected(evidence), self._texts(evidence)
         right = any(fields(text) == expected for _, text in texts) or (bool(texts) and not expected)
         if not right and not self._is_read(evidence):
@@ -82,7 +84,7 @@ class ServiceType(SeenAsItIs):
         return Finding(right, _shown(expected), seen or "an empty file")
 
     def declares(self, evidence: Evidence) -> Finding:
-        """Decide whether package.xml declares everything that building and using the package elsewhere needs."""
+        """Decide whether package.xml declares everything that another computer needs to build and use the package."""
         expected = f"package.xml names {' and '.join(NEEDED)}"
         package = self._most_thorough(evidence)
         if package is None:
@@ -91,19 +93,19 @@ class ServiceType(SeenAsItIs):
         return Finding(not names, expected, f"it does not name {names}" if names else "it does")
 
     def _most_thorough(self, evidence: Evidence) -> PackageReport | None:
-        """Return, of the packages with such a file, the one that declares most of what it needs."""
+        """Return the package with such a file that declares most of what it needs; None if there is none."""
         packages = (package for package, _ in self._holders(evidence))
         return min(packages, key=lambda package: len(_undeclared(package)), default=None)
 
     def _is_read(self, evidence: Evidence) -> bool:
-        """Return True if the report left out neither a file with this name nor its text."""
+        """Return True if the report contains each file with the task's name, and its text."""
         if files := [file for _, file in self._holders(evidence)]:
             return all(file.text is not None for file in files)
         report = workspace.build_report(evidence.main)
         return report is None or report.complete
 
     def builds(self, evidence: Evidence) -> Finding:
-        """Decide whether colcon builds the package and it generates the interface."""
+        """Decide whether colcon builds the package, and the build generates the interface."""
         expected = f"colcon builds a package that generates {self._file.partition('.')[0]}"
         report = report_of(evidence.main)
         if report is None:
@@ -114,10 +116,11 @@ class ServiceType(SeenAsItIs):
             return Finding(False, expected, workspace.seen_of_build(report))
         if report.missing:
             return Finding(False, expected, f"built; no {report.missing}")
-        # A file with the right name proves little, but a program can serve only a type that was really generated.
+        # A generated file with the right name proves little. A program that serves the type proves that the type was
+        # generated.
         served = evidence.main.first("type", SERVICE) is not None
         return Finding(
-            served, expected, "built" if served else "built, but no program can use what came of it"
+            served, expected, "built" if served else "built, but no program can use the generated type"
         )
 
     def is_on_the_wire(self, evidence: Evidence) -> Finding:
@@ -125,33 +128,34 @@ class ServiceType(SeenAsItIs):
         seen = evidence.main.first("type", SERVICE)
         expected = "a service of this type, with these fields"
         if seen is None:
-            return Finding(False, expected, "no service could be made of it")
+            return Finding(False, expected, "no program could serve a service of this type")
         right = bool(seen.data["same"])
         return Finding(right, expected, str(seen.data["type"]) + ("" if right else ", with other fields"))
 
     def _three_dashes(self, evidence: Evidence) -> Advice | None:
-        """Return advice unless exactly one line of three dashes separates request and response."""
+        """Return advice if the file does not have exactly one line of three dashes, between request and response."""
         for file, text in self._texts(evidence):
             number = len(fields(text))
             if number == 2:
                 continue
             return Advice(
-                f"{file} has {number - 1} lines of three dashes; a service has exactly one, between request "
-                "and response.",
-                "Keep one line with nothing but ---, after the request's fields. Below it come the response's.",
+                f"{file} has {number - 1} lines of three dashes, but a service has exactly one, between request and "
+                "response.",
+                "Write exactly one line that contains only ---. The fields of the request are above this line, those "
+                "of the response below it.",
             )
         return None
 
     def _interface_fields(self, evidence: Evidence) -> Advice | None:
-        """Return advice if the fields differ from the reference's."""
+        """Return advice if the fields in the file differ from the reference's."""
         finding = self.has_the_fields(evidence)
         texts = self._texts(evidence)
         if finding.passed or not texts or not self._is_read(evidence) or len(fields(texts[0][1])) != 2:
             return None
         return Advice(
             f"{texts[0][0]} has the fields {finding.seen}; the task asks for {finding.expected}.",
-            "A field is its type and its name (`int64 a`). Other programs use these very names and types; the order "
-            "counts, too.",
+            "A field has a type and a name, as in `int64 a`. Types, names and order must be the same, because other "
+            "programs use them.",
         )
 
     def _interface_in_python_package(self, evidence: Evidence) -> Advice | None:
@@ -164,24 +168,24 @@ class ServiceType(SeenAsItIs):
         ):
             return None
         return Advice(
-            f"{holders[0][0].name} is an ament_python package: nothing is generated from {self._file} there, whatever "
-            "setup.py says.",
-            f"Put it into a package of its own: `ros2 pkg create --build-type ament_cmake {self._package}`.",
+            f"{holders[0][0].name} is an ament_python package. Such a package generates nothing from {self._file}, "
+            "whatever setup.py says.",
+            f"Make a separate package for {self._file}: `ros2 pkg create --build-type ament_cmake {self._package}`.",
         )
 
     def _member_of_group(self, evidence: Evidence) -> Advice | None:
-        """Return advice if package.xml lacks the line that marks an interface package, or has it inside a comment."""
+        """Return advice if package.xml lacks the line that marks an interface package, or has it in a comment."""
         holders = self._holders(evidence)
         named = any(GROUP in package.dependencies for package, _ in holders)
         if self.builds(evidence).passed or not holders or named:
             return None
         return Advice(
             f"package.xml of {holders[0][0].name} does not say that it is an interface package.",
-            f"Add <member_of_group>{GROUP}</member_of_group> to package.xml, above <export> and outside of comments.",
+            f"Add <member_of_group>{GROUP}</member_of_group> to package.xml, above <export> and not inside a comment.",
         )
 
     def _interface_not_listed(self, evidence: Evidence) -> Advice | None:
-        """Return advice if the package builds, but generates nothing from the file."""
+        """Return advice if the package builds, but the build generates nothing from the file."""
         report = report_of(evidence.main)
         holders = self._holders(evidence)
         if report is None or not report.built or report.missing in ("", AMENT_PACKAGE) or not holders:
@@ -189,13 +193,13 @@ class ServiceType(SeenAsItIs):
         package, file = holders[0]
         return Advice(
             f"{package.name} builds, but nothing was generated from {file.file}"
-            + ("." if file.listed else ": CMakeLists.txt does not name it."),
-            f'In CMakeLists.txt: rosidl_generate_interfaces(${{PROJECT_NAME}} "srv/{self._file}"), above '
+            + ("." if file.listed else ", because CMakeLists.txt does not name this file."),
+            f'In CMakeLists.txt, write rosidl_generate_interfaces(${{PROJECT_NAME}} "srv/{self._file}") above '
             "ament_package().",
         )
 
     def _dependency_missing(self, evidence: Evidence) -> Advice | None:
-        """Return advice if everything works here, but package.xml does not declare a dependency that this needs."""
+        """Return advice if everything works on this computer, but package.xml does not declare a dependency."""
         holder = self._most_thorough(evidence)
         undeclared = _undeclared(holder) if holder is not None else []
         if holder is None or not undeclared:
@@ -203,9 +207,9 @@ class ServiceType(SeenAsItIs):
         name = undeclared[0]
         tag, reason = NEEDED[name]
         return Advice(
-            f"package.xml of {holder.name} does not name {name}. It works here, because this computer has it; "
-            "on another computer it would not be installed.",
-            f"Add <{tag}>{name}</{tag}> above <export>, outside of comments: {reason}.",
+            f"package.xml of {holder.name} does not name {name}. The package works on this computer, because {name} "
+            "is installed here. On another computer it would not be installed.",
+            f"Add <{tag}>{name}</{tag}> above <export> and not inside a comment: {reason}.",
         )
 
     @property
@@ -244,7 +248,7 @@ def fields(text: str) -> list[Fields]:
 
 
 def _undeclared(package: PackageReport) -> list[str]:
-    """Return the dependencies that a package needs and does not declare."""
+    """Return the dependencies that an interface package needs but does not declare."""
     return [name for name in NEEDED if name not in package.dependencies]
 
 

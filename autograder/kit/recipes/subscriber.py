@@ -1,4 +1,4 @@
-"""A subscriber that reports each text that it hears. The judge sends texts that cannot be guessed, in two ways."""
+"""A recipe for a subscriber that must report each text that it receives. No program can guess the judge's texts."""
 
 from __future__ import annotations
 
@@ -19,29 +19,31 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Event, Evidence, Part
 
 STEPS = 2
-"""The number of steps of simulated time from one text to the next. In each step a listener takes what it was sent."""
+"""The number of steps of simulated time from one text to the next. After each step, the judge waits until the listener
+has processed what was sent to it.
+"""
 SIMULATED = 20
-"""The number of texts for a listener that follows simulated time, all of them sent at the given pace."""
+"""The number of texts that are sent to a listener that follows simulated time, all of them at the given pace."""
 PATIENCE = {Pace.FAST: 1.0, Pace.REAL_TIME: 3.0}
 """Time limit in seconds of wall time for a listener to report a text."""
 BEFORE = 1.0
-"""Seconds to wait before the first text, to see whether the listener reports one that was not sent. They are simulated
-for a listener that follows simulated time.
+"""Seconds to wait before the first text, to see whether the listener invents a text. For a listener that follows
+simulated time, these are simulated seconds.
 """
 REPLACED = 2
-"""A listener that replaces its subscription at least this many times makes a new subscription for each text."""
+"""If a listener replaces its subscription this many times, it makes a new subscription for each text."""
 AFTERMATH = 2.5
-"""Seconds to wait after the last text, to see whether the listener repeats a text or reports one that was not sent.
-They are simulated for a listener that follows simulated time.
+"""Seconds to wait after the last text, to see whether the listener repeats or invents a text. For a listener that
+follows simulated time, these are simulated seconds.
 """
 
 
 class Speaks:
-    """The recipe for a subscriber that reports each text that it hears, with any words around it.
+    """The recipe for a subscriber that must report each text that it receives, with any words around it.
 
     Args:
-        pace: Seconds between two successive texts, as another node would send them.
-        paced_by: The name of the node with this pace, in words for a student.
+        pace: The time in seconds between two successive texts.
+        paced_by: The node that sends at this pace, in words for the student.
     """
 
     roles = ("subscription",)
@@ -51,7 +53,7 @@ class Speaks:
         self._step = pace / STEPS
 
     def scenario(self, bench: Bench) -> None:
-        """Send texts that no program can guess: first some at the pace, then some one by one, each after a report."""
+        """Send texts that no program can guess: first some at the pace, then some one by one."""
         topic, type_name = bench.reference.only("subscription")
         texts = random_texts(bench.random)
         bench.part("listening", texts=texts)
@@ -71,8 +73,8 @@ class Speaks:
         speaker.send(data=texts[0])
         simulated = bench.wait_until(_is_simulated, 0.0)
         if simulated:
-            # This pause has the same length as all others, so that the time of the next text does not depend on how
-            # soon the listener reports this one.
+            # The pause does not depend on how soon the listener reports this text, because all pauses must have the
+            # same length.
             bench.run_time(self._pace, step=self._step)
         if not self._are_said(bench, texts[:1]):
             self._ask_once_more(bench, speaker, texts[1])
@@ -80,11 +82,11 @@ class Speaks:
         if simulated:
             return self._are_said_at_pace(bench, speaker, texts[1:SIMULATED])
         kept = any(self._are_said_at_pace(bench, speaker, row) for row in _rows(texts))
-        # If it missed some at that pace, two more texts show whether it reports texts for which it gets enough time.
+        # If the listener missed texts at the pace, two more texts show whether it reports texts if it gets enough time.
         return all(self._is_answered(bench, speaker, text) for text in texts[-SINGLY:][: None if kept else 2])
 
     def _ask_once_more(self, bench: Bench, speaker: Speaker, text: str) -> None:
-        """Send one more text to a listener that has reported nothing, because it may report the text before."""
+        """Send one more text to a listener that has reported nothing, because it may report each text late."""
         first = bench.seen().first("sent")
         if not bench.seen().said(after=first):
             speaker.send(data=text)
@@ -107,7 +109,7 @@ class Speaks:
             return True
         if not bench.wait_until(_is_simulated, 0.0):
             return False
-        # A listener may use its own timer to report what it has heard.
+        # A listener may report texts from a timer.
         bench.run_time(PATIENCE[bench.pace], until=lambda: bench.wait_until(said, 0.0), step=self._step)
         return bench.wait_until(said, PATIENCE[bench.pace])
 
@@ -116,12 +118,12 @@ class Speaks:
         return evidence.main
 
     def expected(self, evidence: Evidence) -> Part:
-        """Return the record of the subject, too: it contains the expected texts, which are drawn for each check."""
+        """Return the record of the subject, because it also contains the texts, which are drawn for each check."""
         return evidence.main
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:
-        """The common mistakes, the most informative first."""
+        """The common mistakes, most specific first."""
         return (
             unfinished.NEVER_CONSTRUCTED,
             *common.connecting("subscription"),
@@ -139,18 +141,18 @@ class Speaks:
         )
 
     def _too_slow(self, evidence: Evidence) -> Advice | None:
-        """The listener reports a text if it gets enough time, but misses texts that come at the pace."""
+        """Return advice if the listener misses texts that come at the pace, but reports texts that come one by one."""
         texts, missing = list(evidence.main.inputs.get("texts", ())), _missing(evidence)
         singly = [event for event in _sent(evidence) if _text(event) in texts[-SINGLY:]]
         if _is_simulated(evidence) or not singly or not missing or any(event in singly for event in missing):
             return None
         if all(is_said(_text(event), evidence.main) for event in missing):
-            return None  # only texts that came once more are missing
+            return None  # Only texts that were sent twice are missing.
         return Advice(
-            f"At the pace of {self._paced_by}, a string every {self._pace:g} s, your listener misses some, such as "
-            f"“{_text(missing[0])}”; of strings that come one at a time it misses none.",
-            "While a callback runs, new messages wait, and no more of them than the depth of the queue. Let the "
-            "callback only log and return, without time.sleep, and give the subscription the depth 10.",
+            f"At the pace of {self._paced_by}, one string every {self._pace:g} s, your listener misses some strings, "
+            f"such as “{_text(missing[0])}”. If strings come one by one, it misses none.",
+            "While a callback runs, new messages wait in a queue. If the queue is full, messages are lost. So only "
+            "log in the callback and return, without time.sleep, and give the subscription the queue depth 10.",
         )
 
 
@@ -158,18 +160,18 @@ class Speaks:
 
 
 def _rows(texts: Sequence[str]) -> list[Sequence[str]]:
-    """Return the texts that are sent at the lab's pace in real time, as one group for each try."""
+    """Return the series of texts that are sent at the pace in real time, one for each try."""
     return [texts[1 + AT_PACE * i : 1 + AT_PACE * (i + 1)] for i in range(TRIES)]
 
 
 def _is_simulated(evidence: Evidence) -> bool:
-    """Return True if the subject followed the judge's clock when the last text was sent."""
+    """Return True if the subject followed simulated time when the last text was sent."""
     sent = evidence.main.of("sent")
     return bool(sent) and sent[-1].sim is not None
 
 
 def _says(texts: Sequence[str], evidence: Evidence) -> bool:
-    """Return True if each of these texts was reported after it was sent, and again if it was sent again."""
+    """Return True if each of the texts was reported after it was sent; a text that was sent twice, twice."""
     awaited = [event for event in _sent(evidence) if _text(event) in texts]
     return all(is_said(_text(event), evidence.main, after=event) for event in awaited)
 
@@ -197,10 +199,10 @@ def subscribes(evidence: Evidence) -> Finding:
 
 
 def _subscriptions(part: Part, topic: str) -> dict[str, str]:
-    """Return the topics of subscriptions with their types; none for a program that ended before it was sent anything.
+    """Return the types of the subscriptions by topic; none for a program that ended before the judge sent a text.
 
-    For such a program, chance decides whether the graph showed its subscriptions before they were gone. A notebook's
-    class is not spun until its subscriptions are known.
+    For such a program, chance decides whether the graph shows its subscriptions. A notebook's class is not spun until
+    its subscriptions are known, so they always count.
     """
     ending, sent = part.ending, part.first("sent", topic)
     met = ending is None or part.first("subject", "constructed") or (sent and _is_before(part, sent, ending))
@@ -212,7 +214,10 @@ def _is_before(part: Part, event: Event, other: Event) -> bool:
 
 
 def _missing(evidence: Evidence) -> list[Event]:
-    """Return the texts that were not reported, except those sent at a pace that the listener kept in another try."""
+    """Return the texts that were not reported.
+
+    If the listener reported all texts of one series at the pace, the other series at the pace do not count.
+    """
     part, sent = evidence.main, _sent(evidence)
     silent = [event for event in sent if not is_said(_text(event), part, after=event)]
     if _is_simulated(evidence):
@@ -227,23 +232,23 @@ def _missing(evidence: Evidence) -> list[Event]:
 
 
 def _replaced(evidence: Evidence) -> int:
-    """Return how many subscriptions of the listener were replaced by another one after the first text was sent."""
+    """Return how many of the listener's subscriptions were replaced by a new one after the first text was sent."""
     sent, part = _sent(evidence), evidence.main
     if not sent:
         return 0
     met = [event.data for event in part.of("matched", sent[0].name) if _is_before(part, sent[0], event)]
     gone = [data["count"] - data.get("now", data["count"]) for data in met]
-    # A subscription that disappeared at the end of the program has no successor.
+    # A subscription that disappears when the program ends is not replaced.
     return max((gone[i] for i in range(len(met) - 1) if met[-1]["count"] > met[i]["count"]), default=0)
 
 
 def _expected_texts(evidence: Evidence) -> int:
-    """Return the number of texts that are sent to a listener that says all of them."""
+    """Return the number of texts that the judge sends to a listener that reports all of them."""
     return SIMULATED if _is_simulated(evidence) else 1 + AT_PACE + SINGLY
 
 
 def says_every_text(evidence: Evidence) -> Finding:
-    """Decide whether each text that was sent is reported afterwards."""
+    """Decide whether the listener reports each text after it was sent."""
     sent, missing = _sent(evidence), _missing(evidence)
     topic, _ = evidence.reference.only("subscription")
     no_subscriber = f"no node subscribed to {topic}, so nothing was sent"
@@ -253,7 +258,7 @@ def says_every_text(evidence: Evidence) -> Finding:
     complete = len(sent) >= _expected_texts(evidence) and not missing
     if complete and (replaced := _replaced(evidence)) >= REPLACED:
         return Finding(
-            False, "one subscription, which hears every string", f"{replaced + 1} one after another"
+            False, "one subscription that receives every string", f"{replaced + 1} one after another"
         )
     if sent and not missing and not complete:
         seen += ", and then it no longer answered the judge"
@@ -261,7 +266,7 @@ def says_every_text(evidence: Evidence) -> Finding:
 
 
 def says_nothing_else(evidence: Evidence) -> Finding:
-    """Decide whether the listener reports no text that was never sent, and none repeatedly."""
+    """Decide whether the listener reports only texts that were sent, and none of them repeatedly."""
     sent = _sent_texts(evidence)
     heard_any = any(is_said(text, evidence.main) for text in sent)
     made_up, again = invented(evidence.main, sent), repeated(evidence.main, sent)
@@ -271,9 +276,9 @@ def says_nothing_else(evidence: Evidence) -> Finding:
     elif again:
         seen = "“{}” {} times".format(*_most_often(again))
     elif anew:
-        seen = f"with each string all before it once more: “{anew}”"
+        seen = f"with each string also all strings before it: “{anew}”"
     else:
-        seen = "only what was sent" if heard_any else "it said none of the strings"
+        seen = "only what was sent" if heard_any else "none of the strings"
     return Finding(
         heard_any and not (made_up or again or anew), "only what was sent, and each string only once", seen
     )
@@ -284,27 +289,28 @@ def _most_often(again: Mapping[str, int]) -> tuple[str, int]:
 
 
 def _said_again(evidence: Evidence) -> Advice | None:
-    """The listener reports texts more often than they were sent."""
+    """Return advice if the listener reports texts more often than they were sent."""
     sent = _sent_texts(evidence)
     again = repeated(evidence.main, sent)
     if not again and retold(evidence.main, sent):
         return Advice(
-            "With each string that arrives, your program says all that came before once more.",
-            "Log the string of the message that the callback was just given, its field data, and not the list or text "
-            "in which you keep them all.",
+            "With each string that arrives, your program repeats all earlier strings.",
+            "Log only the field data of the message that the callback was just given, and not a list or text with "
+            "all earlier strings.",
         )
     if not again:
         return None
     text, times = _most_often(again)
     return Advice(
         f"Your program says “{text}” {times} times for one message.",
-        "Call create_subscription once, in __init__, and log in its callback, once for each message: a timer cannot "
-        "know whether a message came. In a notebook, an earlier run of the cell may have left a node of its own.",
+        "Call create_subscription only once, in __init__. Log in its callback, once for each message; do not log in "
+        "a timer, because a timer cannot know whether a message came. In a notebook, a node from an earlier run of "
+        "the cell may still exist.",
     )
 
 
 def _changed_text(evidence: Evidence) -> Advice | None:
-    """The listener reports some texts with changes."""
+    """Return advice if the listener reports a text with changes."""
     part, sent = evidence.main, _sent(evidence)
     for event in _missing(evidence):
         later = sent[sent.index(event) + 1 :][:1]
@@ -313,26 +319,26 @@ def _changed_text(evidence: Evidence) -> Advice | None:
         made_up = [line for line in changed(part, _sent_texts(evidence), _text(event)) if line in lines]
         if made_up:
             return Advice(
-                f"When “{_text(event)}” was sent, your node said “{made_up[0]}”: that is not the string as it came.",
-                "Log the field data of the message as it is, without strip, replace, slices or other changes.",
+                f"When “{_text(event)}” was sent, your node said “{made_up[0]}”, which is not the same string.",
+                "Log the field data of the message unchanged, without strip, replace, slices or other changes.",
             )
     return None
 
 
 def _subscribes_again(evidence: Evidence) -> Advice | None:
-    """The listener makes a new subscription for each text: messages sent in between are lost."""
+    """Return advice if the listener makes a new subscription for each text, so that texts in between are lost."""
     if not _replaced(evidence):
         return None
     return Advice(
-        "Your program takes its subscription away and makes a new one after a string has come. A string that is sent "
-        "in between is lost, so how many it logs is chance.",
-        "Call create_subscription once, before you spin, and log in its callback. wait_for_message makes a "
-        "subscription of its own each time that you call it.",
+        "After a string has arrived, your program destroys its subscription and makes a new one. Strings that are "
+        "sent in between are lost, so chance decides how many strings it logs.",
+        "Call create_subscription only once, before you spin, and log in its callback. Do not use wait_for_message: "
+        "it makes a new subscription at each call.",
     )
 
 
 def _not_logged(evidence: Evidence) -> Advice | None:
-    """The listener is subscribed and was sent texts, but reports none of them."""
+    """Return advice if the listener has a right subscription, but does not report all texts."""
     topic, _ = evidence.reference.only("subscription")
     part, sent = evidence.main, _sent(evidence)
     silent = next(iter(_missing(evidence)), None)
@@ -342,34 +348,36 @@ def _not_logged(evidence: Evidence) -> Advice | None:
     bytes_said = next((line for line in words if _text(silent) in line), None)
     if bytes_said is not None:
         return Advice(
-            f"Your node said “{bytes_said}”: these are the bytes of the message as they travel, not its string.",
-            "Leave raw=True out of create_subscription: the callback then gets a message with a string in it.",
+            f"Your node said “{bytes_said}”: these are the bytes of the serialized message, not its string.",
+            "Delete raw=True from create_subscription. The callback then gets a message with a string in its field "
+            "data.",
         )
     if any(is_said(_text(event), part) for event in sent):
         return Advice(
-            f"Your node said some of the strings, but not “{_text(silent)}” when that was sent.",
-            "Log the string of every message that the callback is given: without `once`, throttling or a condition, "
-            "and not one that you kept before.",
+            f"Your node reported some of the strings, but not “{_text(silent)}” when that string was sent.",
+            "Log the string of every message that the callback is given, without `once`, throttling or a condition. "
+            "Do not log an earlier message instead.",
         )
     if not words:
         return Advice(
-            f"Your node is subscribed to {topic}, but when a string arrives it says nothing.",
-            "In the callback, log the field data of the message that it is given, as in "
-            "self.get_logger().info(f'I heard: \"{message.data}\"'). If you print it, leave out end=...: a line counts "
-            "when it has ended.",
+            f"Your node is subscribed to {topic}, but prints nothing when a string arrives.",
+            "In the callback, log the field data of the message that it is given, as in self.get_logger().info(f'I "
+            'heard: "{message.data}"\'). If you use print, do not use end=..., because the judge reads only '
+            "complete lines.",
         )
     return Advice(
-        f"When “{_text(silent)}” was sent, your node said “{words[0]}”: the string that arrived is not in it.",
-        "Put the field data of the message into the line that you log, in braces, with an f before the string.",
+        f"When “{_text(silent)}” was sent, your node said “{words[0]}”, which does not contain the string that "
+        "arrived.",
+        "Put the field data of the message into the line that you log: in braces, with an f before the quotation mark.",
     )
 
 
 def _invented_text(evidence: Evidence) -> Advice | None:
-    """The listener reports texts that were never sent."""
+    """Return advice if the listener reports texts that were never sent."""
     made_up = invented(evidence.main, _sent_texts(evidence))
     if not made_up:
         return None
     return Advice(
-        f"Your node said “{made_up[0]}”, but no node sent that.",
+        f"Your node said “{made_up[0]}”, but no node sent that string.",
         "Log only in the subscription's callback: the field data of the message that it was given, unchanged.",
     )

@@ -1,6 +1,7 @@
-"""A recipe for a node that reports each change of a state. The author writes how inputs and time decide the state.
+"""A recipe for a node that reports each change of a state; the author writes how inputs and time decide the state.
 
-Time alone may change the state: ``"lost"`` after a second without a message, ``"back"`` with the next one.
+Time alone may change the state. For example, it is ``"lost"`` after a second without a message, and ``"back"`` with the
+next message.
 """
 
 from __future__ import annotations
@@ -25,18 +26,18 @@ if TYPE_CHECKING:
 __all__ = ["SILENCE", "Watch"]
 
 EARLY = 0.15
-"""The maximum number of seconds by which a message may report a state too early: three steps of the judge's clock."""
+"""The maximum number of seconds by which a report may come too early: three steps of the judge's clock."""
 BUSY = 0.25
-"""The maximum number of seconds by which a message in real time may come later than the task allows, because a busy
-machine delays a node.
+"""The maximum number of seconds by which a report in real time may come later than the task allows, because a busy
+machine delays the node.
 """
 GRAIN = 0.02
-"""Seconds between two moments for which the state is computed."""
+"""The time in seconds between two successive moments at which the right state is computed."""
 
 
 @dataclass
 class Span:
-    """An interval in which one state holds, which the subject has to report once.
+    """An interval of time in which one state holds. The subject must report this state once.
 
     Attributes:
         state: The state.
@@ -52,20 +53,21 @@ class Span:
 
 
 class Watch(Declared):
-    """The recipe for a node that listens on one topic and reports a state on another, once at each change and in time.
+    """An exercise about a node that listens on one topic and reports each change of a state on another, in time.
 
     Args:
         exercise_id: The exercise's id, such as ``"lab_8_1.watchdog"``.
         title: The title of the card: the lab and the subject.
         task: One sentence that states the task.
         state: Returns the state, given all messages that the node was sent so far, each with its ``age`` in seconds,
-            ``value`` and ``name``. For no messages it returns the initial state. The node must report neither the
+            ``value`` and ``name``. Given no messages, it returns the initial state. The node must report neither the
             initial state nor :data:`SILENCE`.
-        gives: The messages, each with the seconds until the next one or the end. A dictionary is a whole message,
-            anything else its field ``data``. In real time these seconds get longer on a busy machine, so let them
-            differ from every limit by at least a quarter of a second. Let changes be due in different thirds of a
-            second: then a node that looks only once a second is late at one of them.
-        within: Time limit in seconds for reporting a change, as stated in the task.
+        gives: The messages, each with the seconds until the next message or the end. A dictionary is a whole message;
+            anything else is the value of its field ``data``. On a busy machine these seconds may get longer in real
+            time, so choose seconds that differ from each limit by at least a quarter of a second. Choose them so that
+            changes fall into different thirds of a second: then a node that checks the time only once a second is late
+            for one of the changes.
+        within: The time limit in seconds for reporting a change, as in the task.
         waits: Seconds of wall time before the first message, in which the node must not report anything.
         field: The path of the message field that contains the state.
     """
@@ -88,17 +90,17 @@ class Watch(Declared):
         self._field = field
 
     def says(self, name: str, state: Any, points: float, title: str, words: str = "") -> None:
-        """Add a criterion: whenever a state begins, the node reports it in time.
+        """Add the criterion that the node reports a state in time whenever that state begins.
 
-        A state does not count as missed if it ends before the time limit, or if the node did not report the state
-        before it either.
+        A state does not count as missed if it ends before the time limit, or if the node did not report the previous
+        state.
 
         Args:
-            name: A stable key.
+            name: A stable key for the criterion.
             state: The state to report.
-            points: The points for it.
-            title: One line for people.
-            words: The words of the task that the criterion judges.
+            points: The points that the criterion is worth.
+            title: The criterion in one line, as the card shows it.
+            words: The sentence of the task that the criterion judges.
         """
 
         def judge(seen: Part, expected: Part) -> Finding:
@@ -122,7 +124,7 @@ class Watch(Declared):
         self._judges(name, words)
 
     def once(self, name: str, points: float, title: str, words: str = "") -> None:
-        """Add a criterion: every message reports a state that is due, and only once; arguments as in :meth:`asks`."""
+        """Add the criterion that each message reports a due state, and each state only once. See :meth:`asks`."""
 
         def judge(seen: Part, expected: Part) -> Finding:
             _, stray = self._matched(seen, self._state)
@@ -136,7 +138,7 @@ class Watch(Declared):
         self._judges(name, words)
 
     def wrong(self, key: str, state: State | Mapping[str, Any], says: str, next_step: str) -> None:
-        """Add a mistake: all messages fit a wrong variant of the state; arguments as in :meth:`Relay.wrong`."""
+        """Add the mistake that all messages fit a wrong variant of the state. See :meth:`Relay.wrong`."""
         wrong = variant(self._state, state)
 
         def fits(seen: Part, rule: State) -> bool:
@@ -149,59 +151,60 @@ class Watch(Declared):
         self._knows(key, found, says, next_step, certain=False)
 
     def exercise(self) -> Exercise:
-        """Return the exercise, with the ready-made mistakes after its own."""
+        """Return the finished exercise. The mistakes of this recipe follow those of the exercise."""
         for key, found, says, next_step, certain in self._ready_made():
             self._knows(key, found, says, next_step, certain=certain)
         return super().exercise()
 
     def _ready_made(self) -> Iterator[tuple[str, Callable[[Part], str], str, str, bool]]:
-        """Yield each mistake that any such node may show: its key, the function that finds it, two texts, certainty."""
+        """Yield this recipe's mistakes: key, function that finds the mistake, two texts, whether it is certain."""
         yield (
             "too_early",
             self._before_the_first,
-            "Your node says {} before it has heard anything.",
-            "Begin to watch with the first message: keep None as the time of the last one until then.",
+            "Your node reports {} before it has received any message.",
+            "Start to count the time at the first message: store None as the time of the last message until then.",
             True,
         )
         yield (
             "never_told",
             self._never_told,
-            "Your node never says {}.",
-            "Say it, spelled like this, when it becomes true.",
+            "Your node never reports {}.",
+            "Publish this state, with exactly this spelling, when it begins.",
             False,
         )
         yield (
             "told_too_often",
             self._repeated,
-            "Your node says {} twice in a row.",
-            "Remember what you have said, and say only what differs from it.",
+            "Your node reports {} twice in a row.",
+            "Store the state that you published last, and publish a state only if it differs from that one.",
             True,
         )
         yield (
             "only_in_answer",
             self._only_in_answer,
-            "Your node says {} only when the next message comes. If none comes any more, it says nothing.",
-            "Look at the time in a timer, too, and not only in the callback of the subscription.",
+            "Your node reports {} only when the next message comes. If no more messages come, it reports nothing.",
+            "Check the time in a timer, too, and not only in the callback of the subscription.",
             False,
         )
         yield (
             "told_untruly",
             self._untrue,
-            "Your node says {} while it is not so.",
-            "Count the time from the last message on, and compare it with the limit of the task.",
+            "Your node reports {} while another state holds.",
+            "Measure the time since the last message, and compare it with the limit in the task.",
             False,
         )
         yield (
             "told_too_late",
             self._too_late,
-            "Your node says {}.",
-            "Count the time from the last message on, and look often: let a timer call every 0.1 s, or reset it with "
-            "each message.",
+            "Your node reports {}.",
+            "Measure the time since the last message, and check it often: with a timer that fires every 0.1 s, or "
+            "with a timer that each message resets.",
             False,
         )
 
     def _happens(self, met: Met) -> bool:
-        # Wait in real time, because a time that the subject reads before its clock is simulated means nothing later.
+        # This wait is in real time, because the clock of the subject is not simulated yet. A time that the subject
+        # stored now would be useless later.
         met.bench.wait_until(lambda evidence: bool(evidence.main.of("message")), self._waits)
         met.bench.run_time(STEP)
         for given, seconds in self._gives:
@@ -211,7 +214,7 @@ class Watch(Declared):
         return met.heard > 0
 
     def _spans(self, seen: Part, rule: State) -> list[Span]:
-        """Return the interval of each state that has to be reported by a rule, in order."""
+        """Return the intervals of the states that the subject must report according to a rule, in order."""
         sent = seen.of("sent")
         if not sent:
             return []
@@ -231,7 +234,7 @@ class Watch(Declared):
         return [span for span in spans[1:] if span.state is not SILENCE]
 
     def _matched(self, seen: Part, rule: State) -> tuple[list[Span], list[Event]]:
-        """Return the states to report, each with the time of its report, and the messages that report no such state."""
+        """Return the intervals with the times at which their states were reported, and the other messages."""
         spans, stray = self._spans(seen, rule), []
         for event in seen.of("message"):
             at, told = reported_at(event), self._told(event)
@@ -254,17 +257,17 @@ class Watch(Declared):
         return pick(event.data["fields"], self._field)
 
     def _before_the_first(self, seen: Part) -> str:
-        """Return what the subject reported before the judge's first message."""
+        """Return what the subject reported before the judge's first message; empty if nothing."""
         heard = [event for event in seen.events if event.kind in ("sent", "message")]
         return str(self._told(heard[0])) if heard and heard[0].kind == "message" else ""
 
     def _repeated(self, seen: Part) -> str:
-        """Return a state that the subject reported twice in a row."""
+        """Return a state that the subject reported twice in a row; empty if there is none."""
         told = map(self._told, seen.of("message"))
         return next((str(one) for one, other in pairwise(told) if same(one, other)), "")
 
     def _only_in_answer(self, seen: Part) -> str:
-        """Return a state that begins without a message, if the subject reports only when the judge sends one."""
+        """Return a state that begins without a message, if the subject reports only at messages; otherwise empty."""
         sent = [event.moment for event in seen.of("sent")]
 
         def by_itself(at: float) -> bool:
@@ -276,14 +279,14 @@ class Watch(Declared):
         return str(due[0]) if due and answers else ""
 
     def _never_told(self, seen: Part) -> str:
-        """Return a due state that was never reported, and what was reported; empty if nothing was reported at all."""
+        """Return a state that was never reported, with the reports instead; empty if there is none, or no report."""
         told = [self._told(event) for event in seen.of("message")]
         due = [span.state for span in self._spans(seen, self._state)]
         never = next((one for one in due if not any(same(one, other) for other in told)), None)
         return f"{never}, but {in_words(told[:6])}" if told and never is not None else ""
 
     def _too_late(self, seen: Part) -> str:
-        """Return a state that was reported too late, with the delay, or missed; empty if nothing was reported."""
+        """Return a state that was reported late, with the delay, or missed; empty if there is none, or no report."""
         spans, _ = self._matched(seen, self._state)
         after = [(span.state, span.said - span.begin) for span in spans if span.said is not None]
         late = [f"{state} {seconds:.1f} s late" for state, seconds in after if seconds > self._late(seen)]
@@ -291,7 +294,7 @@ class Watch(Declared):
         return next(iter([*late, *missed] if after else []), "")
 
     def _untrue(self, seen: Part) -> str:
-        """Return a state that the subject reported while another one held."""
+        """Return a state that the subject reported while another state held; empty if there is none."""
         spans, stray = self._matched(seen, self._state)
         states = [span.state for span in spans]
         told = map(self._told, stray)
