@@ -78,7 +78,7 @@ def test_a_counter_that_starts_at_one_is_not(heard: int, number: int) -> None:
     evidence = _evidence(_messages(list(range(heard, heard + 20)), 0.5, first=number))
     assert not judged("counter", evidence)
     assert told("counter_start", evidence) == (
-        "The first message carries the number 1; the counter must begin at 0."
+        "The first message contains the number 1, but the counter must begin at 0."
     )
 
 
@@ -142,9 +142,9 @@ def test_a_greeting_costs_the_same_whether_it_was_heard_or_not(greeting: str, be
     assert not judged("counter", lost)
     more = "1 message" if before == 1 else "2 messages"
     first = f"“Hello, world! 0” was message {before + 1} of your node"
-    said = f"{first}: it published {more} more before it than it counted"
+    said = f"{first}. Before it, your node published {more} that did not count"
     assert told("counter_start", heard) == f"{said}: “{greeting}”."
-    assert told("counter_start", lost) == f"{said}, too early for anybody to hear."
+    assert told("counter_start", lost) == f"{said}, before any subscriber was connected."
     assert not told("wrong_text", heard)
 
 
@@ -159,7 +159,7 @@ def test_a_greeting_hides_no_wrong_start() -> None:
     heard = _evidence(_with_texts(texts, 0.5))
     assert not judged("counter", heard)
     assert told("counter_start", heard) == (
-        "The first message carries the number 1; the counter must begin at 0."
+        "The first message contains the number 1, but the counter must begin at 0."
     )
 
 

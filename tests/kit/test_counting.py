@@ -83,7 +83,7 @@ def test_what_the_reference_counts_is_right_even_if_nobody_heard_its_first_messa
     ("seen", "key", "says", "next_step"),
     [
         ([100 + n for n in range(20)], "counter_step", "must go down by one", "self.charge -= 1"),
-        ([100] * 20, "counter_stuck", "carries the number 100", "take 1 from the counter"),
+        ([100] * 20, "counter_stuck", "contains the number 100", "take 1 from the counter"),
         ([99 - n for n in range(20)], "counter_start", "must begin at 100", "self.charge = 100"),
         ([100 - n for n in range(0, 40, 2)], "counter_step", "After 100 comes 98", "self.charge -= 1"),
     ],
@@ -108,5 +108,5 @@ def test_the_example_for_a_text_without_its_number_is_the_task_s_own_text() -> N
 
 
 def test_a_reference_that_does_not_count_is_the_author_s_error() -> None:
-    with pytest.raises(ValueError, match=r"leave out heard\.counts"):
+    with pytest.raises(ValueError, match=r"delete heard\.counts"):
         failed(evidence(["hello"] * 20, heard(["hello"] * 20)))

@@ -62,7 +62,7 @@ def test_a_program_is_judged_by_its_own_runs_and_by_what_came_before_ctrl_c() ->
         ([said("hello"), subject(INTERRUPTED), subject("exited")], ""),
         ([said("hello"), subject(INTERRUPTED)], "went on"),
         ([said("hello"), subject("exited")], "ended by itself"),
-        ([], "did not get so far"),
+        ([], "was not reached"),
     ],
 )
 def test_only_ctrl_c_is_the_right_end(events: list[Event], what: str) -> None:
@@ -105,8 +105,8 @@ CRASH = [*map(said, TRACEBACK), subject("exited")]
         ([[said("hello"), subject("exited")], CRASH], ""),
         ([CRASH, CRASH], "failed each time"),
         ([[said("hello"), subject("exited")], [subject(INTERRUPTED)]], "went on"),
-        ([[HANGS, subject("aborted")]], "did not come to its end"),
-        ([[HANGS, subject(INTERRUPTED), subject("exited")]], "did not come to its end"),
+        ([[HANGS, subject("aborted")]], "did not end"),
+        ([[HANGS, subject(INTERRUPTED), subject("exited")]], "did not end"),
         ([], "did not run"),
     ],
 )

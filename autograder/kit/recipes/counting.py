@@ -1,7 +1,7 @@
-"""The texts and numbers of a publisher: two criteria on its messages, and the mistakes behind their failures.
+"""Criteria and mistakes about the texts and the numbers that a publisher sends.
 
-The first messages of the reference solution define what is right: the text around the number, the first number, and
-the step.
+The messages of the reference solution define what is right: the text around the number, the first number, and the step
+from one number to the next.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ def says_text(seen: Publisher, expected: Publisher) -> Finding:
 
 
 def counts(seen: Publisher, expected: Publisher) -> Finding:
-    """Decide whether the numbers are the reference's, from the first message on.
+    """Decide whether the numbers in the messages are those of the reference, from the first message on.
 
     Raises:
         ValueError: The reference solution does not count.
     """
     numbers, step = seen.counters, expected.step
     if not step:
-        raise ValueError("the reference solution does not count, so leave out heard.counts(...)")
+        raise ValueError("the reference solution does not count: delete heard.counts(...) from this exercise")
     # A slow publisher sent fewer numbers; the rate criterion judges that.
     enough = seen.enough - seen.greetings
     all_of_them = len(numbers) >= enough or (bool(numbers) and seen.goes_on_slowly(expected))
@@ -52,7 +52,7 @@ def counts(seen: Publisher, expected: Publisher) -> Finding:
         found = f"{counted(more, 'message')} more before {found}"
     passed = steady and seen.went_on and _starts_right(seen, expected)
     if passed and (lost := seen.number_of_first - 1):
-        found += f" after {counted(lost, 'message')} before anybody could hear"
+        found += f" after {counted(lost, 'message')} before any subscriber was connected"
     return Finding(passed, _row(expected.counters[:5]), found or "no whole number arrived")
 
 
@@ -61,9 +61,9 @@ def field_typo(seen: Publisher, _: Publisher) -> Advice | None:
     if not seen.texts or any(seen.texts):
         return None
     return Advice(
-        "Your messages arrive, but their string is empty: the field was never set.",
-        "A String has one field, data. Set it, as in message.data = ...; String(...) ignores a misspelt keyword "
-        "silently.",
+        "Your messages arrive, but their string is empty, because your code never sets the field `data`.",
+        "Set the only field of a String, as in message.data = .... Check the spelling: String(...) ignores a "
+        "misspelled keyword silently.",
     )
 
 
@@ -78,7 +78,7 @@ class Counting:
     variable: str
 
     def wrong_text(self, seen: Publisher, expected: Publisher) -> Advice | None:
-        """Return advice if messages arrive with a text different from the reference's."""
+        """Return advice if the text of a message differs from the reference's."""
         texts = seen.texts[seen.greetings :]
         odd = next((said for said in texts if template(said) not in expected.templates), None)
         if odd is None:
@@ -86,14 +86,14 @@ class Counting:
         asked, form = says_text(seen, expected).expected, expected.templates[0]
         if blank := _UNFILLED.search(odd):
             return Advice(
-                f"Your talker says “{odd}”: {blank[0]} is sent as it is, Python put no number in its place.",
-                "Put an f in front of the opening quotation mark, and braces around what Python is to fill in, as in "
-                f"f'{form.replace('#', f'{{{self.variable}}}')}'.",
+                f"Your talker says “{odd}”: Python did not replace {blank[0]} by a number.",
+                "Write an f directly before the opening quotation mark, and braces around the name of your counter, "
+                f"as in f'{form.replace('#', f'{{{self.variable}}}')}'.",
             )
         return Advice(
             f"Your talker says “{odd}”; the task asks for {asked}",
-            f"{first_difference(template(odd), form)} (N is the number.) Every letter counts, because "
-            "other nodes read this string.".replace("#", "N"),
+            f"{first_difference(template(odd), form)} (N stands for the number.) Every letter counts, because other "
+            "nodes read this string.".replace("#", "N"),
         )
 
     def stuck(self, seen: Publisher, expected: Publisher) -> Advice | None:
@@ -101,15 +101,16 @@ class Counting:
         if len(seen.counters) < 3 or len(set(seen.counters)) > 1:
             return None
         made = (
-            "fill a new message with the counter"
+            "make a new message with the counter"
             if expected.has_numbers_alone
-            else "make the string anew, with the counter in an f-string"
+            else "make a new string from the counter, with an f-string"
         )
         return Advice(
-            f"Every message carries the number {seen.counters[0]}.",
-            f"In the method that the timer calls, {made}, and {self._changes(expected, 'the counter')} below that, as "
-            f"in {self._statement(expected)}, with no return above it. Set it to {expected.counters[0]} in __init__ "
-            "only. Without self. in front, another variable is changed, not the node's.",
+            f"Every message contains the number {seen.counters[0]}.",
+            f"In the method that the timer calls, {made}, and below that {self._changes(expected, 'the counter')}, "
+            f"as in {self._statement(expected)}. Do not return before you change the counter. Set the counter to "
+            f"{expected.counters[0]} only in __init__. Write self. before its name: without self., your code changes "
+            "another variable.",
         )
 
     def start(self, seen: Publisher, expected: Publisher) -> Advice | None:
@@ -119,19 +120,20 @@ class Counting:
         if not steady or (right and not seen.greetings):
             return None
         if unheard or right:
-            what = f": “{seen.texts[0]}”" if seen.greetings else ", too early for anybody to hear"
+            what = f": “{seen.texts[0]}”" if seen.greetings else ", before any subscriber was connected"
             return Advice(
-                f"“{seen.texts[seen.greetings]}” was message {seen.greetings + seen.number_of_first} of your node: it "
-                f"published {counted(seen.greetings + unheard, 'message')} more before it than it counted{what}.",
-                "Fill each message before you publish it, and begin with the message with the first number. Do not "
-                "publish a line such as “Talker started”; write it to the log.",
+                f"“{seen.texts[seen.greetings]}” was message {seen.greetings + seen.number_of_first} of your node. "
+                f"Before it, your node published {counted(seen.greetings + unheard, 'message')} that did not "
+                f"count{what}.",
+                "Set the content of each message before you publish it. The first message that you publish must "
+                "contain the first number. Write a text such as “Talker started” to the log instead of publishing it.",
             )
         first, begins = _first_number(seen, expected), expected.counters[0]
         return Advice(
-            f"The first message carries the number {seen.counters[0] if first is None else first}; the counter must "
-            f"begin at {begins}.",
-            f"Set your counter in __init__, as in {self.variable} = {begins}, and {self._changes(expected)} only after "
-            "the message was published.",
+            f"The first message contains the number {seen.counters[0] if first is None else first}, but the counter "
+            f"must begin at {begins}.",
+            f"Set your counter in __init__, as in {self.variable} = {begins}, and {self._changes(expected)} only "
+            "after you have published the message.",
         )
 
     def step(self, seen: Publisher, expected: Publisher) -> Advice | None:
@@ -144,8 +146,8 @@ class Counting:
         way, by = ("up", expected.step) if expected.step > 0 else ("down", -expected.step)
         return Advice(
             f"{came} The numbers must go {way} by {'one' if by == 1 else by} with each message.",
-            f"Count once for each published message: one line as {self._statement(expected)} at the end of the method, "
-            "no loop, and one timer.",
+            f"Change the counter once for each message that you publish: with {self._statement(expected)} at the end "
+            "of the method, without a loop, and with only one timer.",
         )
 
     def _statement(self, expected: Publisher) -> str:
@@ -162,9 +164,9 @@ class Counting:
 def _first_number(seen: Publisher, expected: Publisher) -> int | None:
     """Return the number in the publisher's first message, even if the judge could not receive it; None if unknown.
 
-    A loop may publish in the moment in which it makes its publisher, too early for any listener. DDS numbers the
-    messages, so the judge knows how many were lost. If the first number that was heard cannot be reached from the
-    reference's first number in that many messages, some of the lost messages did not count.
+    A loop may publish before any subscriber can receive the message. DDS numbers the messages, so the judge knows how
+    many it missed. If the count from the reference's first number to the first received one is shorter, some of the
+    missed messages did not count.
     """
     first = counters(seen.texts[seen.greetings :][:1])
     return first[0] - expected.step * (seen.number_of_first - 1) if first else None
@@ -175,14 +177,14 @@ def _starts_right(seen: Publisher, expected: Publisher) -> bool:
 
 
 def _uncounted(seen: Publisher, expected: Publisher) -> int:
-    """Return how many messages were lost at the start beyond those for which the counter accounts."""
+    """Return how many of the messages that the judge missed at the start cannot have been part of the count."""
     if _first_number(seen, expected) is None or (place := expected.place(seen.counters[0])) < 0:
         return 0
     return max(0, seen.number_of_first - 1 - place)
 
 
 def _slip(numbers: list[int], step: int) -> int:
-    """Return the index of the first number that does not follow from the number before it; 0 if all do."""
+    """Return the index of the first number that does not follow from the one before; 0 if all numbers do."""
     return next((place for place, (a, b) in enumerate(pairwise(numbers), 1) if b - a != step), 0)
 
 
@@ -191,6 +193,6 @@ def _row(numbers: list[int]) -> str:
 
 
 def _around(numbers: list[int], place: int) -> str:
-    """Return, as text, the numbers around an index; the first ones if the index is near the beginning."""
+    """Return the numbers around an index as text; the first numbers if the index is near the beginning."""
     first = max(0, place - 3)
     return "…, " * bool(first) + _row(numbers[first : first + 6])

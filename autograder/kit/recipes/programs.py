@@ -73,7 +73,7 @@ class Program:
 
     def judge(self, evidence: Evidence) -> Finding:
         """Return the first finding that fails in the node's exercise; if none fails, a finding that passes."""
-        return self.node.judge_as_one(self.view(evidence), "all that is asked of its node")
+        return self.node.judge_as_one(self.view(evidence), "every requirement for its node is met")
 
     def ending(self, evidence: Evidence) -> str:
         """Return in a few words what is wrong with the program's end; empty if it ended as it should."""
@@ -83,7 +83,7 @@ class Program:
         for part in parts:
             pressed = part.first("subject", INTERRUPTED)
             if pressed is None:
-                return "ended by itself" if part.ending else "did not get so far"
+                return "ended by itself" if part.ending else "was not reached"
             if part.ending is None:
                 return "went on"
         return "" if parts else "did not run"
@@ -141,7 +141,7 @@ def _its_own_end(parts: Sequence[Part]) -> str:
         return "went on"
     # A program that had fallen silent counts as hung even if it ended after the judge had requested its stacks.
     if any(part.ending is None or part.of("stack") for part in parts):
-        return "did not come to its end"
+        return "did not end"
     # A program may report with an exception that it waited in vain. But if it raised an exception in every run, it
     # never did its work.
     return "failed each time" if all(_before_ctrl_c(part).traceback for part in parts) else ""

@@ -276,9 +276,9 @@ class Hears:
         if not seen.at_once(self.expected(evidence)):
             return None
         return Advice(
-            "Your program published everything in its first moment and ended before a subscriber was connected.",
-            "Publish from a timer and keep the program spinning: it takes a moment until publisher and subscription "
-            "have found each other.",
+            "Your program published everything at its start, and ended before any subscriber was connected.",
+            "Publish from a timer and keep the program spinning, because a publisher and a subscriber need a moment "
+            "to discover each other.",
         )
 
     def _never_published(self, evidence: Evidence) -> Advice | None:
@@ -291,14 +291,14 @@ class Hears:
             return None
         twin = common.twin(part)
         return Advice(
-            "Your node is there with its publisher, but no message arrives while the judge listens."
-            + (f" Two nodes are called {twin}, and a spin takes only one." if twin else ""),
-            "If your class makes another Node(...), leave it out: self is the node, so write self.create_publisher "
-            "and self.create_timer."
+            "Your node has a publisher, but no message arrives while the judge listens."
+            + (f" Two nodes are called {twin}, and only one of them is spun." if twin else ""),
+            "If your class makes another Node(...), delete that call: self is the node, so write "
+            "self.create_publisher and self.create_timer."
             if twin
-            else "If your code still has its TODO, begin there. Let the timer's method call publish(...), with the "
-            "message between the parentheses: a log line is not a message. Give the timer its period in "
-            f"seconds, {reference_period(evidence.reference):g} and not "
+            else "If your code still has a TODO, write that step first. The timer's method must call publish(...) "
+            "with the message between the parentheses; a log line is not a message. Give the timer its period "
+            f"in seconds, {reference_period(evidence.reference):g} and not "
             f"{1000 * reference_period(evidence.reference):g}.",
         )
 
@@ -309,12 +309,12 @@ class Hears:
             return None
         period = reference_period(evidence.reference)
         return Advice(
-            f"Your node publishes at another pace: {finding.seen}. The task asks for {finding.expected}.",
-            f"Use one create_timer({period:g}, your_method), and publish one message in that method: without a loop, "
+            f"Your node publishes at a wrong rate: {finding.seen}. The task asks for {finding.expected}.",
+            f"Use one create_timer({period:g}, your_method), and publish one message in that method, without a loop, "
             "a sleep or an `if`."
             if "unevenly" in finding.seen
-            else f"The time between two messages is a period in seconds ({period:g}), not a frequency: the first "
-            "argument of create_timer or, in a loop, that of the sleep. Leave sleep out of callbacks.",
+            else f"The first argument of create_timer is the time between two messages in seconds ({period:g}), not a "
+            "frequency. In a loop, this is the argument of sleep. Do not sleep in callbacks.",
         )
 
     def _stopped_publishing(self, evidence: Evidence) -> Advice | None:
@@ -324,8 +324,9 @@ class Hears:
         if not 0 < came < seen.enough or part.ending is not None or part.of("unanswered"):
             return None
         return Advice(
-            f"Your node published {counted(came, 'message')} and then no more, although it is still there.",
-            "The task has no end: leave out what stops the timer, or what keeps the callback from publishing.",
+            f"Your node published {counted(came, 'message')} and then no more, although it still exists.",
+            "The task has no end: delete the code that stops the timer, or that returns from the callback before it "
+            "publishes.",
         )
 
 
