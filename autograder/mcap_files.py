@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 ROS_2 = "ros2"
 """The MCAP profile for messages in CDR with the definitions of their types."""
 _LINE = "=" * 80
-"""The line that separates the definition of a type from the definitions of the types that it contains."""
+"""The line that separates the definition of a type from the definitions of the types of its fields."""
 _FIELD = re2.compile(r"^\s*([A-Za-z][\w/]*)(?:<=\d+)?(?:\[[^\]]*\])?\s+\w")
-"""Matches a line of a definition: a type, perhaps bounded or an array, and a name."""
+"""Matches a field in a definition: a type, which may be an array or have a maximum length, and a name."""
 
 
 class MessageFile:
@@ -37,14 +37,14 @@ class MessageFile:
     def channel(
         self, topic: str, type_name: str, definition: str, *, as_json: bool = False, about: Mapping[str, str]
     ) -> int:
-        """Register messages of one type on one topic. Return the number of the channel.
+        """Add a channel for messages of one type on one topic. Return the number of the channel.
 
         Args:
             topic: The name of the topic.
             type_name: The type of the messages, such as ``"std_msgs/msg/String"``.
             definition: The definition of the type: that of ROS, or a JSON Schema.
             as_json: True for messages as JSON; False for CDR.
-            about: Further facts about these messages, as text by name.
+            about: Metadata about these messages, as text by name.
         """
         encodings = ("jsonschema", "json") if as_json else ("ros2msg", "cdr")
         schema = self._writer.register_schema(type_name, encodings[0], definition.encode())
@@ -65,7 +65,7 @@ class MessageFile:
         )
 
     def note(self, name: str, words: Mapping[str, str]) -> None:
-        """Write facts about the whole file, as text by name."""
+        """Write metadata about the whole file, as text by name."""
         self._writer.add_metadata(name, dict(words))
 
     def close(self) -> None:
@@ -74,10 +74,10 @@ class MessageFile:
 
 
 def definition(type_name: str) -> str:
-    """Return the definition of a type such as ``"geometry_msgs/msg/Twist"``, and of all types that it contains.
+    """Return the definition of a type such as ``"geometry_msgs/msg/Twist"``, and those of the types of its fields.
 
     Raises:
-        LookupError: This environment does not have the type.
+        LookupError: The type is not installed.
     """
     found = {type_name: _text(type_name)}
     waiting = [type_name]

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     Known = tuple[int, str]
-    """A process id with the start time of the process (:func:`started_at`). A later process with the same id has
-    another start time.
+    """A process id and the start time of the process (:func:`started_at`). If the system reuses the id for another
+    process, the start time differs.
     """
 
 _PR_SET_PDEATHSIG = 1  # linux/prctl.h
@@ -34,15 +34,17 @@ _libc = ctypes.CDLL(None, use_errno=True)
 
 
 def die_with_parent(parent: int = 0, number: signal.Signals = signal.SIGKILL) -> None:
-    """Make this process get a signal when its parent ends. If the parent has already ended, kill this process.
+    """Let the kernel send a signal to this process when its parent ends.
 
-    The setting survives exec, but children do not inherit it, and a change of rights clears it. For Linux, the parent
-    is the *thread* that started a process, so that thread must live as long as the process.
+    If the parent has already ended, kill this process.
+
+    The setting survives exec. Children do not inherit it, and it is lost if the process changes its user or group. For
+    Linux, the parent is the *thread* that started this process, so that thread must live as long as this process.
 
     Args:
-        parent: The process id of the parent before the fork; 0 if the parent is in another PID namespace or unknown.
-            With 0, it is not noticed that the parent has already ended.
-        number: The signal to get.
+        parent: The process id of the parent, from before the fork; 0 if it is unknown or in another PID namespace. With
+            0, this function does not notice that the parent has already ended.
+        number: The number of the signal.
     """
     _prctl(_PR_SET_PDEATHSIG, number)
     if parent and os.getppid() != parent:
@@ -50,7 +52,7 @@ def die_with_parent(parent: int = 0, number: signal.Signals = signal.SIGKILL) ->
 
 
 def adopt_orphans() -> bool:
-    """Make this process the parent of every descendant that loses its own parent, so that none escapes.
+    """Make this process the parent of each descendant whose own parent ends, so that no descendant escapes.
 
     Returns:
         True if the system supports this. On systems other than Linux, a daemon may escape.
@@ -70,7 +72,7 @@ def descendants(pid: int) -> list[int]:
 
 
 def known(processes: Iterable[int]) -> set[Known]:
-    """Return processes with their start times, so that a signal never reaches a later process with the same id."""
+    """Return processes with their start times; :func:`send` then never reaches a later process with the same id."""
     return {(pid, started_at(pid)) for pid in processes}
 
 
@@ -81,13 +83,13 @@ def started_at(pid: int) -> str:
 
 
 def send(processes: Iterable[Known], number: int) -> None:
-    """Send a signal to those of these processes that still run."""
+    """Send a signal to those of the given processes that still run."""
     for process in processes:
         _signal(process, number)
 
 
 def kill(processes: Iterable[Known]) -> None:
-    """Kill processes that may be starting others.
+    """Kill processes that may be starting other processes.
 
     All of them are stopped first, so that none can start another process meanwhile.
     """
@@ -102,8 +104,8 @@ def end_each(processes: Iterable[int], number: int, within: float) -> None:
     Args:
         processes: The processes to end, in order.
         number: The signal.
-        within: The maximum number of seconds to wait for all of them together. After that, the rest get the signal
-            without waiting.
+        within: The maximum number of seconds to wait for all processes together. After that, the others get the signal
+            without a wait.
     """
     deadline = time.monotonic() + within
     for process in [(pid, started_at(pid)) for pid in processes]:
@@ -138,7 +140,7 @@ def end_descendants(within: float = 3.0, *, spare: Sequence[int] = ()) -> int:
 
     Args:
         within: The limit in seconds. A process in an uninterruptible system call dies only when that call ends.
-        spare: Children to leave alone, together with their descendants.
+        spare: Children that are not killed, and neither are their descendants.
 
     Returns:
         The number of processes that were found.
@@ -152,24 +154,26 @@ def end_descendants(within: float = 3.0, *, spare: Sequence[int] = ()) -> int:
         alive = [*children, *(below for child in children for below in descendants(child))]
         seen.update(pid for pid in alive if _lives(pid))
         kill(known(alive))
-        # A killed process becomes a child of this process when its parent dies. No event reports that any of them has
-        # ended, so this polls.
+        # When the parent of a killed process dies, the killed process becomes a child of this process. No event reports
+        # when these processes have ended, so this code polls.
         if not _reap(children):
             time.sleep(0.005)
     return len(seen)
 
 
 def end_below(pid: int) -> None:
-    """Kill every descendant of a process that adopts orphans, even those started meanwhile; wait until they have ended.
+    """Kill every descendant of a process that adopts orphans, and wait until they have ended.
 
-    Processes of another user, which this process may not kill, are left.
+    Descendants that are started meanwhile are killed, too.
+
+    Processes that this process is not allowed to kill, because another user runs them, are left.
 
     Args:
-        pid: The id of the process, which itself is not killed.
+        pid: The id of the process that adopts orphans. It is not killed.
     """
     left: set[Known] = set()
     while living := known(one for one in descendants(pid) if _lives(one)) - left:
-        send(living, signal.SIGSTOP)  # stop them first, so that none can start another process meanwhile
+        send(living, signal.SIGSTOP)  # stopped first, so that no process can start another one
         left |= {process for process in living if not _signal(process, signal.SIGKILL)}
         # The first process of a sandbox ends only after all its processes were waited for (pid_namespaces(7)). This
         # process must wait for those that were started from outside and whose parent has ended.
@@ -178,7 +182,7 @@ def end_below(pid: int) -> None:
 
 
 def keep(parent: int, command: list[str]) -> int:
-    """Run a command. When the parent ends or this process gets SIGTERM, end the command and everything that it started.
+    """Run a command, and end it with all its descendants when the parent ends or this process gets SIGTERM.
 
     Processes that the command leaves behind are ended, too. Ctrl-C reaches the command but not this process.
 
@@ -191,14 +195,14 @@ def keep(parent: int, command: list[str]) -> int:
     """
     adopt_orphans()
     parent_ends = os.pidfd_open(parent)
-    if os.getppid() != parent:  # the parent has ended, and its process id may belong to another process
+    if os.getppid() != parent:  # The parent has ended, and another process may have its process id.
         return 1
     signalled, on_signal = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
     signal.set_wakeup_fd(on_signal, warn_on_full_buffer=False)
     for number in (signal.SIGCHLD, signal.SIGTERM, signal.SIGINT):
         signal.signal(
             number, lambda *_: None
-        )  # a handler is set, because SIG_IGN would be inherited by the command
+        )  # A handler is used, because the command would inherit SIG_IGN.
     child = _start(command)
     code: int | None = None
     try:
@@ -219,7 +223,7 @@ def _start(command: list[str]) -> int:
     if child == 0:
         try:
             die_with_parent(keeper)
-            # Python ignores these signals, but programs expect their default action.
+            # Python ignores these signals, but the command must start with their default action.
             for number in (signal.SIGPIPE, signal.SIGXFSZ):
                 signal.signal(number, signal.SIG_DFL)
             os.closerange(3, os.sysconf("SC_OPEN_MAX"))
@@ -234,7 +238,7 @@ def _start(command: list[str]) -> int:
 def reaped(wanted: int) -> int | None:
     """Wait for all children that have already ended.
 
-    It returns the exit code of the wanted child; None if that child lives or was waited for before.
+    Return the exit code of the wanted child; None if that child still runs or was waited for earlier.
     """
     code: int | None = None
     with contextlib.suppress(ChildProcessError):
@@ -245,10 +249,10 @@ def reaped(wanted: int) -> int | None:
 
 
 def end_processes_in(folder: Path) -> None:
-    """Kill the processes of submissions that have their homes below ``folder``, if the executor can no longer do so.
+    """Kill the processes of submissions whose homes are below ``folder``, if the executor process can no longer do so.
 
-    The processes are found by command line and environment. Children inherit the environment unless a program hides
-    it on purpose.
+    A process is found by its command line or by its environment, which a process inherits from its parent. So a program
+    that hides its environment on purpose is not found.
 
     Args:
         folder: A folder that no process of another submission has in its command line or as its home.
@@ -260,7 +264,7 @@ def end_processes_in(folder: Path) -> None:
 def _signal(process: Known, number: int, within: float = 0.0) -> bool:
     """Send a signal to a process if it still exists, and wait at most ``within`` seconds for it to end.
 
-    Only one handle is open at a time, because there may be more processes than this process may have open files.
+    Only one handle is open at a time, because there may be more processes than open files allowed.
 
     Returns:
         False if this process is not allowed to send it a signal.
@@ -271,7 +275,7 @@ def _signal(process: Known, number: int, within: float = 0.0) -> bool:
         try:
             if began and started_at(pid) == began:
                 signal.pidfd_send_signal(handle, number)
-                # Poll and not select(2), which does not support the high descriptors of a grader with many open
+                # poll(2) is used because select(2) does not support the high descriptors of a grader with many open
                 # files.
                 waiting = select.poll()
                 waiting.register(handle, select.POLLIN)
@@ -292,7 +296,7 @@ def _children(pid: int) -> list[int]:
     found: list[int] = []
     with contextlib.suppress(OSError):
         for task in Path(f"/proc/{pid}/task").iterdir():
-            with contextlib.suppress(OSError):  # one of several threads may end meanwhile
+            with contextlib.suppress(OSError):  # One of several threads may end meanwhile.
                 found += map(int, (task / "children").read_text().split())
     return found
 
@@ -321,7 +325,7 @@ def _mentions(pid: int, place: bytes) -> bool:
 
 
 def _reap(children: Iterable[int]) -> bool:
-    """Wait for those of these children that have already ended. Return True if there were any."""
+    """Wait for those of the given children that have already ended. Return True if there were any."""
     reaped = False
     for child in children:
         with contextlib.suppress(ChildProcessError):
@@ -336,7 +340,7 @@ def _prctl(option: int, value: int) -> bool:
 
 
 def _end_as(code: int) -> None:
-    """End this process with an exit code or, if it is negative, by that signal; do not write a core file."""
+    """End this process with an exit code; if the code is negative, by that signal, without a core file."""
     if code < 0:
         _prctl(_PR_SET_DUMPABLE, 0)
         signal.signal(-code, signal.SIG_DFL)

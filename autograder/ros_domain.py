@@ -31,21 +31,22 @@ HIGHEST_DOMAIN = 232
 _PORT_BASE = 7400
 _DOMAIN_GAIN = 250
 _CLAIM_OFFSET = 9
-"""The offset of the port that reserves a domain. RTPS uses the offsets 0, 1, and those from 10 on; the ones in between
-are unused.
+"""The offset of the port that reserves a domain. RTPS uses the offsets 0 and 1 and the offsets from 10 on, but not
+those between.
 """
 GROUP_OFFSET = 0
 """The port offset for multicast discovery."""
 PARTICIPANT_OFFSET = 10
-"""The port offset for the discovery of a domain's first participant. That of the next participant is two higher."""
+"""The port offset for the discovery of a domain's first participant. The offset of each next participant is two higher.
+"""
 _PROBED_OFFSETS = (GROUP_OFFSET, *range(PARTICIPANT_OFFSET, PARTICIPANT_OFFSET + 16, 2))
-"""The port offsets that show whether a domain is in use: multicast discovery, and the first eight participants. A new
-participant takes the lowest free index.
+"""The offsets of the ports that show whether a domain is in use: those for multicast discovery and for the first eight
+participants. A new participant takes the lowest free number.
 """
 
 
 class NoFreeDomainError(RuntimeError):
-    """Every domain that could be picked is in use on this computer."""
+    """Every domain that was tried is in use on this computer."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,7 @@ def claim_free_domain(candidates: Iterable[int] | None = None) -> DomainClaim:
         candidates: The domains to try, in this order; None for 1 to 101 in random order.
 
     Raises:
-        NoFreeDomainError: All of them are in use.
+        NoFreeDomainError: All these domains are in use.
     """
     domains = random.sample(FREE_TO_PICK, len(FREE_TO_PICK)) if candidates is None else list(candidates)
     for domain in domains:

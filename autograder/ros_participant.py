@@ -1,4 +1,4 @@
-"""New participants: the name of their unnamed nodes, and a way not to miss answers to their first announcement.
+"""Names that DDS shows for unnamed nodes, and a way not to miss the answers to a new participant's first announcement.
 
 Fast DDS 2.14 announces a new participant before it has registered the participant's receivers. Existing participants
 answer within 0.1 ms, and only once. If a receiving thread reads such an answer too early, the answer is lost, and the
@@ -18,15 +18,17 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 UNNAMED = "_NODE_"
-"""The prefix of names of nodes whose real name a participant does not know yet (rmw_dds_common)."""
+"""The beginning of the name that a participant reports for a node whose real name it does not know yet
+(rmw_dds_common).
+"""
 
 
 @contextlib.contextmanager
 def receivers_wait() -> Iterator[None]:
-    """Hold back the threads that are started in the block until the block has ended.
+    """Return a context manager: threads that are started in its block run only after the block has ended.
 
-    The threads are kept on one processor with the thread that creates them, under a scheduling policy that interrupts
-    no running thread (sched(7), SCHED_BATCH). If the operating system has no such policy, this does nothing.
+    The threads and the thread that starts them share one processor, under a scheduling policy that does not interrupt a
+    running thread (sched(7), SCHED_BATCH). If the operating system has no such policy, this has no effect.
     """
     if not hasattr(os, "SCHED_BATCH"):
         yield
@@ -40,7 +42,7 @@ def receivers_wait() -> Iterator[None]:
         yield
     finally:
         for thread in (_threads() - before) | {threading.get_native_id()}:
-            with contextlib.suppress(OSError):  # a thread may have ended meanwhile
+            with contextlib.suppress(OSError):  # A thread may have ended meanwhile.
                 os.sched_setaffinity(thread, processors)
                 os.sched_setscheduler(thread, policy, priority)
 

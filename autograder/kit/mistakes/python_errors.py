@@ -175,7 +175,7 @@ RUNNING: Sequence[Row] = (
     (
         r"^AttributeError: property '(?P<name>\w+)' of '(?P<class>\w+)' object has no setter",
         "The value {name} of {class} can be read but not set.",
-        "To store your own value, choose another name than {name}.",
+        "To store your own value, choose a name other than {name}.",
     ),
     (
         r"AttributeError: partially initialized module '(?P<name>[\w.]+)'",

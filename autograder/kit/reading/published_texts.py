@@ -35,7 +35,7 @@ _DIGITS = re2.compile(r"\d{1,18}")
 
 @dataclass(frozen=True)
 class Publisher:
-    """What the judge received from a publisher in one run.
+    """A publisher, as far as the judge received its messages in one run.
 
     Attributes:
         topic: The topic on which the task says to publish.

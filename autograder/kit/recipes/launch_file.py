@@ -48,7 +48,7 @@ MOST = 4
 
 
 class Launched:
-    """What the judge saw of the programs that a launch file started.
+    """The programs that a launch file started, as the judge saw them: their endpoints, processes and rules.
 
     Args:
         evidence: All evidence.
@@ -110,7 +110,7 @@ class Launched:
 
     @property
     def old_names(self) -> list[str]:
-        """Those of the other names that are the old name, in any namespace."""
+        """The names in :attr:`elsewhere` that consist of the old name in some namespace."""
         return [name for name in self.elsewhere if name.rpartition("/")[2] == self._old_name]
 
     @property
@@ -174,7 +174,7 @@ class Launched:
         return self._has_one_of_its_own(self._listen)
 
     def _has_one_of_its_own(self, side: set[int]) -> bool:
-        # If the student's package has another name than the course's, a rule shows which processes are its programs. An
+        # The student's package may have a different name. Then a rule shows which processes are its programs. An
         # endpoint of an unknown process, 0, may belong to any program.
         without_a_rule = (self._talk | self._listen) & self._own - self._given
         return bool(side & (self._own | self._given) or 0 in side or without_a_rule)

@@ -28,7 +28,7 @@ COMPARED, LONG = 200, 400
 
 
 class Ran:
-    """What the judge saw of a program.
+    """A program as the judge saw it: its nodes and its lines.
 
     Args:
         evidence: The whole evidence.

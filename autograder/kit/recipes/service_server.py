@@ -39,7 +39,7 @@ Objection = Callable[[Fields, Fields | None], str]
 
 @dataclass(frozen=True)
 class Server:
-    """What the judge saw of a server.
+    """A server and the calls that the judge made to it.
 
     Attributes:
         part: The run in which the judge called the server.
