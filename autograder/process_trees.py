@@ -173,7 +173,7 @@ def end_below(pid: int) -> None:
     """
     left: set[Known] = set()
     while living := known(one for one in descendants(pid) if _lives(one)) - left:
-        send(living, signal.SIGSTOP)  # stopped first, so that no process can start another one
+        send(living, signal.SIGSTOP)
         left |= {process for process in living if not _signal(process, signal.SIGKILL)}
         # The first process of a sandbox ends only after all its processes were waited for (pid_namespaces(7)). This
         # process must wait for those that were started from outside and whose parent has ended.

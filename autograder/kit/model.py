@@ -25,7 +25,7 @@ STEP = 0.05
 
 
 class Pace(StrEnum):
-    """The kind of time in which the judge watches a subject."""
+    """How fast a look goes: in simulated time if possible, or in real time."""
 
     FAST = "fast"
     """The judge steps simulated time if the subject follows it, and its counterparts answer as fast as they can."""
@@ -342,7 +342,7 @@ class Exercise:
         id: The exercise's id, such as ``"lab_1_2.talker"``.
         title: The title that students read.
         task: One sentence that states the task.
-        scenario: Drives the bench through all parts.
+        scenario: The function that runs all parts of the exercise on a bench.
         criteria: The requirements, in the order in which the card shows them.
         mistakes: The known mistakes, most specific first.
         text: Maps each sentence of the task's text to the names of the criteria that judge it, separated by spaces. A

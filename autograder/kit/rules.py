@@ -39,7 +39,7 @@ def value(event: Event) -> Any:
 
 
 def values(kind: str, name: str | None = None) -> Callable[[Part], list[Any]]:
-    """Return a function that lists the contents of a part's events of a kind, in order of time.
+    """Return a function that lists, for a part, the contents of its events of a kind, in order of time.
 
     If ``name`` is given, the function lists only events with this name.
     """

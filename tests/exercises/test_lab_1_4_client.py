@@ -130,7 +130,7 @@ def test_an_abort_may_be_seen_on_the_goal_s_status_topic() -> None:
 
 def test_who_stays_after_a_refusal_and_not_after_a_success_never_ends() -> None:
     part = Part(REFUSED, {}, [GOAL, say("rejected")])
-    assert refused_as_seen(evidence("done", part)) == "reported it, but did not end"
+    assert refused_as_seen(evidence("done", part)) == "the rejection was reported, but the client did not end"
 
 
 def test_feedback_counts_where_its_newest_number_is_said_after_it() -> None:

@@ -51,7 +51,7 @@ def evidence(
         ([ASKED, raised(SLIP)], "it was not reported"),
         ([Event(0.5, "subject", "returned")], "it was not reported"),
         ([], "it was not reported"),
-        ([say("rejected")], "reported it, but did not end"),
+        ([say("rejected")], "the rejection was reported, but the client did not end"),
     ],
 )
 def test_a_refusal_is_told_in_words_of_no_other_run(refused: list[Event], wrong: str) -> None:

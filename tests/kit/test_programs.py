@@ -124,7 +124,7 @@ def test_a_client_that_was_never_there_has_not_ended() -> None:
     )
     finding = BOTH.criteria[-1].judge(seen)
     assert (finding.passed, finding.seen) == (False, "asker did not start")
-    assert BOTH.criteria[-1].title == "talker ends on Ctrl-C, asker by itself"
+    assert BOTH.criteria[-1].title == "talker ends on Ctrl-C, and asker ends by itself"
 
 
 def test_a_program_without_an_entry_point_did_not_start() -> None:

@@ -132,9 +132,9 @@ class Wait:
         )
 
     def _gives_up_where_served(self, evidence: Evidence) -> str:
-        """Return the line that wrongly reports a missing server; empty if the client is not the wrong way round.
+        """Return the client's line about a missing server if it prints that only with a server; otherwise empty.
 
-        Such a client reports a missing server in each run with a server, but not in the run without one.
+        The line appears in each run with a server, but not in the run without one.
         """
         absent, served = evidence.part(self.absent), self.runs(evidence)
         if not absent.events or NOT_AVAILABLE.lines(absent):

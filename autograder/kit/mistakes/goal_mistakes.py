@@ -68,7 +68,7 @@ WRONG_ORDER = mistake(
 
 
 def _ended_before(evidence: Evidence) -> str:
-    """Return in words which answer the client did not wait for; empty if it waited for all answers."""
+    """Return in words how early the client ended; empty if it waited for all answers."""
     part = evidence.part(LATE)
     ending, answered, result = part.ending, part.first("goal_answered"), part.first("result")
     if not asked_for(part) or ending is None or (part.traceback and not meant(part.traceback)):
@@ -76,16 +76,16 @@ def _ended_before(evidence: Evidence) -> str:
     events = list(part.events)
     took = part.first("feedback") is not None and len(unshown_feedback(part)) < len(part.of("feedback"))
     if answered is None or (not took and left_at_once(part)):
-        return "it could process the answer"
+        return "before it could process the answer"
     if part.first("result_request") and (result is None or events.index(ending) < events.index(result)):
-        return "the result that it had requested arrived"
+        return "before the result arrived that it had requested"
     return ""
 
 
 ENDED_TOO_EARLY = mistake(
     "ended_too_early",
     _ended_before,
-    "Your client sent its goal and ended before {}. An answer may take half a second or more.",
+    "Your client sent its goal and ended {}. An answer may take half a second or more.",
     "Spin until the answer has arrived: rclpy.spin_until_future_complete(your_node, your_future, timeout_sec=5.0), "
     "or rclpy.spin(your_node) if callbacks process the answers. A single spin_once is not enough, because it handles "
     "only one event.",

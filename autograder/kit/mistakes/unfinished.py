@@ -136,7 +136,10 @@ def _returned_at_once(evidence: Evidence) -> bool:
 
 
 def _without_node(evidence: Evidence) -> str:
-    """Return the first words of "... node of yours appeared on the graph"; empty if the subject had a node."""
+    """Return the beginning of the sentence "No node of yours appeared on the graph."; empty if the subject had a node.
+
+    The first words differ if the subject has ended.
+    """
     if any(part.had_node or any(map(part.of, ("log", "request", "goal", "message"))) for part in evidence):
         return ""
     ending = evidence.main.ending

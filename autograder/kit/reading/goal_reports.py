@@ -38,10 +38,10 @@ SUCCEEDED, CANCELED, WAS_ABORTED = Outcome("succeeded"), Outcome("canceled", "ca
 status.
 """
 REJECTED = Outcome("rejected")
-NOT_ENDED = "reported it, but did not end"
+NOT_ENDED = "the rejection was reported, but the client did not end"
 NO_GOAL = "no goal"
 UNASKED = "a request to cancel the goal"
-NOT_AWAITED = "it ended without processing the answer to its goal"
+NOT_AWAITED = "the client ended without processing the answer to its goal"
 MANY_REQUESTS = 3
 """The maximum number of requests for one result that a client may need. A client that makes more requests repeats them
 without end.
@@ -248,7 +248,7 @@ def shows_feedback(evidence: Evidence) -> Finding:
     shown = len(sent) - len(missing)
     if sent and left_at_once(part, "result"):
         # The card gives no number, because the machine's load decides how many messages arrive before the client ends.
-        return Finding(False, f"all {FEEDBACKS} feedback messages", "it ended before its goal ended")
+        return Finding(False, f"all {FEEDBACKS} feedback messages", "the client ended before its goal")
     return Finding(
         bool(sent) and not missing,
         f"all {FEEDBACKS} feedback messages",
@@ -262,19 +262,19 @@ def reports_the_result(evidence: Evidence) -> Finding:
     result = part.first("result")
     expected = f"{result.data['fields']['sequence']} said at the end" if result else "the result's sequence"
     if result is None:
-        return Finding(False, expected, "it sent no goal, so there was no result")
+        return Finding(False, expected, "the client sent no goal, so there was no result")
     asked = len(part.of("result_request"))
     if asked == 0:
-        return Finding(False, expected, "it never requested the result")
+        return Finding(False, expected, "the client never requested the result")
     if asked > MANY_REQUESTS:
-        return Finding(False, expected, f"it requested the result {asked} times")
+        return Finding(False, expected, f"the client requested the result {asked} times")
     said = part.said(after=result)
     if returned := returned_instead(part, result.data["fields"]["sequence"]):
         return Finding(False, f"{result.data['fields']['sequence']} returned", f"returned {returned}")
     if not said and part.ending is not None and part.ending.t <= result.t:
-        return Finding(False, expected, "it ended before the result came")
+        return Finding(False, expected, "the client ended before the result arrived")
     return Finding(
-        reports_result(part), expected, f"“{said[-1]}”" if said else "it reported nothing after the result"
+        reports_result(part), expected, f"“{said[-1]}”" if said else "nothing was reported after the result"
     )
 
 

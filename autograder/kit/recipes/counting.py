@@ -62,7 +62,7 @@ def field_typo(seen: Publisher, _: Publisher) -> Advice | None:
         return None
     return Advice(
         "Your messages arrive, but their string is empty, because your code never sets the field `data`.",
-        "Set the only field of a String, as in message.data = .... Check the spelling: String(...) ignores a "
+        "Set the only field of a String, as in `message.data = your_text`. Check the spelling: String(...) ignores a "
         "misspelled keyword silently.",
     )
 

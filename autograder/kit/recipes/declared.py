@@ -32,7 +32,7 @@ class Declared:
         exercise_id: The lab's folder and the file's name, such as ``"lab_8_1.filter"``.
         title: The title of the card, naming the lab and the subject.
         task: One sentence that states the task.
-        scenario: Drives the bench.
+        scenario: The function that runs all parts of the exercise on a bench.
         roles: The roles of the subject's endpoints. The first role is the one whose endpoint shows most about the
             subject.
         given: The kind of event that records an input that the subject has certainly received. If a subject got fewer

@@ -355,7 +355,7 @@ def _leads_to(topic: str, target: str) -> bool:
 
 
 def _of_nodes(part: Part) -> list[Process]:
-    """Return the processes that a launch started with arguments for ROS."""
+    """Return the processes that a launch started with ``--ros-args`` in their command lines."""
     return [process for process in processes(part) if "--ros-args" in process.argv]
 
 

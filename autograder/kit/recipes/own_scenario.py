@@ -151,7 +151,7 @@ class OwnLadder(SeenAsItIs):
     The exercise lists the common mistakes that the subject may show. The view of this recipe is the whole evidence.
 
     Args:
-        scenario: Drives the bench.
+        scenario: The function that runs all parts of the exercise on a bench.
         ladder: The common mistakes, most specific first, with placeholders for the exercise's mistakes.
     """
 

@@ -254,7 +254,7 @@ class Programs:
         """Return in words how the programs should end; the given text if all of them should end on Ctrl-C."""
         alone = [program.name for program in self._programs if program.ends_by_itself]
         others = [program.name for program in self._programs if not program.ends_by_itself]
-        return f"{_and(others)} ends on Ctrl-C, {_and(alone)} by itself" if alone else all_on_ctrl_c
+        return f"{_and(others)} ends on Ctrl-C, and {_and(alone)} ends by itself" if alone else all_on_ctrl_c
 
     # --- mistakes ------------------------------------------------------------------------------------------------
 

@@ -69,7 +69,7 @@ class ServiceType(SeenAsItIs):
         return [(p, i) for p in packages for i in p.interfaces if i.file.rpartition("/")[2] == self._file]
 
     def _texts(self, evidence: Evidence) -> list[tuple[str, str]]:
-        """Return the path and the text of each file with the task's name whose text the report contains."""
+        """Return the path and the text of each file with the name from the task, if the report contains the text."""
         return [(file.file, file.text) for _, file in self._holders(evidence) if file.text is not None]
 
     def has_the_fields(self, evidence: Evidence) -> Finding:
@@ -126,7 +126,7 @@ class ServiceType(SeenAsItIs):
     def is_on_the_wire(self, evidence: Evidence) -> Finding:
         """Decide whether a node that serves the generated type has the reference's type hashes."""
         seen = evidence.main.first("type", SERVICE)
-        expected = "a service of this type, with these fields"
+        expected = "a service of the type in the task, with its fields"
         if seen is None:
             return Finding(False, expected, "no program could serve a service of this type")
         right = bool(seen.data["same"])
