@@ -1,4 +1,4 @@
-"""A recipe for an action server. The judge sends it goals, one of which it cancels while the server works on it."""
+"""A recipe for an action server. The judge sends it several goals, and cancels one while the server works on it."""
 
 from __future__ import annotations
 
@@ -21,20 +21,21 @@ if TYPE_CHECKING:
     from autograder.kit.reading.goals_seen import Goal
 
 AT_ONCE = 0.3
-"""Seconds: a server that computes many numbers within this time takes no time for each."""
+"""A limit in seconds. A server that computes many numbers in less time makes no pause for each number."""
 MANY = 2
-"""The minimum number of feedback messages in a row, without an answer to the cancel request, that show that the server
-reads no requests while it works.
+"""If this many feedback messages arrive after the cancel request and before its answer, the server reads no requests
+while it works.
 """
 
 
 class SendsGoals(SeenAsItIs):
-    """The recipe for an action server. Its views are the evidence itself, because several runs have several goals.
+    """The recipe for an action server. Its two views are the whole evidence, because several runs have several goals.
 
     Args:
-        scenario: Drives the bench. The action's name and type are ``bench.reference.only("action_server")``.
-        good: The goals that should succeed.
-        canceled: The goal that is canceled while the server works on it.
+        scenario: The function that runs all parts of the exercise on a bench. The action's name and type are
+            ``bench.reference.only("action_server")``.
+        good: Returns the goals that should succeed.
+        canceled: Returns the goal that the judge cancels while the server works on it.
     """
 
     roles = ("action_server",)
@@ -54,11 +55,11 @@ class SendsGoals(SeenAsItIs):
         return (
             common.two_servers(
                 "action_server",
-                "Each goal reaches both, and both execute it.",
-                "Make one ActionServer only, and one node.",
+                "Each goal reaches both servers, and both execute it.",
+                "Make only one ActionServer and only one node.",
             ),
             Mistake("result_missing", _result_missing, certain=True),
-            # The mistakes in OWN come before all crashes, because a goal that should have been refused may cause a
+            # The exercise's own mistakes come before crashes, because a goal that should have been refused may cause a
             # crash.
             OWN,
             *CRASHES,
@@ -77,14 +78,14 @@ class SendsGoals(SeenAsItIs):
         )
 
     def _goal_not_succeeded(self, evidence: Evidence) -> Advice | None:
-        """Return advice if the server aborted a goal or did not report success for it."""
+        """Return advice if the server aborted a goal that should have succeeded, without an exception."""
         aborted = [seen for seen in self._good(evidence) if seen.status == ABORTED]
         if not aborted or traceback_of(evidence):
             return None
         return Advice(
-            "The goal ended as ABORTED (6) although the work was done: the execute callback called abort() or returned "
-            "without a word about how the goal ended, which rclpy takes for abort().",
-            "Call succeed() of the goal handle before you return the result. abort() is for work that has failed.",
+            "The goal ended as ABORTED (6) although the work was done. Either the execute callback called abort(), "
+            "or it returned without calling succeed(); rclpy then aborts the goal.",
+            "Call succeed() of the goal handle before you return the result. Call abort() only if the work has failed.",
         )
 
     def _cancel_refused(self, evidence: Evidence) -> Advice | None:
@@ -92,54 +93,54 @@ class SendsGoals(SeenAsItIs):
         long = self.canceled(evidence)
         if long.cancelled_too_late and long.sent_after(long.cancel_answered_at):
             return Advice(
-                "Your server ended the goal before its work was done: the request to cancel was refused because the "
-                "goal had ended, and feedback went on.",
-                "Call succeed(), canceled() or abort() of the goal handle once, as the last thing before you return "
-                "the result.",
+                "Your server ended the goal before its work was done. So the cancel request was refused, because the "
+                "goal had already ended, but the server still sent feedback.",
+                "Call succeed(), canceled() or abort() of the goal handle exactly once, just before you return the "
+                "result.",
             )
         unread = long.cancelled_too_late and long.unread >= MANY
         if long.cancel_accepted is not False or unread or is_quick(long):
             return None
         return Advice(
-            "Your server refuses to cancel: rclpy does so if the ActionServer has no cancel_callback, or one that "
-            "returns anything but CancelResponse.ACCEPT.",
-            "Write cancel_callback=... in the ActionServer, with a method that returns CancelResponse.ACCEPT, and look "
-            "at is_cancel_requested of the goal handle in the loop.",
+            "Your server refuses the cancel request. rclpy does this if the ActionServer has no cancel_callback, or "
+            "if the cancel_callback does not return CancelResponse.ACCEPT.",
+            "Pass cancel_callback=... to the ActionServer: a method that returns CancelResponse.ACCEPT. In the loop "
+            "of the execute callback, check is_cancel_requested of the goal handle.",
         )
 
     def _cancel_refused_on_its_way(self, evidence: Evidence) -> Advice | None:
-        """Return the same advice only if the goal had not ended, so that the timing of the request does not matter."""
+        """Return the advice of :meth:`_cancel_refused` if the goal still ran, so that timing had no influence."""
         return None if self.canceled(evidence).cancelled_too_late else self._cancel_refused(evidence)
 
     def _cancel_not_read(self, evidence: Evidence) -> Advice | None:
-        """Return advice if the server works on and does not answer the cancel request."""
+        """Return advice if the server keeps working and does not answer the cancel request."""
         long = self.canceled(evidence)
         if long.cancel_accepted or long.unread < MANY or is_quick(long):
             return None
         if any(seen.accepted and not seen.over for seen in self._good(evidence)):
-            return None  # a thread is stuck in that goal
+            return None  # A thread is stuck in another goal.
         return Advice(
-            "Your server works on and does not even read the cancel request: the one thread that spins the node is "
-            "busy with the execute callback.",
-            "Spin the node with a MultiThreadedExecutor (rclpy.spin(your_node, executor=MultiThreadedExecutor())), so "
-            "that another thread can take the request.",
+            "Your server keeps working and does not read the cancel request, because the only thread that spins the "
+            "node is busy with the execute callback.",
+            "Spin the node with a MultiThreadedExecutor, as in rclpy.spin(your_node, "
+            "executor=MultiThreadedExecutor()), so that another thread can read the cancel request.",
         )
 
     def _cancel_ignored(self, evidence: Evidence) -> Advice | None:
-        """Return advice if the server accepted the cancel request and worked on."""
+        """Return advice if the server accepted the cancel request, but did not end the goal as canceled."""
         long = self.canceled(evidence)
         if not long.cancel_accepted or long.status == CANCELED:
             return None
         return Advice(
             "Your server accepted the cancel request, but the goal was not canceled "
             f"(status {status_text(long.status)}).",
-            "In each turn of the loop look at is_cancel_requested of the goal handle; if it is True, call its "
-            "canceled() and return the result so far.",
+            "In each turn of the loop, check is_cancel_requested of the goal handle. If it is True, call canceled() "
+            "of the goal handle and return the result so far.",
         )
 
 
 def is_quick(seen: Goal) -> bool:
-    """Return True if the server took hardly any time for the goal."""
+    """Return True if the server needed hardly any time for the goal."""
     return seen.seconds is not None and seen.seconds < AT_ONCE
 
 
@@ -150,7 +151,8 @@ def _result_missing(evidence: Evidence) -> Advice | None:
         (list(seen.result) for part in evidence.reference.parts for seen in all_goals(part) if seen.result),
         [],
     )
-    # The first is rclpy's error when it sends the result; the second is the clearer one of autograder/notebook.
+    # The first alternative is rclpy's error when it sends the result. The second is the clearer error that
+    # autograder/notebook raises.
     absent = rf"'NoneType' object has no attribute '_?(?:{'|'.join(fields)})'|" if fields else ""
     said = f"{absent}must return a result of the action"
     traceback = traceback_of(evidence)
@@ -158,15 +160,16 @@ def _result_missing(evidence: Evidence) -> Advice | None:
         return None
     name = kind.rpartition("/")[2]
     return Advice(
-        f"The execute callback returned no {name}.Result: nothing at all, a bare list, or a type without parentheses.",
-        f"End it with `return result`, where result is a {name}.Result() whose "
-        f"{' and '.join(fields) or 'fields'} you have filled. Do so on every way out, after a cancel too.",
+        f"The execute callback did not return a {name}.Result object. It returned nothing, a plain list, or the type "
+        "without parentheses.",
+        f"End the callback with `return result`, where `result` is a {name}.Result() in which you have set "
+        f"{' and '.join(fields) or 'the fields'}. Do this wherever the callback returns, also after a cancel.",
         traceback,
     )
 
 
 def _exception_in_execute(evidence: Evidence) -> Advice | None:
-    """Return advice if the execute callback raised an exception, upon which rclpy aborted the goal."""
+    """Return advice if the execute callback raised an exception, so that rclpy aborted the goal."""
     traceback = traceback_of(evidence)
     if not traceback or not any(seen.status == ABORTED for part in evidence for seen in all_goals(part)):
         return None

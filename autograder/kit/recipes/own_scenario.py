@@ -108,7 +108,7 @@ class OwnScenario:
         return replace(recorded, events=[Event(0.0, "interface", "graph", interface), *recorded.events])
 
     def has(self, role: str) -> Callable[[Evidence], Finding]:
-        """Return the criterion that the names and types of a role equal the reference's, for :meth:`.Draft.asks`."""
+        """Return the criterion that the subject's endpoints of a role have the reference's names and types."""
 
         def judge(evidence: Evidence) -> Finding:
             wanted, made = evidence.reference.interface.get(role, {}), evidence.main.endpoints(role)
