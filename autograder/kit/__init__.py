@@ -1,1 +1,1 @@
-"""The vocabulary of exercises: the model, the evidence, and the rules and mistakes that several exercises share."""
+"""The modules with which exercises are written: the model, the evidence, recipes, and common rules and mistakes."""

@@ -19,7 +19,7 @@ class Server(Protocol):
     """A service server of the judge."""
 
     def release(self) -> None:
-        """Send the answer that was held back."""
+        """Send the answer that the server has held back."""
 
     def close(self) -> None:
         """Remove the service."""
@@ -41,7 +41,7 @@ class ActionCounterpart(Protocol):
         """Wait for a request to cancel the current goal; False if none came in ``within`` seconds."""
 
     def await_result_request(self, within: float) -> bool:
-        """Wait for a request for the result."""
+        """Wait until the subject requests the result."""
 
     def finish(self, status: str, **fields: Any) -> None:
         """End the goal with ``"succeeded"``, ``"canceled"`` or ``"aborted"`` and this result."""

@@ -209,7 +209,7 @@ def refused_as_seen(evidence: Evidence) -> str:
         return NOT_AWAITED if goal else NO_GOAL
     if missing := REJECTED.missing(part, all_but(evidence, REFUSED)):
         return missing
-    # A client that keeps running after a successful goal may also keep running here.
+    # A client that keeps running after a successful goal may also keep running after a refused one.
     return NOT_ENDED if part.ending is None and evidence.main.ending is not None else ""
 
 
@@ -285,7 +285,7 @@ def tells_of_refusal(evidence: Evidence) -> Finding:
 
 
 def returns_nothing_of_a_refused_goal(evidence: Evidence) -> Finding:
-    """Decide the same as :func:`tells_of_refusal`. A function that returns must also return an empty list."""
+    """Decide whether the client handles a refused goal well, and a function that returns gives an empty list."""
     told = tells_of_refusal(evidence)
     returned = returned_instead(evidence.part(REFUSED), [])
     if not told.passed or not returned:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 NODES = 2
 """The number of programs that the launch file should start, each with a remapping rule."""
 MESSAGES = 2
-"""The number of messages from the publisher to wait for."""
+"""The number of messages for which the judge waits."""
 SAYING = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
 """Time limit in seconds of wall time for the listener to report the judge's text."""
 BEGINNING = {Pace.FAST: 20.0, Pace.REAL_TIME: 40.0}

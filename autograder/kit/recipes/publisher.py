@@ -179,7 +179,7 @@ class Hears:
         topic, _ = evidence.reference.only("publisher")
         heard = self.seen(evidence)
         published = heard.endpoints
-        nothing = "it ended too soon to tell" if heard.part.ending else "no publisher"
+        nothing = "the program ended too soon to tell" if heard.part.ending else "no publisher"
         seen = f"publishes on {', '.join(sorted(published))}" if published else nothing
         return Finding(topic in published, f"a publisher on {topic}", seen)
 
@@ -188,7 +188,7 @@ class Hears:
         topic, type_name = evidence.reference.only("publisher")
         heard = self.seen(evidence)
         seen = heard.endpoints.get(heard.part.real_name(topic))
-        nothing = "it ended too soon to tell" if heard.part.ending else f"nothing on {topic}"
+        nothing = "the program ended too soon to tell" if heard.part.ending else f"nothing on {topic}"
         return Finding(seen == type_name, type_name, seen or nothing)
 
     def keeps_rate(self, evidence: Evidence) -> Finding:

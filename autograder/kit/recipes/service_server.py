@@ -160,7 +160,7 @@ class Asks:
         # not sent an answer.
         enough = SURE if seen.part.traceback else max(SURE, len(seen.asked))
         if seen.part.ending is not None and len(seen.answers) < enough:
-            return Finding(False, expected, "it ended by itself while it was called")
+            return Finding(False, expected, "the program ended by itself while the judge called its service")
         return Finding(bool(seen.answers), expected, "it answers" if seen.answers else "no call was answered")
 
     @property

@@ -193,7 +193,7 @@ def subscribes(evidence: Evidence) -> Finding:
     """Decide whether the subject subscribes to the topic with the right type."""
     topic, type_name = evidence.reference.only("subscription")
     made = _subscriptions(evidence.main, topic)
-    nothing = "it ended too soon to tell" if evidence.main.ending else "no subscription"
+    nothing = "the program ended too soon to tell" if evidence.main.ending else "no subscription"
     seen = ", ".join(f"{name} ({kind})" for name, kind in sorted(made.items())) or nothing
     return Finding(made.get(topic) == type_name, f"{topic} ({type_name})", seen)
 
