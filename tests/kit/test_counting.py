@@ -108,5 +108,5 @@ def test_the_example_for_a_text_without_its_number_is_the_task_s_own_text() -> N
 
 
 def test_a_reference_that_does_not_count_is_the_author_s_error() -> None:
-    with pytest.raises(ValueError, match=r"delete heard\.counts"):
+    with pytest.raises(ValueError, match=r"leave out heard\.counts"):
         failed(evidence(["hello"] * 20, heard(["hello"] * 20)))
