@@ -34,7 +34,7 @@ ANSWERS = [
 ]
 
 
-@pytest.fixture(params=ANSWERS, ids=lambda answer: answer.name)
+@pytest.fixture(scope="module", params=ANSWERS, ids=lambda answer: answer.name)
 def seen(request: pytest.FixtureRequest) -> Kept:
     """What the judge saw of a right and of a wrong answer to each exercise, with what it says of that today."""
     answer = request.param

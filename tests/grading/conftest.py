@@ -11,7 +11,6 @@ import pytest
 
 from autograder.grading import batch
 from autograder.grading.rebuilding import task_making
-from autograder.grading.running import engine
 
 sys.path.insert(0, str(Path(__file__).parent))
 sys.path.insert(0, str(Path(__file__).parent / "collecting"))
@@ -26,6 +25,12 @@ if TYPE_CHECKING:
 @pytest.fixture(scope="session")
 def _made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return make_tiny_class(tmp_path_factory.mktemp("classes"))
+
+
+@pytest.fixture(scope="module")
+def to_be_copied(_made: Path, tmp_path_factory: pytest.TempPathFactory) -> TinyClass:
+    """A fresh class, which a module grades once; its tests work on copies."""
+    return TinyClass(shutil.copytree(_made, tmp_path_factory.mktemp("graded") / "class"))
 
 
 @pytest.fixture
@@ -52,11 +57,11 @@ def _one_course_version() -> Iterator[None]:
 
 
 @pytest.fixture
-def fake_engine(monkeypatch: pytest.MonkeyPatch) -> FakeEngine:
+def fake_engine() -> Iterator[FakeEngine]:
     """Nothing is executed in this test."""
     fake = FakeEngine()
-    monkeypatch.setattr(engine, "execute_all", fake.execute_all)
-    return fake
+    with fake.at_work():
+        yield fake
 
 
 @pytest.fixture

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import json
+import shutil
 import sqlite3
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
 from click.testing import CliRunner
-from tiny_class import QUIET
+from tiny_class import QUIET, FakeEngine, TinyClass
 
 from autograder import exercises
 from autograder.appeals import appeal_file
@@ -27,8 +28,6 @@ from autograder.messages.orders import Report
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from tiny_class import FakeEngine, TinyClass
-
 ID = "lab_1_2.talker"
 
 
@@ -40,14 +39,25 @@ def evidence() -> bytes:
     return keeping.pack(trial.decide(exercises.get(ID), seen, "s"), seen, reference.digest(ID), at=1.8e9)
 
 
+@pytest.fixture(scope="module")
+def _graded(to_be_copied: TinyClass) -> Path:
+    to_be_copied.submit("ada", 10, 7)
+    engine = FakeEngine()
+    engine.evidence[ID] = evidence()
+    with engine.at_work(), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sandboxing, "require", lambda _: None)
+        to_be_copied.grade()
+    return to_be_copied.path
+
+
 @pytest.fixture
-def graded(tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch) -> TinyClass:
+def graded(
+    _graded: Path, fake_engine: FakeEngine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> TinyClass:
     """A class with one submission, of which a check has evidence."""
     monkeypatch.setattr(sandboxing, "require", lambda _: None)
-    tiny.submit("ada", 10, 7)
     fake_engine.evidence[ID] = evidence()
-    tiny.grade()
-    return tiny
+    return TinyClass(shutil.copytree(_graded, tmp_path / "class"))
 
 
 def kept(tiny: TinyClass, student: str = "ada") -> dict[str, bytes]:

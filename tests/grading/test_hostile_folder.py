@@ -12,7 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from click.testing import CliRunner
 
+from autograder.cli import cli
 from environment.python_child import installed_program
 
 if TYPE_CHECKING:
@@ -66,10 +68,21 @@ class Hostile:
     def marks(self) -> str:
         return self._marks.read_text() if self._marks.exists() else ""
 
+    def wipe(self) -> None:
+        """Remove the marks of an earlier test."""
+        self._marks.unlink(missing_ok=True)
+
+
+@pytest.fixture(scope="module")
+def _hostile(tmp_path_factory: pytest.TempPathFactory) -> Hostile:
+    return Hostile(tmp_path_factory.mktemp("hostile"))
+
 
 @pytest.fixture
-def hostile(tmp_path: Path) -> Hostile:
-    return Hostile(tmp_path)
+def hostile(_hostile: Hostile) -> Hostile:
+    """A folder without marks; the tests leave its files as they are."""
+    _hostile.wipe()
+    return _hostile
 
 
 @pytest.fixture
@@ -100,7 +113,7 @@ def course(tmp_path: Path) -> Path:
     return root / "course"
 
 
-def typed(course: Path, hostile: Hostile, *words: str) -> subprocess.CompletedProcess[str]:
+def typed(course: Path, folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     """Type a command in the folder, with search paths that have it in them as many terminals' have."""
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONSAFEPATH"}
     environment["PATH"] = f":.:{environment['PATH']}"
@@ -108,7 +121,7 @@ def typed(course: Path, hostile: Hostile, *words: str) -> subprocess.CompletedPr
     environment["LD_LIBRARY_PATH"] = f":{environment.get('LD_LIBRARY_PATH', '')}"
     return subprocess.run(
         ["/bin/sh", str(course), *words],
-        cwd=hostile.path,
+        cwd=folder,
         env=environment,
         capture_output=True,
         text=True,
@@ -127,25 +140,41 @@ def test_nothing_of_the_current_folder_runs_while_a_class_is_graded(
 ) -> None:
     tiny.submit("ada")
     (tiny.path / "students.csv").write_text("id\nada\nben\n")
-    graded = typed(course, hostile, "grade", str(tiny.path))
+    graded = typed(course, hostile.path, "grade", str(tiny.path))
     assert "ada" in graded.stdout, graded.stderr
     assert "mallory" not in (tiny.path / "feedback/ada/lab_1_2/lab_1_2.html").read_text()
     more = shutil.copytree(tiny.path / "submitted/ada/lab_1_2", tiny.path / "download/ben")
     for command, *words in (["collect", str(more)], ["report"], ["similar"], ["export", "--to", "csv"]):
-        done = typed(course, hostile, command, str(tiny.path), *words)
+        done = typed(course, hostile.path, command, str(tiny.path), *words)
         assert done.returncode == 0, done.stdout + done.stderr
     assert hostile.marks() == ""
 
 
-@pytest.mark.parametrize("command", ["grade", "report", "similar", "new-class", "nbgrader", "jupyter"])
+@pytest.fixture
+def handed_in(tiny: TinyClass, hostile: Hostile) -> Path:
+    """What a student has handed in: a class of the student's own."""
+    folder = tiny.submit("mallory").parent
+    shutil.copytree(tiny.path / "source", folder / "source")
+    shutil.copy(hostile.path / "nbgrader_config.py", folder)
+    return folder
+
+
+@pytest.mark.parametrize("command", ["grade", "report", "similar", "new-class"])
 def test_a_class_that_a_student_has_handed_in_is_not_used(
-    tiny: TinyClass, course: Path, hostile: Hostile, command: str
+    tiny: TinyClass, hostile: Hostile, handed_in: Path, monkeypatch: pytest.MonkeyPatch, command: str
 ) -> None:
-    handed_in = tiny.submit("mallory").parent
-    shutil.copytree(tiny.path / "source", handed_in / "source")
-    shutil.copy(hostile.path / "nbgrader_config.py", handed_in)
-    hostile.path = handed_in
-    done = typed(course, hostile, command, ".")
+    monkeypatch.chdir(handed_in)
+    done = CliRunner().invoke(cli, [command, "."])
+    assert done.exit_code == 2
+    assert str(tiny.path) in done.output.replace("\n", "")
+    assert hostile.marks() == ""
+
+
+@pytest.mark.parametrize("command", ["nbgrader", "jupyter"])
+def test_a_program_that_would_read_a_students_configuration_is_not_started(
+    tiny: TinyClass, course: Path, hostile: Hostile, handed_in: Path, command: str
+) -> None:
+    done = typed(course, handed_in, command, ".")
     assert done.returncode == 2
     assert str(tiny.path) in done.stderr
     assert hostile.marks() == ""
@@ -155,7 +184,7 @@ def test_a_class_that_a_student_has_handed_in_is_not_used(
 def test_nothing_of_the_current_folder_runs_while_the_machine_is_looked_at(
     course: Path, hostile: Hostile
 ) -> None:
-    done = typed(course, hostile, "doctor")
+    done = typed(course, hostile.path, "doctor")
     assert "rclpy" in done.stdout, done.stdout + done.stderr
     assert hostile.marks() == ""
 
@@ -174,7 +203,7 @@ def test_a_command_that_is_refused_in_the_folder_has_run_nothing_of_it(
     course: Path, hostile: Hostile, words: tuple[str, ...]
 ) -> None:
     (hostile.path / "conf.json").write_text("{}")
-    done = typed(course, hostile, *words)
+    done = typed(course, hostile.path, *words)
     assert done.returncode not in (0, 127), done.stdout + done.stderr
     assert "Traceback" not in done.stderr
     assert hostile.marks() == ""

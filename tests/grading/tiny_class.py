@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import nbformat
+import pytest
 from nbgrader.api import Gradebook
 from rich.console import Console
 
@@ -16,6 +18,7 @@ from autograder.execution.cells import CellRun, Execution
 from autograder.execution.verdicts_without_judge import grader_trouble, zero_points
 from autograder.grading.batch import grade
 from autograder.grading.classes.new_class import new_class
+from autograder.grading.running import engine
 from autograder.grading.running.dispatcher import Done
 
 sys.path.insert(0, str(Path(__file__).parent))  # for fake_judge, which a worker imports by that name
@@ -169,6 +172,13 @@ class FakeEngine:
         self.ran: list[str] = []
         self.evidence: dict[str, bytes] = {}
         self.before: Callable[[Task], None] = lambda _: None
+
+    @contextlib.contextmanager
+    def at_work(self) -> Iterator[None]:
+        """Nothing is executed meanwhile."""
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(engine, "execute_all", self.execute_all)
+            yield
 
     def execute_all(self, tasks: Sequence[Task], *_: object, **options: Any) -> Iterator[Done]:
         for task in tasks:

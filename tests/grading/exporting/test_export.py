@@ -17,6 +17,7 @@ from nbgrader.api import Gradebook
 from own_assignment import EngineWithAsserts, write_assignment
 from own_assignment import hand_in as put_own_work
 from test_true_table import DUE, nbgraders_total
+from tiny_class import FakeEngine, TinyClass
 
 from autograder.cli import cli
 from autograder.grading.collecting.collect import collect
@@ -28,36 +29,39 @@ from autograder.grading.running import engine
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from tiny_class import FakeEngine, TinyClass
-
 TALKER = "lab_1_2-talker"
 STUDENTS = ("ada", "ben", "eve", "jose", "zoe")
 
 
-@pytest.fixture
-def graded(tiny: TinyClass, fake_engine: FakeEngine, tmp_path: Path) -> TinyClass:
-    """A class with points by hand, a late student, one without work and one whose folder was made by hand."""
-    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
-    penalty(tiny)
-    due(tiny, DUE)
-    one, two = tiny.submit("x", 4, 7).read_text(), tiny.submit("x", 10, 10).read_text()
-    for path in sorted((tiny.path / "submitted" / "x").rglob("*"), reverse=True):
-        path.unlink() if path.is_file() else path.rmdir()
-    (tiny.path / "submitted" / "x").rmdir()
+@pytest.fixture(scope="module")
+def _graded(to_be_copied: TinyClass, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    klass, downloads = to_be_copied, tmp_path_factory.mktemp("downloads")
+    (klass.path / "students.csv").write_text(ROSTER, encoding="utf-8")
+    penalty(klass)
+    due(klass, DUE)
+    one, two = klass.submit("x", 4, 7).read_text(), klass.submit("x", 10, 10).read_text()
+    shutil.rmtree(klass.path / "submitted" / "x")
     canvas = {"lovelaceada_101_9001_lab_1_2-2.ipynb": one, "nunezjose_LATE_103_9002_lab_1_2.ipynb": two}
     moodle = {"Eve O'Neill_555_assignsubmission_file/lab_1_2.ipynb": two}
-    worksheet = tmp_path / "w.csv"
+    worksheet = downloads / "w.csv"
     worksheet.write_text(
         "Identifier,Full name,Email address,Grade,Last modified (submission)\n"
         'Participant 555,Eve O\'Neill,eve@uni.example,,"Sunday, 11 January 2026, 2:05 PM"\n'
     )
-    collect(tiny.path, [write_zip(tmp_path / "c.zip", canvas)])
-    collect(tiny.path, [write_zip(tmp_path / "m.zip", moodle), worksheet])
-    tiny.submit("ben", 1, 1)
-    tiny.grade(feedback=True)
-    by_person(tiny, "ada", TALKER, 9.5, extra=2)
-    tiny.grade(feedback=True)
-    return tiny
+    collect(klass.path, [write_zip(downloads / "c.zip", canvas)])
+    collect(klass.path, [write_zip(downloads / "m.zip", moodle), worksheet])
+    klass.submit("ben", 1, 1)
+    with FakeEngine().at_work():
+        klass.grade(feedback=True)
+        by_person(klass, "ada", TALKER, 9.5, extra=2)
+        klass.grade(feedback=True)
+    return klass.path
+
+
+@pytest.fixture
+def graded(_graded: Path, fake_engine: FakeEngine, tmp_path: Path) -> TinyClass:
+    """A class with points by hand, a late student, one without work and one whose folder was made by hand."""
+    return TinyClass(shutil.copytree(_graded, tmp_path / "class"))
 
 
 def rows(path: Path) -> list[list[str]]:

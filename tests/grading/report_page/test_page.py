@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ from click.testing import CliRunner
 from downloads import ROSTER
 from instructor import by_person
 from test_true_table import nbgraders_total
+from tiny_class import FakeEngine, TinyClass
 
 from autograder.cli import cli
 from autograder.grading.class_store import ClassStore
@@ -26,30 +28,42 @@ from autograder.grading.table.class_table import ClassTable, read_table
 from autograder.verdict import CriterionResult, Diagnosis, Verdict
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
-
-    from tiny_class import FakeEngine, TinyClass
 
 GIVEN = {"ada": (10, 10), "ben": (4, 0), "eve": (2, 1), "jose": ("1/0", 10)}
 
 
-@pytest.fixture
-def graded(tiny: TinyClass, fake_engine: FakeEngine, monkeypatch: pytest.MonkeyPatch) -> TinyClass:
-    """A class of five, of whom one has handed in nothing, with points by hand."""
+@pytest.fixture(scope="module")
+def _criteria() -> Iterator[None]:
+    """Each check has a criterion."""
     plain = tiny_class.verdict
 
     def with_criteria(exercise: str, score: float, seed: str) -> Verdict:
         criterion = CriterionResult("text", "Says the right thing", 10, score == 10, "", "")
         return replace(plain(exercise, score, seed), criteria=(criterion,))
 
-    monkeypatch.setattr(tiny_class, "verdict", with_criteria)
-    (tiny.path / "students.csv").write_text(ROSTER, encoding="utf-8")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(tiny_class, "verdict", with_criteria)
+        yield
+
+
+@pytest.fixture(scope="module")
+def _graded(_criteria: None, to_be_copied: TinyClass) -> Path:
+    (to_be_copied.path / "students.csv").write_text(ROSTER, encoding="utf-8")
     for student, answers in GIVEN.items():
-        tiny.submit(student, *answers)
-    tiny.grade(feedback=True)
-    by_person(tiny, "ben", "lab_1_2-talker", 5, extra=1)
-    tiny.grade(feedback=True)
-    return tiny
+        to_be_copied.submit(student, *answers)
+    with FakeEngine().at_work():
+        to_be_copied.grade(feedback=True)
+        by_person(to_be_copied, "ben", "lab_1_2-talker", 5, extra=1)
+        to_be_copied.grade(feedback=True)
+    return to_be_copied.path
+
+
+@pytest.fixture
+def graded(_graded: Path, fake_engine: FakeEngine, tmp_path: Path) -> TinyClass:
+    """A class of five, of whom one has handed in nothing, with points by hand."""
+    return TinyClass(shutil.copytree(_graded, tmp_path / "graded"))
 
 
 def test_the_figures_are_the_gradebooks(graded: TinyClass) -> None:
@@ -173,7 +187,7 @@ def test_what_turns_the_direction_of_writing_is_shown_as_an_escape(
     assert not set("\u202e\u2066\x1b\0") & set(text)
 
 
-def test_the_command_says_where_the_page_is(graded: TinyClass, tiny: TinyClass, tmp_path: Path) -> None:
+def test_the_command_says_where_the_page_is(graded: TinyClass, tmp_path: Path) -> None:
     to = tmp_path / "elsewhere" / "page.html"
     result = CliRunner().invoke(cli, ["report", str(graded.path), "--output", str(to)])
     assert (result.exit_code, result.output.strip()) == (0, str(to))
