@@ -12,7 +12,7 @@ import pytest
 
 # Has Python find the labs, whose modules tests import.
 import autograder.exercises  # noqa: F401
-from tests import tiers
+from tests import hasty_disk, tiers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -132,6 +132,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 def _rank(item: pytest.Item) -> int:
     return next((rank for rank, name in enumerate(LONGEST) if item.nodeid.startswith(name)), len(LONGEST))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _no_waiting_for_the_disk() -> Iterator[None]:
+    with hasty_disk.no_waiting():
+        yield
 
 
 @pytest.fixture(scope="session", autouse=True)

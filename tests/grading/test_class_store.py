@@ -29,6 +29,7 @@ from autograder.grading.errors import DiskFull, StoreTrouble
 from autograder.grading.reporting.rows import Row
 from autograder.grading.task import Task
 from autograder.verdict import State, Verdict
+from tests import hasty_disk
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -371,7 +372,8 @@ def test_whenever_it_is_killed_all_that_was_said_to_be_kept_is_there(store: Clas
 
 
 def test_a_step_is_on_the_disk_before_it_is_said_to_be_done(store: ClassStore) -> None:
-    store.note_origins({})
+    with hasty_disk.waiting():
+        store.note_origins({})
     assert store._connection is not None
     asked = [
         store._connection.execute(f"PRAGMA {name}").fetchone()[0] for name in ("synchronous", "journal_mode")
