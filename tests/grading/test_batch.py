@@ -277,25 +277,28 @@ def test_what_lies_beside_the_notebook_goes_nowhere(tiny: TinyClass, fake_engine
     assert (path.parent / "stolen.db").is_symlink()
 
 
-@pytest.mark.parametrize("name", ["a*", "x\ny", "=cmd", "[a-z]", "a" * 200, "{0}", "a\x1b[2J", ";rm", "a,b"])
 def test_a_folder_with_a_strange_name_is_refused_and_the_rest_is_graded(
-    tiny: TinyClass, fake_engine: FakeEngine, name: str
+    tiny: TinyClass, fake_engine: FakeEngine
 ) -> None:
     tiny.submit("ada")
-    (tiny.path / "submitted" / name / "lab_1_2").mkdir(parents=True)
+    names = ["a*", "x\ny", "=cmd", "[a-z]", "a" * 200, "{0}", "a\x1b[2J", ";rm", "a,b"]
+    for name in names:
+        (tiny.path / "submitted" / name / "lab_1_2").mkdir(parents=True)
     report = tiny.grade()
-    assert [refused.path.name for refused in report.refused] == [name]
-    assert "rename the folder" in report.refused[0].reason
+    assert sorted(refused.path.name for refused in report.refused) == sorted(names)
+    assert all("rename the folder" in refused.reason for refused in report.refused)
     assert report.exit_code == 2
     assert tiny.scores("ada")[TALKER] == 10
 
 
-@pytest.mark.parametrize("name", ["ada.lovelace", "o'neill", "Ада", "s-1234_5", "a b", "x@uni.example"])
-def test_names_that_people_have_are_fine(tiny: TinyClass, fake_engine: FakeEngine, name: str) -> None:
-    tiny.submit(name)
+def test_names_that_people_have_are_fine(tiny: TinyClass, fake_engine: FakeEngine) -> None:
+    names = ["ada.lovelace", "o'neill", "Ада", "s-1234_5", "a b", "x@uni.example"]
+    for name in names:
+        tiny.submit(name)
     assert tiny.grade(feedback=True).exit_code == 0
-    assert tiny.scores(name)[TALKER] == 10
-    assert (tiny.path / "feedback" / name / "lab_1_2" / "lab_1_2.html").exists()
+    for name in names:
+        assert tiny.scores(name)[TALKER] == 10
+        assert (tiny.path / "feedback" / name / "lab_1_2" / "lab_1_2.html").exists()
 
 
 def test_a_submission_folder_that_is_a_link_is_refused(tiny: TinyClass, fake_engine: FakeEngine) -> None:
