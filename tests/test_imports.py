@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import functools
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -54,21 +55,53 @@ MOST_FILES = 32
 """In one folder of the package: a stranger must be able to read their names."""
 
 
+@dataclass(frozen=True)
+class Import:
+    """A name that a file imports.
+
+    Attributes:
+        line: The line of the statement.
+        level: The number of dots of a relative import; 0 if the name is full.
+        name: The name behind the dots.
+        for_types: Whether it is imported for types alone, and does not run.
+    """
+
+    line: int
+    level: int
+    name: str
+    for_types: bool
+
+
+@functools.cache
+def imports_of(path: Path) -> tuple[Import, ...]:
+    """The imports of a file, whether at the top or inside a function."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    for_types = {
+        id(inner)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING")
+        for statement in node.body
+        for inner in ast.walk(statement)
+    }
+    found = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            above = f"{node.module}." if isinstance(node, ast.ImportFrom) and node.module else ""
+            level = node.level if isinstance(node, ast.ImportFrom) else 0
+            found += [
+                Import(node.lineno, level, above + alias.name, id(node) in for_types) for alias in node.names
+            ]
+    return tuple(found)
+
+
 @functools.cache
 def imports(folder: Path) -> list[tuple[Path, int, str]]:
-    """Each import below a folder: file, line and full name, whether at the top or inside a function."""
-    return list(_imports(folder))
-
-
-def _imports(folder: Path) -> Iterator[tuple[Path, int, str]]:
-    for path in sorted(folder.rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Import):
-                yield from ((path, node.lineno, alias.name) for alias in node.names)
-            elif isinstance(node, ast.ImportFrom):
-                # A relative import keeps its dots, and is refused in the package: it hides who is imported.
-                module = "." * node.level + (node.module or "")
-                yield from ((path, node.lineno, f"{module}.{alias.name}") for alias in node.names)
+    """Each import below a folder: file, line and name; a relative one keeps its dots."""
+    return [
+        (path, one.line, "." * one.level + one.name)
+        for path in sorted(folder.rglob("*.py"))
+        for one in imports_of(path)
+    ]
 
 
 def part_of(path: Path) -> str:
@@ -168,26 +201,12 @@ def _modules(folder: Path) -> dict[str, Path]:
 
 def _runs(path: Path, module: str, *, types: bool) -> set[str]:
     """The full names of what a module imports when it runs; each may be a module or something in one."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    for_types = {
-        id(inner)
-        for node in ast.walk(tree)
-        if isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING")
-        for statement in node.body
-        for inner in ast.walk(statement)
-    }
     package = module.split(".") if path.name == "__init__.py" else module.split(".")[:-1]
-    found: set[str] = set()
-    for node in ast.walk(tree):
-        if id(node) in for_types and not types:
-            continue
-        if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            above = package[: len(package) - node.level + 1] if node.level else []
-            base = ".".join([*above, *([node.module] if node.module else [])])
-            found |= {f"{base}.{alias.name}" for alias in node.names}
-    return found
+    return {
+        ".".join([*(package[: len(package) - one.level + 1] if one.level else []), one.name])
+        for one in imports_of(path)
+        if types or not one.for_types
+    }
 
 
 def _reached(module: str, graph: dict[str, set[str]]) -> set[str]:

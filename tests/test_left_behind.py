@@ -5,14 +5,14 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from autograder import course
 
-if TYPE_CHECKING:
-    from pathlib import Path
+sys.path.insert(0, str(Path(__file__).parent / "grading"))
+from tiny_class import TinyClass, make_tiny_class
 
 pytestmark = [
     pytest.mark.ros,
@@ -32,7 +32,7 @@ COMMANDS = {
         "sleep 7656.5",
         [*COURSE, "check", "lab_1_2.talker", "--", sys.executable, "{folder}/program.py"],
     ),
-    "demo": ("running.executor", [*COURSE, "demo", "{folder}/class"]),
+    "grade": ("running.executor", [*COURSE, "grade", "{folder}/tiny-class"]),
     "execute": ("running.executor", [*COURSE, "execute", "lab_1_2", "--reports", "{folder}/reports"]),
     "test": ("sleep 7656.5", ["sh", "-c", TESTS]),
     "bank": (
@@ -48,6 +48,8 @@ COMMANDS = {
 def test_everything_ends_with_the_command(name: str, ending: str, tmp_path: Path) -> None:
     (tmp_path / "program.py").write_text(PROGRAM)
     (tmp_path / "test_program.py").write_text(f"def test_it():{PROGRAM.replace(chr(10), chr(10) + '    ')}")
+    if name == "grade":
+        TinyClass(make_tiny_class(tmp_path)).submit("ada")
     word, command = COMMANDS[name]
     words = [part.replace("{folder}", str(tmp_path)) for part in command]
     done = subprocess.run(
