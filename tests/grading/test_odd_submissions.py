@@ -137,7 +137,7 @@ def test_what_lies_beside_the_notebook_holds_nothing_up_and_costs_nothing(
     tiny.submit("ada")
     names = ("timestamp.txt", "robot.py", "deep/robot.py")
     kinds = ("pipe", "device", "folder", "link to itself", "link")
-    students = []
+    students: list[str] = []
     for kind, name in itertools.product(kinds, names):
         students.append(f"eve-{len(students)}")
         path = tiny.submit(students[-1], 3, 4).parent / name
