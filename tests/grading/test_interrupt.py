@@ -22,4 +22,4 @@ def test_it_says_what_was_kept_and_how_to_go_on(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr(batch, "grade", interrupted)
     result = CliRunner().invoke(cli, ["grade", str(tmp_path)])
     assert result.exit_code == 130
-    assert "goes on from there" in result.output
+    assert "type the same command to grade the rest" in result.output
