@@ -311,7 +311,7 @@ def test_a_submission_folder_that_is_a_link_is_refused(tiny: TinyClass, fake_eng
 def test_an_assignment_that_does_not_exist_is_refused(tiny: TinyClass, fake_engine: FakeEngine) -> None:
     (tiny.path / "submitted" / "ada" / "tyni").mkdir(parents=True)
     report = tiny.grade()
-    assert "it has: lab_1_2" in report.refused[0].reason
+    assert "its assignments: lab_1_2" in report.refused[0].reason
 
 
 def test_plain_files_and_hidden_ones_are_nobodys_work(tiny: TinyClass, fake_engine: FakeEngine) -> None:
