@@ -17,9 +17,7 @@ from autograder.kit.in_words import counted
 @class_folder
 @click.option(
     "--to",
-    type=click.Choice(
-        ["canvas", "moodle", "gradescope", "blackboard", "brightspace", "sakai", "ilias", "csv", "xlsx"]
-    ),
+    type=click.Choice(["canvas", "moodle", "blackboard", "brightspace", "sakai", "ilias", "csv", "xlsx"]),
     required=True,
     help="The LMS that will import the files.",
 )

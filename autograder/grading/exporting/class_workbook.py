@@ -66,10 +66,7 @@ def as_xlsx(table: ClassTable, assignments: Sequence[str]) -> bytes:
         for name, rows in (("students", student_rows(table, assignments)), ("exercises", exercises)):
             sheet = book.add_worksheet(name)
             for place, row in enumerate(rows):
-                for column, cell in enumerate(row):
-                    style = bold if place == 0 else None
-                    write = sheet.write_string if isinstance(cell, str) else sheet.write_number
-                    write(place, column, cell, style)
+                sheet.write_row(place, 0, row, None if place else bold)
             sheet.freeze_panes(1, 1)
             sheet.autofit()
     return data.getvalue()

@@ -9,8 +9,7 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.records import CollectedRecords
 from autograder.grading.errors import GradingError, check_known, clear_place_errors, course_command
 from autograder.grading.exporting import class_workbook, feedback_zips, lms_gradebooks
-from autograder.grading.exporting.layouts import LAYOUTS, MOODLE_WORKSHEET, gradebook, known_there
-from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
+from autograder.grading.exporting.layouts import LAYOUTS, gradebook
 from autograder.grading.table.class_table import ClassTable, read_table
 from autograder.kit.in_words import counted
 from autograder.regular_files import write_whole
@@ -72,11 +71,12 @@ def export(
         folder = folder or directory.path / "export"
         notices: list[str] = []
         written = []
-        parts = (
-            _filled(table, to, wanted, into, columns or {}, notices)
-            if into
-            else _files(directory, table, to, wanted, notices)
-        )
+        if into:
+            check_known(list(columns or ()), wanted, "assignment")
+            wanted = list(columns or ()) or wanted
+            filled, notices = lms_gradebooks.filled_in(into, to, table, wanted, columns or {})
+            purpose = f"{to.capitalize()}: the list that it exported, with the points of {', '.join(wanted)}"
+        parts = [(into.name, filled, purpose)] if into else _files(directory, table, to, wanted, notices)
         for name, data, purpose in parts:
             with clear_place_errors(folder / name, "--output"):
                 write_whole(folder / name, data)
@@ -88,7 +88,7 @@ def export(
     notices += table.notices
     if table.waiting:
         waiting = counted(len(table.waiting), "result")
-        notices.append(f"{waiting} still to be graded by a person, exported with the points of now")
+        notices.append(f"{waiting} still to be graded by a person, exported with their present points")
     if table.stale:
         notices.append(
             f"{counted(len(table.stale), 'submission')} without points, or with points of earlier work or of another "
@@ -105,7 +105,9 @@ def _assignments(table: ClassTable, wanted: Sequence[str]) -> list[str]:
         raise GradingError("Nothing was handed in yet, so there is nothing to export.")
     for name in wanted:
         if name not in table.assignments:
-            raise GradingError(f"Nobody has handed in {name}. There is: {', '.join(table.assignments)}.")
+            raise GradingError(
+                f"No student has handed in {name}. These were handed in: {', '.join(table.assignments)}."
+            )
     return list(wanted) or table.assignments
 
 
@@ -122,18 +124,6 @@ def _files(
         yield f"{to}.csv", text.encode(), LAYOUTS[to].purpose
     else:
         notices.append(f"{to.upper()} takes no points from a file, so only students' pages are written")
-    if to == "moodle":
-        for assignment in assignments:
-            known = [one for one in table.students if known_there(records, assignment, one, to)]
-            if any(table.score(one, assignment) is not None for one in known):
-                text = gradebook(to, table, records, [assignment], MOODLE_WORKSHEET, known)
-                purpose = MOODLE_WORKSHEET.purpose.format(name=assignment)
-                yield f"moodle-{assignment}.csv", text.encode(), purpose
-            if unknown := [one for one in table.students if one not in known]:
-                notices.append(
-                    f"Moodle's numbers for {assignment} are not known of {', '.join(unknown)}: they are in moodle.csv "
-                    f"only. Download the grading worksheet and say --into it"
-                )
     for assignment in assignments if to in feedback_zips.WAYS else ():
         data, unknown = feedback_zips.feedback_zip(directory, table, records, assignment, to)
         if data:
@@ -142,41 +132,5 @@ def _files(
         if unknown:
             notices.append(
                 f"no feedback on {assignment} in the zip for {', '.join(unknown)}: their work was not collected from "
-                f"{to.capitalize()}, so nothing says under which name it takes the page"
+                f"{to.capitalize()}, so its names for these pages are unknown"
             )
-
-
-def _filled(
-    table: ClassTable,
-    to: str,
-    assignments: Sequence[str],
-    into: Path,
-    columns: Mapping[str, str],
-    notices: list[str],
-) -> Iterator[tuple[str, bytes, str]]:
-    check_known(list(columns), assignments, "assignment")
-    assignments = list(columns) or assignments
-    if to == "moodle" and len(assignments) != 1:
-        raise GradingError(
-            f"Say which assignment goes into {into}: --assignment NAME ({', '.join(assignments)})."
-        )
-    try:
-        data = read_bytes(into)
-    except UnreadableSubmission as error:
-        raise GradingError(f"{into} cannot be read: {error}") from error
-    filled, strangers, doubtful, sure = lms_gradebooks.filled_in(data, to, table, assignments, columns)
-    if strangers:
-        notices.append(
-            f"no student in the class is called {', '.join(strangers)}: their lines stay as they were"
-        )
-    if doubtful:
-        notices.append(
-            f"{', '.join(doubtful)}: another line may be the same student's, so these lines stay as they were. "
-            f"Write what the list has under {' or '.join(sure)} for each of these students into the column {to} of "
-            "students.csv"
-        )
-    yield (
-        into.name,
-        filled,
-        f"{to.capitalize()}: the list that it exported, with the points of {', '.join(assignments)}",
-    )

@@ -1,4 +1,4 @@
-"""Feedback as one zip in the format that an LMS can read: a page is named after the file that it is about.
+"""Feedback as one zip in the format that an LMS can read: a page has the name of the file that it is about.
 
 The systems find the student of a page as follows. Moodle (*Upload multiple feedback files in a zip*): by the folder
 ``<name>_<number>_assignsubmission_file``. Canvas (*Upload submissions*): by the numbers of the student and of the

@@ -2,11 +2,9 @@
 
 Canvas reads ``Student, ID, SIS User ID, SIS Login ID, Section``, then a column for each assignment, and in the second
 line the points possible (https://community.canvaslms.com, "How do I import grades in the Gradebook?"). Moodle's
-gradebook reads any columns, one of which identifies the student (https://docs.moodle.org, "Grade import"). Moodle's
-assignment reads ``Identifier``, ``Grade`` and ``Last modified (grade)`` of its worksheet.
+gradebook reads any columns, one of which identifies the student (https://docs.moodle.org, "Grade import").
 Brightspace reads ``OrgDefinedId`` or ``Username``, ``… Points Grade`` and an end-of-line marker
-(https://community.d2l.com, "Importing grades"). Gradescope imports no grades, but programs that read its lists read
-this format. The formats of Blackboard and Sakai are from memory.
+(https://community.d2l.com, "Importing grades"). The formats of Blackboard and Sakai are from memory.
 """
 
 from __future__ import annotations
@@ -32,7 +30,6 @@ class GradebookLayout:
         columns: The columns before the points: each name with the key of its content in :func:`_facts`, or an empty
             text.
         points: A template for the name of an assignment's column, with the assignment's name and maximum points.
-        most: A template for the name of a second column, for the maximum points; empty if there is none.
         possible: The first cell of the line that contains the maximum points; empty if there is no such line.
         excused: The word with which the system marks an excused student.
         end: The columns after the points, each with its content.
@@ -41,7 +38,6 @@ class GradebookLayout:
     purpose: str
     columns: Mapping[str, str]
     points: str = "{name}"
-    most: str = ""
     possible: str = ""
     excused: str = ""
     end: Mapping[str, str] = field(default_factory=dict)
@@ -57,11 +53,6 @@ LAYOUTS = {
     "moodle": GradebookLayout(
         "Moodle: Grades, Import, CSV file; map Email address and the assignments",
         {"First name": "first", "Last name": "last", "ID number": "id", "Email address": "email"},
-    ),
-    "gradescope": GradebookLayout(
-        "the scores in the form in which Gradescope exports them",
-        {"First Name": "first", "Last Name": "last", "SID": "id", "Email": "email"},
-        most="{name} - Max Points",
     ),
     "blackboard": GradebookLayout(
         "Blackboard: Grade Center > Work Offline > Upload",
@@ -82,23 +73,6 @@ LAYOUTS = {
 }
 
 
-MOODLE_WORKSHEET = GradebookLayout(
-    "Moodle: the assignment {name}, Upload grading worksheet",
-    {"Identifier": "participant", "Full name": "full", "Email address": "email", "Status": "status"},
-    points="Grade",
-    most="Maximum Grade",
-    end={
-        "Grade can be changed": "Yes",
-        "Last modified (submission)": "",
-        "Last modified (grade)": "",
-        "Feedback comments": "",
-    },
-)
-"""The grading worksheet of one assignment. Only work that was collected from Moodle contains the participant's number,
-because Moodle gives each student a different number in each assignment.
-"""
-
-
 def known_there(records: CollectedRecords, assignment: str, student: str, lms: str) -> Collected | None:
     """Return how the LMS named a student whose work was collected from it; None if the work came another way."""
     history = records.get(assignment, student)
@@ -106,39 +80,29 @@ def known_there(records: CollectedRecords, assignment: str, student: str, lms: s
     return found[-1] if found else None
 
 
-def gradebook(
-    lms: str,
-    table: ClassTable,
-    records: CollectedRecords,
-    assignments: Sequence[str],
-    layout: GradebookLayout | None = None,
-    students: Sequence[str] = (),
-) -> str:
-    """Return the file to import into the gradebook of an LMS, or another file of that LMS.
+def gradebook(lms: str, table: ClassTable, records: CollectedRecords, assignments: Sequence[str]) -> str:
+    """Return the file to import into the gradebook of an LMS.
 
     Args:
         lms: A key of :data:`LAYOUTS`.
         table: The table of the class.
         records: The records of what was collected.
         assignments: The assignments, which get a column each.
-        layout: The layout of the file; by default that of the gradebook.
-        students: The students, who get a line each; by default all.
     """
-    layout = layout or LAYOUTS[lms]
+    layout = LAYOUTS[lms]
     header: list[str | float] = [*layout.columns]
     possible: list[str | float] = [layout.possible, *[""] * (len(layout.columns) - 1)]
     for name in assignments:
         most = table.max_score(name)
-        header += [title.format(name=name, most=most) for title in (layout.points, layout.most) if title]
+        header.append(layout.points.format(name=name, most=most))
         possible.append(most)
     rows = [[*header, *layout.end], *([possible] if layout.possible else [])]
-    for student in students or table.students:
+    for student in table.students:
         facts = _facts(table, records, student, lms, assignments)
         row: list[str | float] = [facts[fact] for fact in layout.columns.values()]
         for name in assignments:
             score = blank(table.score(student, name))
             row.append(layout.excused if layout.excused and table.is_excused(student, name) else score)
-            row += [table.max_score(name)] if layout.most else []
         rows.append([*row, *layout.end.values()])
     return csv_text(rows)
 
@@ -150,8 +114,7 @@ def _facts(
     student = table.roster.students[id_]
     own = student.lms.get(lms, "")
     collected = (known_there(records, name, id_, lms) for name in assignments)
-    number = next((one.number or one.name for one in collected if one), "")
-    there = own or number
+    there = own or next((one.number or one.name for one in collected if one), "")
     return {
         "": "",
         "id": id_,
@@ -163,7 +126,4 @@ def _facts(
         "there": there,
         "user": there or id_,
         "#id": f"#{id_}",
-        "participant": f"Participant {number}",
-        "full": student.name or id_,
-        "status": "Submitted for grading",
     }

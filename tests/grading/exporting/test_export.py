@@ -143,25 +143,9 @@ def test_moodle_takes_points_and_pages(graded: TinyClass) -> None:
     header, *students = rows(graded.path / "export" / "moodle.csv")
     assert header == ["First name", "Last name", "ID number", "Email address", "lab_1_2"]
     assert {row[2]: number(row[-1]) for row in students} == in_gradebook(graded)
-    header, *students = rows(graded.path / "export" / "moodle-lab_1_2.csv")
-    assert {"Identifier", "Grade", "Last modified (grade)"} <= set(header)
-    assert [dict(zip(header, row, strict=True)) for row in students] == [
-        {
-            "Identifier": "Participant 555",
-            "Full name": "Eve O'Neill",
-            "Email address": "eve@uni.example",
-            "Status": "Submitted for grading",
-            "Grade": "0",
-            "Maximum Grade": "20",
-            "Grade can be changed": "Yes",
-            "Last modified (submission)": "",
-            "Last modified (grade)": "",
-            "Feedback comments": "",
-        }
-    ]
     with zipfile.ZipFile(graded.path / "export" / "feedback-moodle-lab_1_2.zip") as archive:
         assert archive.namelist() == ["Eve O'Neill_555_assignsubmission_file/lab_1_2.html"]
-    assert any("ada, ben, jose, zoe" in notice for notice in done.notices)
+    assert any("in the zip for ada, ben, jose:" in notice for notice in done.notices)
 
 
 def test_what_would_give_points_to_nobody_is_not_offered(graded: TinyClass) -> None:
@@ -195,7 +179,10 @@ def test_a_list_of_the_lms_is_filled_in_and_else_left_as_it_is(graded: TinyClass
     lines = rows(graded.path / "export" / "canvas.csv")[1:]
     assert lines[2] == ["Lovelace, Ada", "101", "al", "A", "18.5", "4"]
     assert lines[3] == ["Nobody, N", "9", "nn", "A", "1", "1"]
-    for text, words in (("Student,ID,Section,Lab\n", "no column for lab_1_2"), ("a,b\n", "neither")):
+    for text, words in (
+        ("Student,ID,Section,Lab\n", "No column for points is called lab_1_2"),
+        ("a,b\n", "neither"),
+    ):
         gradebook.write_text(text)
         with pytest.raises(GradingError, match=words):
             export(graded.path, "canvas", into=gradebook)
@@ -253,7 +240,7 @@ def test_an_empty_class_has_nothing_to_export(tiny: TinyClass) -> None:
         export(tiny.path, "csv")
 
 
-@pytest.mark.parametrize("to", ["canvas", "moodle", "gradescope", "csv"])
+@pytest.mark.parametrize("to", ["canvas", "moodle", "csv"])
 def test_absent_is_blank_unless_the_instructor_says_zero_and_excused_is_neither(
     graded: TinyClass, to: str
 ) -> None:

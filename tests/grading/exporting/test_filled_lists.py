@@ -28,32 +28,28 @@ WORKSHEET = (
     "Participant 31,Ada Lovelace,ada.love@uni.example,3,20\n"
 )
 CANVAS = 'Student,ID,SIS User ID,SIS Login ID,Section,lab_1_2\n"Lovelace, Ada",101,,al,A,8\n'
-GRADESCOPE = "Name,SID,Email,lab_1_2\nAda Lovelace,ada,ada.love@uni.example,8\n"
+SAKAI = "Student ID,Student Name,lab_1_2\nada,Ada Lovelace,8\n"
 
 
 def rows(path: Path) -> list[list[str]]:
     return list(csv.reader(io.StringIO(path.read_text("utf-8-sig"))))
 
 
-@pytest.mark.parametrize(
-    ("text", "lms"), [(WORKSHEET, "moodle"), (CANVAS, "canvas"), (GRADESCOPE, "gradescope")]
-)
+@pytest.mark.parametrize(("text", "lms"), [(WORKSHEET, "moodle"), (CANVAS, "canvas"), (SAKAI, "sakai")])
 def test_a_list_of_another_system_than_the_named_one_is_refused(
     klass: TinyClass, tmp_path: Path, text: str, lms: str
 ) -> None:
     """A worksheet of Moodle's has one column for points: of several assignments the last would have filled it."""
     into = tmp_path / "list.csv"
     into.write_text(text)
-    for to in sorted({"canvas", "moodle", "gradescope", "csv", "xlsx"} - {lms}):
+    for to in sorted({"canvas", "moodle", "sakai", "csv", "xlsx"} - {lms}):
         said = CliRunner().invoke(cli, ["export", str(klass.path), "--to", to, "--into", str(into)])
         assert (said.exit_code, f"--to {lms}" in said.output) == (2, True), said.output
     assert not (klass.path / "export").exists()
     export(klass.path, lms, into=into)
 
 
-@pytest.mark.parametrize(
-    ("text", "to"), [(WORKSHEET, "moodle"), (CANVAS, "canvas"), (GRADESCOPE, "gradescope")]
-)
+@pytest.mark.parametrize(("text", "to"), [(WORKSHEET, "moodle"), (CANVAS, "canvas"), (SAKAI, "sakai")])
 @pytest.mark.parametrize("work", ["none", "not checked"])
 def test_points_that_somebody_gave_in_the_lms_stay_where_the_class_has_none(
     klass: TinyClass, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str, to: str, work: str
@@ -115,11 +111,10 @@ def test_only_moodle_says_who_a_participant_is(klass: TinyClass, tmp_path: Path)
     klass.grade(feedback=True)
     done = export(klass.path, "moodle")
     folder = klass.path / "export"
-    assert [row[0] for row in rows(folder / "moodle-lab_1_2.csv")[1:]] == ["Participant 555"]
+    assert "555" not in (folder / "moodle.csv").read_text("utf-8")
     with zipfile.ZipFile(folder / "feedback-moodle-lab_1_2.zip") as pages:
         assert pages.namelist() == ["Eve O'Neill_555_assignsubmission_file/lab_1_2.html"]
-    worksheet, feedback = done.notices
-    assert "ada, ben, jose, zoe: they are in moodle.csv only" in worksheet
+    (feedback,) = done.notices
     assert "no feedback on lab_1_2 in the zip for ben:" in feedback
 
 
@@ -142,9 +137,9 @@ def test_a_doubtful_line_is_settled_by_what_the_list_has_in_it(klass: TinyClass,
 def test_a_line_without_its_empty_cells_is_filled_in_too(klass: TinyClass, tmp_path: Path) -> None:
     """Some spreadsheet programs leave out the empty cells at the end of a line: Ben's points went nowhere."""
     into = tmp_path / "list.csv"
-    into.write_text("Name,SID,Email,lab_1_2\nBen Bar,ben,ben@uni.example\n")
-    export(klass.path, "gradescope", into=into)
-    assert rows(klass.path / "export" / "list.csv")[1] == ["Ben Bar", "ben", "ben@uni.example", "17"]
+    into.write_text("Student ID,Student Name,lab_1_2\nben,Ben Bar\n")
+    export(klass.path, "sakai", into=into)
+    assert rows(klass.path / "export" / "list.csv")[1] == ["ben", "Ben Bar", "17"]
 
 
 GRADEBOOK = (
@@ -156,7 +151,7 @@ GRADEBOOK = (
 @pytest.mark.parametrize(
     "name", ["Lab 1.2 (9001)", "LAB-1_2: talker, listener (9001)", "Woche 3 - lab 1.2 (9001)"]
 )
-def test_the_likeliest_column_is_advised_and_what_canvas_computes_is_never_written(
+def test_the_likeliest_column_is_advised_and_no_column_that_names_a_student_is_written(
     klass: TinyClass, tmp_path: Path, name: str
 ) -> None:
     klass.submit("ada", 8, 10)
@@ -168,7 +163,7 @@ def test_the_likeliest_column_is_advised_and_what_canvas_computes_is_never_writt
     command = ["export", str(klass.path), "--to", "canvas", "--into", str(into)]
     said = CliRunner().invoke(cli, command)
     assert (said.exit_code, f'--column "lab_1_2={name}"' in said.output) == (2, True), said.output
-    for wrong in ("Final Score", "Section", "Student", "Current Score"):
+    for wrong in ("Final Result", "Section", "Student", "SIS Login ID"):
         said = CliRunner().invoke(cli, [*command, "--column", f"lab_1_2={wrong}"])
         assert (said.exit_code, f'--column "lab_1_2={name}"' in said.output) == (2, True), said.output
     assert not (klass.path / "export").exists()
@@ -177,25 +172,10 @@ def test_the_likeliest_column_is_advised_and_what_canvas_computes_is_never_writt
     assert rows(klass.path / "export" / "list.csv")[2][5:] == ["18", "", "7.0", "7.0"]
 
 
-def test_gradescopes_own_columns_take_no_points(klass: TinyClass, tmp_path: Path) -> None:
-    klass.submit("ada", 8, 10)
-    klass.grade()
-    into = tmp_path / "list.csv"
-    into.write_text(
-        "First Name,Last Name,SID,Email,Sections,Lab 12,Lab 12 - Max Points,Total Lateness (H:M:S)\n"
-        "Ada,Lovelace,ada,ada.love@uni.example,A,,20,\n"
-    )
-    command = ["export", str(klass.path), "--to", "gradescope", "--into", str(into), "--column"]
-    for wrong in ("Lab 12 - Max Points", "Total Lateness (H:M:S)", "Sections"):
-        said = CliRunner().invoke(cli, [*command, f"lab_1_2={wrong}"])
-        assert (said.exit_code, '--column "lab_1_2=Lab 12"' in said.output) == (2, True), said.output
-    assert CliRunner().invoke(cli, [*command, "lab_1_2=Lab 12"]).exit_code == 0
-
-
 def test_a_gradebook_without_an_assignment_says_so(klass: TinyClass, tmp_path: Path) -> None:
     klass.submit("ada", 8, 10)
     klass.grade()
     into = tmp_path / "list.csv"
-    into.write_text("Student,ID,Section,Final Score\n    Points Possible,,,(read only)\n")
+    into.write_text("Student,ID,Section\n    Points Possible,,\n")
     said = CliRunner().invoke(cli, ["export", str(klass.path), "--to", "canvas", "--into", str(into)])
-    assert (said.exit_code, "No column of this list takes points" in said.output) == (2, True), said.output
+    assert (said.exit_code, "The list has: none" in said.output) == (2, True), said.output

@@ -46,7 +46,7 @@ def table() -> ClassTable:
 @pytest.mark.parametrize(
     "use",
     [
-        lambda table: gradebook("gradescope", table, NO_RECORDS, ASSIGNMENTS),
+        lambda table: gradebook("sakai", table, NO_RECORDS, ASSIGNMENTS),
         lambda table: gradebook("moodle", table, NO_RECORDS, ASSIGNMENTS),
         lambda table: class_workbook.as_csv(table, ASSIGNMENTS),
         lambda table: [table.max_score(one) for _ in CLASS for one in ("", *ASSIGNMENTS)],
@@ -54,7 +54,7 @@ def table() -> ClassTable:
         figures.bands,
         figures.totals,
     ],
-    ids=["gradescope", "moodle", "sheet", "max_score", "names", "bands", "totals"],
+    ids=["sakai", "moodle", "sheet", "max_score", "names", "bands", "totals"],
 )
 def test_all_rows_are_read_a_few_times_however_many_students_there_are(
     use: Callable[[ClassTable], object],

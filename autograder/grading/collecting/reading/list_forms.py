@@ -93,7 +93,7 @@ FORMS = (
         ("roster_identifier",),
         "submission_timestamp",
     ),
-    # Gradescope has two forms: the scores of one assignment, and the gradebook.
+    # Gradescope's scores of one assignment.
     ListForm(
         "gradescope",
         ("sid", "submission time"),
@@ -102,7 +102,6 @@ FORMS = (
         ("first name", "last name"),
         "submission time",
     ),
-    ListForm("gradescope", ("sid", "email"), logins=("sid", "email"), points=EACH),
     ListForm(
         "brightspace",
         ("orgdefinedid", "end-of-line indicator"),
