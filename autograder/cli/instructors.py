@@ -108,11 +108,9 @@ def renew_class(folder: Path, assignments: tuple[str, ...]) -> None:
 @click.option(
     "--from",
     "form",
-    type=click.Choice(
-        ["moodle", "canvas", "blackboard", "brightspace", "google", "github", "gradescope", "sakai", "ilias"]
-    ),
+    type=click.Choice(["moodle", "canvas", "blackboard", "brightspace", "gradescope", "sakai", "ilias"]),
     default=None,
-    help="The system from which the files come, if file names do not show it. Needed for Google Classroom and ILIAS.",
+    help="The system from which the files come, if file names do not show it. Needed for ILIAS.",
 )
 @click.option(
     "--names",
@@ -140,8 +138,9 @@ def collect(
 ) -> None:
     """Put FILES that you downloaded from an LMS into the class directory FOLDER.
 
-    FILES are zips, folders and notebooks of Moodle, Canvas, Blackboard, Brightspace, Gradescope, Google Classroom or
-    GitHub Classroom, and the lists (.csv) that come with them. The file students.csv in FOLDER maps files to students.
+    FILES are zips, folders and notebooks of Moodle, Canvas, Blackboard, Brightspace, Sakai, ILIAS or Gradescope, or
+    with names that --names describes, and the lists (.csv) that come with them. The file students.csv in FOLDER maps
+    files to students.
 
     Exit code 0: every file was put into a submission; 2: some were not, and the printed lines say which and why.
     """

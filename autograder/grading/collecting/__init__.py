@@ -1,1 +1,1 @@
-"""From the download of a learning management system (LMS) to notebooks in ``submitted``."""
+"""Takes students' notebooks from the download of a learning management system (LMS) into ``submitted``."""

@@ -1,10 +1,11 @@
-"""Makes ``submitted`` contain exactly the files that count according to the decisions.
+"""Changes the folder ``submitted`` so that it contains the notebooks that count.
 
-It never replaces or removes files other than those that ``collect`` itself wrote.
+A file that ``collect`` did not write there is never replaced or removed.
 """
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 from collections import defaultdict
 from dataclasses import replace
@@ -13,17 +14,16 @@ from typing import TYPE_CHECKING
 from autograder.grading.classes.class_directory import SUFFIX, ClassDirectory
 from autograder.grading.classes.timestamps import TIMESTAMP, timestamp_text
 from autograder.grading.collecting.inbox import BY_HAND, Arrival, Delivery, Inbox
-from autograder.grading.collecting.outcomes import State
-from autograder.grading.collecting.records import Collected, CollectedRecords, History
+from autograder.grading.collecting.line import State
+from autograder.grading.collecting.records import CollectedRecords, History
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Collection, Iterable, Iterator, Mapping
     from pathlib import Path
 
-    from autograder.grading.collecting.deciding.decide import Decision, Place
-    from autograder.grading.collecting.deciding.proposals import Line
+    from autograder.grading.collecting.line import Line, Place
 
 
 class Submitted:
@@ -40,7 +40,7 @@ class Submitted:
         self._records = CollectedRecords(directory.state)
 
     def path(self, place: Place) -> Path:
-        """Return the path of a notebook."""
+        """Return the path of a notebook in ``submitted``."""
         student, assignment, notebook = place
         return self._directory.path / "submitted" / student / assignment / f"{notebook}{SUFFIX}"
 
@@ -74,39 +74,38 @@ class Submitted:
                         receiving.keep(read_bytes(self.path(place)))
                         receiving.delivery = Delivery((arrival,), form=BY_HAND)
 
-    def bring(
-        self, counts: Mapping[Place, Line], decisions: Iterable[Decision]
-    ) -> Iterator[tuple[Place, State, str]]:
-        """Put each notebook that counts at its place, and remove notebooks that no longer count.
+    def bring(self, lines: Iterable[Line]) -> dict[Place, tuple[State, str]]:
+        """Write each notebook that counts into ``submitted``, and remove notebooks that no longer count.
 
         Returns:
-            For each changed or checked place, a state and the reason. The state is ``PLACED``, ``UNCHANGED``,
-            ``EARLIER`` (removed) or ``NOT_PLACED``.
+            What happened at each place, with the reason: ``PLACED`` (written), ``UNCHANGED`` (it was there),
+            ``EARLIER`` (removed) or ``NOT_PLACED`` (it could not be written).
 
         Raises:
             OSError: A file could not be written.
         """
-        refused: dict[Place, set[str]] = defaultdict(set)
-        for one in decisions:
-            if one.state == State.LEFT_OUT:
-                refused[one.place].add(one.line.content)
         wanted: dict[tuple[str, str], dict[str, Line]] = defaultdict(dict)
-        for (student, assignment, notebook), line in counts.items():
-            wanted[student, assignment][notebook] = line
-        for key in sorted({*wanted, *self._records.all(), *(place[:2] for place in refused if all(place))}):
-            yield from self._bring(*key, wanted[key], refused)
+        refused = set()
+        for one in lines:
+            if one.state == State.PLACED:
+                wanted[one.place[:2]][one.notebook] = one
+            elif one.state == State.LEFT_OUT and all(one.place):
+                refused.add((one.place, one.content))
+        keys = {*wanted, *self._records.all(), *(place[:2] for place, _ in refused)}
+        results = (self._bring(*key, wanted[key], refused) for key in sorted(keys))
+        return {place: (state, why) for several in results for place, state, why in several}
 
     def _bring(
         self,
         student: str,
         assignment: str,
         wanted: Mapping[str, Line],
-        refused: Mapping[Place, set[str]],
+        refused: Collection[tuple[Place, str]],
     ) -> Iterator[tuple[Place, State, str]]:
         old = self._records.get(assignment, student) or History({})
-        now: dict[str, Collected] = {}
+        now: dict[str, Line] = {}
         changes: list[tuple[Place, Line | None, str]] = []
-        names = {place[2] for place in refused if place[:2] == (student, assignment)}
+        names = {place[2] for place, _ in refused if place[:2] == (student, assignment)}
         for notebook in sorted({*wanted, *old.now, *names}):
             place, line = (student, assignment, notebook), wanted.get(notebook)
             try:
@@ -118,20 +117,20 @@ class Submitted:
                 continue
             content = hashlib.sha256(there).hexdigest() if there is not None else ""
             if line is None:
-                ours = old.written(notebook) | refused.get(place, set())
-                if content and content in self._inbox and content in ours:
+                is_ours = content in old.written(notebook) or (place, content) in refused
+                if content and content in self._inbox and is_ours:
                     changes.append((place, None, content))
                 continue
             known = old.now.get(notebook)
             if not line.is_by_hand or line.when or line.use or known:
-                now[notebook] = _record(line)
+                now[notebook] = line
             if content == line.content:
                 yield place, State.UNCHANGED, ""
             else:
                 changes.append((place, line, content))
         history = History(now)
-        # Write the record before the files. If this is interrupted, the next `collect` still recognizes the files as
-        # its own.
+        # Write the record before the files. If this command is interrupted, the next `collect` still knows that these
+        # files are its own.
         passing = {place[2]: content for place, _, content in changes if content}
         if changes:
             self._records.put(assignment, student, replace(history, replaced=passing))
@@ -141,14 +140,14 @@ class Submitted:
                 yield place, State.EARLIER, ""
             else:
                 write_whole(self.path(place), self._inbox.read(line.content))
-                yield place, State.PLACED, "replaced" if content else ""
+                yield place, State.PLACED, "instead of an earlier one" if content else ""
         if history != old and (now or old != History({})):
             self._records.put(assignment, student, history)
         if now or changes:
             self._stamp(student, assignment, history)
 
     def _stamp(self, student: str, assignment: str, history: History) -> None:
-        """Write the time of handing in, in nbgrader's format."""
+        """Write nbgrader's file with the time of handing in; remove it, and empty folders, if the time is unknown."""
         stamp = self._directory.path / "submitted" / student / assignment / TIMESTAMP
         text = f"{timestamp_text(history.when)}\n".encode() if history.when else b""
         if text:
@@ -160,28 +159,13 @@ class Submitted:
             write_whole(stamp, text)
         elif stamp.parent.is_dir():
             stamp.unlink(missing_ok=True)
-            if not any(stamp.parent.iterdir()):
+            with contextlib.suppress(OSError):  # a folder is not empty
                 stamp.parent.rmdir()
-                if not any(stamp.parent.parent.iterdir()):
-                    stamp.parent.parent.rmdir()
-
-
-def _record(line: Line) -> Collected:
-    """Return the record of a notebook that was placed."""
-    return Collected(
-        line.notebook,
-        line.content,
-        when=line.when,
-        lms="" if line.is_by_hand else line.lms,
-        number=line.number,
-        name=line.name,
-        file=line.file,
-        by_hand=line.is_by_hand,
-    )
+                stamp.parent.parent.rmdir()
 
 
 def _existing_file(path: Path) -> bytes | None:
-    """Return the content of the file at a notebook's place; None if there is no file.
+    """Return the bytes of the file at a path; None if there is no file.
 
     Raises:
         UnreadableSubmission: Something other than an ordinary file is at that place.

@@ -1,4 +1,4 @@
-"""Takes files into the inbox of a class, decides about each, and changes ``submitted`` accordingly."""
+"""Takes files into the inbox of a class, decides which of them count, and writes those into ``submitted``."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.apply import Submitted
 from autograder.grading.collecting.collected_csv import Table
 from autograder.grading.collecting.deciding.assignment_of import AssignmentOf
-from autograder.grading.collecting.deciding.decide import Decision, Looks, decide
-from autograder.grading.collecting.deciding.proposals import Edit, Proposals, entries_of, in_utc, list_trouble
+from autograder.grading.collecting.deciding.decide import Looks, decide
+from autograder.grading.collecting.deciding.proposals import NO_LIST, entries_of, in_utc, lines_of
 from autograder.grading.collecting.deciding.student_of import StudentOf
 from autograder.grading.collecting.inbox import Arrival, Delivery, Inbox
-from autograder.grading.collecting.older_class import take_over
-from autograder.grading.collecting.outcomes import CollectReport, Outcome, State
+from autograder.grading.collecting.line import State
+from autograder.grading.collecting.outcomes import CollectReport
 from autograder.grading.collecting.reading.archives import Archives, File, NotTaken, Room
 from autograder.grading.collecting.reading.desk import read_list, without_sandbox
 from autograder.grading.collecting.reading.named_sources import Source, note_on, own_of, source_of
@@ -23,20 +23,16 @@ from autograder.grading.collecting.reading.names_option import check_names
 from autograder.grading.collecting.reading.unpack import is_archive
 from autograder.grading.errors import GradingError, check_known
 from autograder.grading.table.roster import enter_roster, read_roster
-from autograder.regular_files import name_as_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Collection, Iterator, Mapping, Sequence
     from datetime import datetime
     from pathlib import Path
     from zoneinfo import ZoneInfo
 
-    from autograder.grading.collecting.deciding.decide import Place
-    from autograder.grading.collecting.deciding.proposals import Line
     from autograder.grading.collecting.inbox import Receiving
+    from autograder.grading.collecting.line import Line, Place
     from autograder.grading.collecting.reading.lists import Entry
-
-_MOST_NAMED = 5
 
 
 def collect(
@@ -49,7 +45,7 @@ def collect(
     names: str = "",
     handed_in: datetime | None = None,
 ) -> CollectReport:
-    """Take files into a class, and apply what a person has written into the class's table.
+    """Take files into a class, and apply what a person has written into ``collected.csv``.
 
     Args:
         path: The class directory.
@@ -71,11 +67,9 @@ def collect(
             raise GradingError(f"There is no {source}.")
     with directory.lock():
         enter_roster(directory)
+        columns = {one for student in read_roster(directory).students.values() for one in student.lms}
         if names:
-            check_names(
-                names,
-                sorted({one for student in read_roster(directory).students.values() for one in student.lms}),
-            )
+            check_names(names, sorted(columns | {"github"}))
         when = in_utc(handed_in, zone or directory.time_zone)
         options = Delivery((), form, names, str(zone) if zone else "", assignment, when)
         return _Collecting(directory, options).run(sources)
@@ -90,120 +84,102 @@ class _Collecting:
         self._submitted = Submitted(directory, self._inbox)
         self._table = Table(directory)
         self._notes: list[str] = []
-        self._lists: dict[str, list[Entry]] = {}
+        self._entries: list[Entry] = []
         self._rooms: dict[object, Room] = defaultdict(Room)
 
     def run(self, sources: Sequence[Path]) -> CollectReport:
-        """Take all files in, decide, and write down the decisions."""
-        edits, notes = self._table.read()
-        self._notes += take_over(self._directory, self._inbox, edits)
+        """Take files into the inbox, decide about all files in it, and update ``submitted`` and the table."""
+        edits, self._notes = self._table.read()
         self._table.put_edits(edits)
         self._submitted.take_in()
         delivery = self._receive(sources)
-        decisions, counts = self._decide(edits)
-        results = {place: (state, why) for place, state, why in self._submitted.bring(counts, decisions)}
-        decisions = [self._with_trouble(one, results) for one in decisions]
         before = {one.label for one in self._table.waiting()}
-        self._table.write(decisions, edits)
-        return self._report(delivery, decisions, results, [*notes, *self._notes], before)
-
-    def _decide(self, edits: dict[str, Edit]) -> tuple[list[Decision], dict[Place, Line]]:
-        lines = Proposals(self._directory, self._inbox, self._roster, edits).lines()
-        return decide(lines, Looks(self._directory, self._inbox, self._submitted))
+        looks = Looks(self._directory, self._inbox, self._submitted)
+        lines = decide(lines_of(self._directory, self._inbox, self._roster, edits), looks)
+        results = self._submitted.bring(lines)
+        lines = [_hindered(one, results) for one in lines]
+        self._table.write(lines, edits)
+        return self._report(delivery, lines, results, before)
 
     # -- taking in
 
     def _receive(self, paths: Sequence[Path]) -> Delivery:
-        """Take the named files into the inbox."""
+        """Keep the files of this command in the inbox, as one delivery, and return the delivery."""
         options = self._options
         with self._inbox.receiving() as receiving, Archives(self._directory.state) as archives:
-            student_of = self._knowing([])
-            own = own_of(paths, student_of)
-            tables = [path for path in paths if path.suffix.lower() == ".csv" and path.is_file()]
-            # In Google's names, nothing distinguishes an instructor's list from a student's file.
-            lists = [path for path in tables if path not in own and options.form != "google"]
+            lists = [path for path in paths if path.suffix.lower() == ".csv" and path.is_file()]
+            own = own_of([path for path in paths if path not in lists], self._knowing())
+            if own:  # a student may have made a list that lies next to the student's own file
+                own, lists = own.union(lists), []
             arrivals = [self._list(file, receiving) for path in lists for file in archives.files_of(path)]
-            others = [path for path in paths if path not in lists]
-            own = {*own_of(others, self._knowing(self._entries)), *tables}
-            sources = [source_of(path, archives, is_own=path in own) for path in others]
-            student_of = self._knowing(self._entries)
+            student_of = self._knowing()
+            sources = [source_of(path, archives, is_own=path in own) for path in paths if path not in lists]
             for source in sources:
                 arrivals += self._source(source, student_of, receiving, archives)
                 note = note_on(source, student_of, options.form or options.names)
                 self._notes += [note] if note else []
             if why := without_sandbox():
                 self._notes.append(
-                    f"archives and lists were read without a sandbox, with limits alone: {why}"
+                    f"archives and lists were read without a sandbox, only with limits on memory and time: {why}"
                 )
             unique = {(one.label, one.key): one for one in arrivals}
             ordered = tuple(one for _, one in sorted(unique.items()))
             receiving.delivery = replace(options, arrivals=ordered)
         return receiving.delivery
 
-    def _knowing(self, entries: Iterable[Entry]) -> StudentOf:
-        """Return what is known about students from students.csv, lists in the inbox, and lists in this delivery."""
-        options, own = self._options, list(entries)
+    def _knowing(self) -> StudentOf:
+        """Return what finds students: by students.csv, the lists in the inbox, and the lists of this command."""
         known = [entry for entries in entries_of(self._inbox).values() for entry in entries]
         is_notebook = AssignmentOf(self._directory).is_notebook
-        return StudentOf(self._roster, is_notebook, options.form, options.names, [*known, *own], own)
+        options = self._options
+        return StudentOf(self._roster, is_notebook, options.form, options.names, [*known, *self._entries])
 
     def _list(self, file: File, receiving: Receiving) -> Arrival:
-        arrival, data = _taken(_arrival(file, is_list=True), file, receiving)
-        if trouble := arrival.refused or list_trouble(file.name, data):
-            return replace(arrival, refused=trouble, is_list=False)
-        entries = read_list(file.name, data) or []
-        self._lists[arrival.content] = entries
-        return arrival
+        arrival, data = _taken(file, receiving)
+        entries = None if arrival.refused else read_list(arrival.name, data)
+        if entries is None:
+            return replace(arrival, refused=arrival.refused or NO_LIST)
+        self._entries += entries
+        return replace(arrival, is_list=True)
 
     def _source(
         self, source: Source, student_of: StudentOf, receiving: Receiving, archives: Archives
     ) -> Iterator[Arrival]:
         for file in source.files:
-            if source.is_list(file, self._options.form):
+            if source.is_list(file.arrival, self._options.form):
                 yield self._list(file, receiving)
                 continue
-            arrival, data = _taken(
-                _arrival(file, levels=source.levels, is_own=source.is_own), file, receiving
-            )
-            if not is_archive(file.name, data):
+            arrival, data = _taken(file, receiving)
+            arrival = replace(arrival, levels=source.levels, is_own=source.is_own)
+            if not is_archive(arrival.name, data):
                 yield arrival
                 continue
             yield replace(arrival, is_archive=True)
-            owners = student_of.owners(file.parts, source.levels, is_alone=source.is_own)
-            whose = tuple(one.id for members in owners.members for one in members) or file.parts[:2]
-            for inner in archives.within(file, data, self._rooms[source.download, whose]):
-                yield _taken(replace(arrival, inner=inner.inner, content=""), inner, receiving)[0]
-
-    @property
-    def _entries(self) -> list[Entry]:
-        """Return the entries of the lists in this delivery."""
-        return [entry for entries in self._lists.values() for entry in entries]
+            owners = student_of.owners(arrival.parts, source.levels, is_alone=source.is_own)
+            whose = tuple(one.id for members in owners.members for one in members) or arrival.parts[:2]
+            for inner in archives.within(arrival, data, self._rooms[source.download, whose]):
+                yield _taken(inner, receiving)[0]
 
     # -- the result
-
-    def _with_trouble(self, one: Decision, results: dict[Place, tuple[State, str]]) -> Decision:
-        """Return the decision. If something other than a file is at the place, the decision then waits for a person."""
-        state, reason = results.get(one.place, (State.UNCHANGED, ""))
-        is_hindered = one.state == State.PLACED and state == State.NOT_PLACED
-        return replace(one, state=state, reason=reason) if is_hindered else one
 
     def _report(
         self,
         delivery: Delivery,
-        decisions: list[Decision],
-        results: dict[Place, tuple[State, str]],
-        notes: list[str],
-        before: set[str],
+        lines: Sequence[Line],
+        results: Mapping[Place, tuple[State, str]],
+        before: Collection[str],
     ) -> CollectReport:
-        labels = {one.key: one.label for one in delivery.arrivals}
+        zone, keys = self._directory.time_zone, {one.key for one in delivery.arrivals}
+        counting = [one for one in lines if one.state == State.PLACED]
         outcomes = []
-        for one in decisions:
-            changed = one.state == State.PLACED == results.get(one.place, (State.UNCHANGED, ""))[0]
-            waits = one.state == State.NOT_PLACED and f"{one.line.label} {one.line.key}" not in before
-            if one.line.key in labels or changed or waits or (not delivery.arrivals and _waits(one)):
-                outcomes.append(self._outcome(one, labels.get(one.line.key, one.line.label), results))
-        counting = [one for one in decisions if one.state == State.PLACED]
-        here = {one.line.assignment for one in counting if one.line.key in labels or not labels}
+        for one in lines:
+            if one.state == State.PLACED:
+                state, reason = results[one.place]
+                one = replace(one, state=state, reason=reason)
+            waits = one.state == State.NOT_PLACED and (not keys or f"{one.label} {one.key}" not in before)
+            if one.key in keys or one.state == State.PLACED or waits:
+                outcomes.append(replace(one, when=one.when and one.when.astimezone(zone)))
+        here = {one.assignment for one in counting if one.key in keys or not keys}
         work = {(one.student, one.assignment) for one in self._directory.submissions()[0]}
         not_missing = work | self._roster.excused
         missing = {
@@ -212,57 +188,33 @@ class _Collecting:
         }
         untimed: dict[str, list[str]] = defaultdict(list)
         for one in sorted(counting, key=lambda one: one.student):
-            if one.line.when is None and one.line.key in labels:
-                untimed[one.line.assignment].append(one.student)
-        if several := self._knowing(self._entries).of_several_times:
-            notes.append(
-                f"lists have several times for {_some(several)}, and nothing says which is of what, so none counts: "
-                "collect each assignment in a command of its own, with its list"
-            )
+            if one.when is None and one.key in keys and one.student not in untimed[one.assignment]:
+                untimed[one.assignment].append(one.student)
+        notes = [*self._notes, *self._directory.named_cells.notes]
         notes += self._roster.excused_from_nothing(self._directory.assignments(), self._roster.students)
-        notes += self._directory.named_cells.notes
         if not self._roster.students:
             notes.append("the class has no students.csv: folders have the names that the LMS uses")
         return CollectReport(
             self._directory.path,
             tuple(sorted(outcomes, key=lambda one: one.label)),
-            {name: tuple(dict.fromkeys(students)) for name, students in untimed.items()},
+            {name: tuple(students) for name, students in untimed.items() if students},
             {name: students for name, students in missing.items() if students},
-            sum(map(_waits, decisions)),
+            sum(one.state == State.NOT_PLACED for one in lines),
             tuple(notes),
         )
 
-    def _outcome(self, one: Decision, label: str, results: dict[Place, tuple[State, str]]) -> Outcome:
-        line = one.line
-        state, why = results.get(one.place, (State.UNCHANGED, ""))
-        own = state if one.state == State.PLACED else one.state
-        label = label if len(line.students) < 2 or not line.notebook else f"{label} ({one.student})"
-        is_replacing = own == State.PLACED and why == "replaced"
-        when = line.when and line.when.astimezone(self._directory.time_zone)
-        return Outcome(
-            label, own, one.reason, one.student, line.assignment, when, line.late, is_replacing, line.key
-        )
+
+def _hindered(one: Line, results: Mapping[Place, tuple[State, str]]) -> Line:
+    """Return the line. If its file could not be written into ``submitted``, the line waits for a person."""
+    state, reason = results.get(one.place, (State.PLACED, ""))
+    is_hindered = one.state == State.PLACED and state == State.NOT_PLACED
+    return replace(one, state=state, reason=reason) if is_hindered else one
 
 
-def _waits(one: Decision) -> bool:
-    return one.state == State.NOT_PLACED
-
-
-def _arrival(file: File, *, levels: int = 1, is_own: bool = False, is_list: bool = False) -> Arrival:
-    """Return the arrival of a file whose bytes have not been read yet."""
-    source = "" if file.source.is_dir() else name_as_text(file.source.name)
-    return Arrival(source, file.parts, file.inner, levels=levels, is_own=is_own, is_list=is_list)
-
-
-def _taken(arrival: Arrival, file: File, receiving: Receiving) -> tuple[Arrival, bytes]:
-    """Return the arrival of a file after reading and keeping its bytes, or with the reason why not; and the bytes."""
+def _taken(file: File, receiving: Receiving) -> tuple[Arrival, bytes]:
+    """Read a file and keep its bytes. Return what is known about the file, or why it cannot be read; and the bytes."""
     try:
         data = file.read()
     except NotTaken as error:
-        return replace(arrival, refused=str(error)), b""
-    return replace(arrival, content=receiving.keep(data)), data
-
-
-def _some(names: Sequence[str]) -> str:
-    """Return the first few of these names as text."""
-    return ", ".join(names[:_MOST_NAMED]) + (" …" if names[_MOST_NAMED:] else "")
+        return replace(file.arrival, refused=str(error)), b""
+    return replace(file.arrival, content=receiving.keep(data)), data

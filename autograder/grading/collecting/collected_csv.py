@@ -1,26 +1,29 @@
 """``collected.csv``: one line for each file, as ``collect`` decided. What people write into it takes precedence.
 
-A cell counts as written by a person if it differs from the table that ``collect`` wrote. So a copy of each table is
-kept, and the table contains the number of its copy. A table that was open during another ``collect`` is thus compared
-with the right copy.
+A person has written a cell if it differs from the table that ``collect`` wrote. Therefore a copy of each table is kept,
+and the table's header contains the number of its copy. A table that was open in a spreadsheet while another ``collect``
+wrote a new one is compared with its own copy.
 """
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import io
 from collections import Counter, defaultdict
 from dataclasses import dataclass, replace
+from datetime import datetime
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 import re2
 from babel.core import Locale, UnknownLocaleError, get_global
+from babel.dates import parse_date
 
 from autograder.grading.collecting.deciding.decide import cell_in
 from autograder.grading.collecting.deciding.proposals import Edit, in_utc
 from autograder.grading.collecting.inbox import FOLDER
-from autograder.grading.collecting.outcomes import State
+from autograder.grading.collecting.line import State
 from autograder.grading.collecting.reading.lms_file_names import read_time
 from autograder.grading.reporting.spreadsheet import csv_rows, defused, original
 from autograder.regular_files import write_whole
@@ -29,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from autograder.grading.classes.class_directory import ClassDirectory
-    from autograder.grading.collecting.deciding.decide import Decision
+    from autograder.grading.collecting.line import Line
 
 NAME = "collected.csv"
 COLUMNS = (
@@ -49,12 +52,10 @@ _FIRST = (WAITS, "yes")
 _YES = frozenset(["yes", "y", "ja", "j", "x", "1", "true", "wahr", "oui", "si", "sí"])
 _NO = frozenset(["no", "n", "nein", "0", "false", "falsch", "non"])
 _KEY = re2.compile(r"#[0-9a-f]{10}$")
+_CLOCKS = ("", "%H:%M", "%H:%M:%S", "%I:%M %p", "%I:%M:%S %p")
 _STAMP = re2.compile(r"table (\d+)")
 # Matches values that a spreadsheet would take for a number, a date or a boolean.
 _TURNS = re2.compile(r"(?i)^(?:[\d.,]|[a-zäéû]{3,9}[ .-]*\d+$|(?:true|false|wahr|falsch)$)")
-_IN_NUMBERS = re2.compile(
-    r"^(\d{1,4})([./-])(\d{1,2})[./-](\d{2,4})(?:[ T,]+(\d{1,2}):(\d\d)(?::(\d\d))?)?( ?[AaPp][Mm])?$"
-)
 
 
 @dataclass(frozen=True)
@@ -77,8 +78,8 @@ class Waiting:
 
     @property
     def cell(self) -> str:
-        """Return which cell a person has to edit; empty if the table has no such line."""
-        return f" ({NAME}, line {self.line}, cell {cell_in(self.reason) or 'use'})" if self.line else ""
+        """Return the line and the cell that a person has to edit, in brackets."""
+        return f" ({NAME}, line {self.line}, cell {cell_in(self.reason) or 'use'})"
 
     @property
     def sentence(self) -> str:
@@ -126,7 +127,7 @@ class Table:
             return False
 
     def read(self) -> tuple[dict[str, Edit], list[str]]:
-        """Return what people have written into the table, and a sentence about each unclear cell."""
+        """Return all that people have written, now or earlier, and a sentence about each unclear line or cell."""
         edits = self.edits()
         try:
             data = self.path.read_bytes()
@@ -146,81 +147,60 @@ class Table:
         for key, several in lines.items():
             if any(one != several[0] for one in several):
                 notes.append(
-                    f"{NAME} has {len(several)} lines of {key}, and they differ: no edit of these was read"
+                    f"{NAME} has {len(several)} different lines for {key}: nothing was read from them"
                 )
             elif key not in before:
                 notes.append(
-                    f"{NAME} has a line of {key or 'no file'}, which is not a file that was collected: it was left out"
+                    f"{NAME} has a line for {key or 'no file'}, but no such file was collected: the line was ignored"
                 )
             else:
                 edits[key] = self._read_line(key, several[0], before[key], edits.get(key, Edit()), notes)
         if gone := len(before.keys() - lines.keys()):
-            notes.append(f"{NAME} lacks {gone} lines: they are written again. To leave a file out, write no")
+            notes.append(
+                f"{NAME} lacks {gone} lines: they are written again. To leave a file out, write no under use"
+            )
         return edits, notes
 
     def _read_line(
         self, key: str, row: Mapping[str, str], before: Mapping[str, str], edit: Edit, notes: list[str]
     ) -> Edit:
         for column in EDITABLE:
-            written, was = row.get(column, "").strip(), before.get(column, "").strip()
-            if _is_same(written, was) or (
-                column == "handed_in" and written and self._time(written) == self._time(was)
-            ):
-                continue
-            value, trouble = self._value(column, written)
-            if trouble:
-                notes.append(f"{NAME}, the line of {key}: {trouble}")
-            else:
+            written, was = row[column].strip(), before[column].strip()
+            value, old = self._value(column, written), self._value(column, was)
+            if value is None:
+                what = "neither yes nor no" if column == "use" else "not a time: write 2026-01-31 14:05"
+                notes.append(f"{NAME}, the line of {key}: {written!r} under {column} is {what}")
+            elif value.casefold() != (old or "").casefold():
                 edit = replace(edit, **{column: value})
         return edit
 
-    def _value(self, column: str, written: str) -> tuple[str, str]:
-        """Return the value of a cell, and what is wrong with it."""
+    def _value(self, column: str, written: str) -> str | None:
+        """Return the value of a cell in one form, such as ``yes`` for *ja*; None if the cell is unclear."""
         if column == "use" and written:
             word = written.casefold()
-            if word in _YES | _NO:
-                return ("yes" if word in _YES else "no"), ""
-            return "", f"{written!r} under use is neither yes nor no"
-        if column == "handed_in" and written:
-            when = self._time(written)
-            return (
-                (when, "")
-                if when
-                else ("", f"{written!r} under handed_in is not a time: write 2026-01-31 14:05")
-            )
-        return written, ""
+            return "yes" if word in _YES else "no" if word in _NO else None
+        return self._time(written) or None if column == "handed_in" and written else written
 
     def _time(self, written: str) -> str:
         """Return a time written by a person or a spreadsheet, in UTC; empty if it is not a time."""
-        when = read_time(self._in_order(written))
+        when = read_time(written)
+        day, _, clock = written.strip().replace(",", "").partition(" ")
+        for form in _CLOCKS if when is None else ():
+            with contextlib.suppress(ValueError, IndexError):
+                # In 3/4/2026, the country of the class decides which number is the month.
+                when = datetime.combine(parse_date(day, self._locale), datetime.strptime(clock, form).time())
         found = in_utc(when, self._zone)
         return found.isoformat() if found else ""
 
-    def _in_order(self, written: str) -> str:
-        """Return a date such as 31.01.2026 with the year first. The country decides what 3/4 means."""
-        match = _IN_NUMBERS.match(written.strip())
-        if match is None or len(match[1]) == 4:
-            return written
-        one, two, year = int(match[1]), int(match[3]), match[4]
-        is_month_first = match[2] == "/" and self._locale.date_formats["short"].pattern.upper().startswith(
-            "M"
-        )
-        month, day = (one, two) if is_month_first and one <= 12 else (two, one)
-        hour = int(match[5] or 0)
-        if match[8]:
-            hour = hour % 12 + (12 if "p" in match[8].lower() else 0)
-        year = year if len(year) == 4 else f"20{year}"
-        return f"{year}-{month:02}-{day:02} {hour:02}:{match[6] or '00'}:{match[7] or '00'}"
-
-    def write(self, decisions: Iterable[Decision], edits: Mapping[str, Edit]) -> None:
+    def write(self, decided: Iterable[Line], edits: Mapping[str, Edit]) -> None:
         """Write the table if its content has changed.
 
         Raises:
             OSError: The table could not be written.
         """
         lines = defaultdict(list)
-        for one in decisions:
-            lines[one.line.key].append(one)
+        for one in decided:
+            lines[one.key].append(one)
         rows = sorted(
             (self._row(several, edits.get(key, Edit())) for key, several in lines.items()),
             key=lambda row: (
@@ -241,28 +221,26 @@ class Table:
         writer.writerows(rows)
         return text.getvalue().encode("utf-8-sig", "replace")
 
-    def _row(self, several: Sequence[Decision], edit: Edit) -> list[str]:
-        line = several[0].line
-        states = {one.state for one in several}
-        waits = [one for one in several if one.state == State.NOT_PLACED]
-        shown = (waits or several)[0]
-        state = State.PLACED if State.PLACED in states and not waits else shown.state
-        when = line.when.astimezone(self._zone).isoformat(" ", "seconds") if line.when else ""
-        cells: dict[str, Any] = {
+    def _row(self, several: Sequence[Line], edit: Edit) -> list[str]:
+        """Return the row for a file. The work of a group comes as several lines, one for each student."""
+        first = (State.NOT_PLACED, State.PLACED)
+        line = min(several, key=lambda one: first.index(one.state) if one.state in first else len(first))
+        when = f"{line.when.astimezone(self._zone):%Y-%m-%d %H:%M:%S %z}" if line.when else ""
+        cells = {
             "use": line.use,
-            "counts": _WORDS[state],
-            "student": "; ".join(line.students) or edit.student,
-            "assignment": "; ".join(sorted({one.line.assignment for one in several} - {""}))
-            or edit.assignment,
+            "counts": _WORDS[line.state],
+            "student": "; ".join(dict.fromkeys(id_ for one in several for id_ in one.students))
+            or edit.student,
+            "assignment": "; ".join(sorted({one.assignment for one in several} - {""})) or edit.assignment,
             "notebook": line.notebook or edit.notebook,
-            "handed_in": f"{when[:19]} {when[19:]}" if when else "",
+            "handed_in": "",
             "system": line.lms,
             "number": line.number,
             "name": line.name,
             "file": f"{line.label} {line.key}",
-            "reason": shown.reason,
+            "reason": line.reason,
         }
-        return [_guarded(str(cells[name])) if name != "handed_in" else cells[name] for name in COLUMNS]
+        return [_guarded(cells[name]) if name != "handed_in" else when for name in COLUMNS]
 
     @property
     def _newest(self) -> int:
@@ -283,7 +261,7 @@ class Table:
         return _rows(self._read_copy(self._newest), whole=True)[0] or []
 
     def earlier(self) -> Counter[tuple[str, str]]:
-        """Return the number of files before the one that counts, by student and assignment."""
+        """Return how many earlier attempts each student handed in for each assignment."""
         return Counter(
             (student, row["assignment"])
             for row in self.lines()
@@ -301,10 +279,10 @@ class Table:
 
 
 def _rows(data: bytes, *, whole: bool = False) -> tuple[list[dict[str, str]] | None, int]:
-    """Return the lines of a table by column, in the format of any spreadsheet, and the number of the table.
+    """Return the lines of a table as dictionaries, whichever spreadsheet saved it, and the number of the table.
 
-    ``file`` contains only the key of the line, unless ``whole`` is true. The lines are None if no line names the
-    columns.
+    The cell ``file`` is shortened to the key of the line, unless ``whole`` is true. If no line names the columns, None
+    is returned instead of lines.
     """
     header, *lines = csv_rows(data)[0] or [[]]
     stamp = _STAMP.search(" ".join(header))
@@ -331,15 +309,6 @@ def _guarded(cell: str) -> str:
 
 def _unguarded(cell: str) -> str:
     return cell[1:] if cell[:1] == "'" and _TURNS.match(cell[1:]) else original(cell)
-
-
-def _is_same(written: str, was: str) -> bool:
-    """Return True if a cell is unchanged, apart from leading zeros that a spreadsheet drops."""
-    if written.casefold() == was.casefold():
-        return True
-    return (
-        bool(written) and written.isdecimal() and was.isdecimal() and written.lstrip("0") == was.lstrip("0")
-    )
 
 
 def _locale_of(zone: str) -> Locale:

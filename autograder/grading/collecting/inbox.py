@@ -139,7 +139,7 @@ class Inbox:
 
     @contextlib.contextmanager
     def receiving(self) -> Iterator[Receiving]:
-        """Take in a delivery within a ``with`` block. It is kept only when the block has ended without an error.
+        """Take in a delivery within a ``with`` block. The delivery is stored when the block ends without an error.
 
         Raises:
             OSError: The delivery could not be written.

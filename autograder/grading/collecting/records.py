@@ -1,57 +1,20 @@
-"""The record of the collected work, stored in the class. Once work is collected, only the times in it are trusted."""
+"""The records of collected work, stored in the class. Once a class has one, only times in the records are trusted."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from datetime import datetime  # noqa: TC003  (msgspec reads the annotations)
 from typing import TYPE_CHECKING
 
 import msgspec
 
-from autograder.grading.collecting.reading.lms_file_names import without_branch
+from autograder.grading.collecting.line import Line  # noqa: TC001  (msgspec reads the annotations)
 from autograder.regular_files import write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from datetime import datetime
     from pathlib import Path
 
 FOLDER = "collected"
-
-
-@dataclass(frozen=True)
-class Collected:
-    """A notebook that was collected.
-
-    Attributes:
-        notebook: The name of the notebook in the class.
-        content: The hash of the file's bytes.
-        when: The time of handing in, in UTC; None if unknown.
-        lms: The system from which it came; empty for plain folders.
-        number: The student's number in that system; in Moodle, a different number for each assignment.
-        name: The student's name in that system.
-        file: The name of the file in that system. Feedback is returned under this name.
-        by_hand: True if the instructor put the file into place, and only its time was collected.
-    """
-
-    notebook: str
-    content: str
-    when: datetime | None = None
-    lms: str = ""
-    number: str = ""
-    name: str = ""
-    file: str = ""
-    by_hand: bool = False
-
-
-def repository_in(lms: str, parts: Sequence[str], end: str) -> str:
-    """Return the GitHub repository in a file's path: the folder or zip whose name ends with the user name."""
-    if lms != "github":
-        return ""
-    *folders, file = parts
-    if file.endswith(".zip"):
-        folders.append(file.removesuffix(".zip"))
-    names = map(without_branch, reversed(folders))
-    return next((name for name in names if name.endswith(end)), "")
 
 
 @dataclass(frozen=True)
@@ -60,10 +23,10 @@ class History:
 
     Attributes:
         now: The files that are in ``submitted`` now, by notebook.
-        replaced: The hashes of files that are being replaced, by notebook, while a command is at work.
+        replaced: While a command is replacing files: the hashes of the old files, by notebook.
     """
 
-    now: dict[str, Collected]
+    now: dict[str, Line]
     replaced: dict[str, str] = field(default_factory=dict)
 
     @property
@@ -74,7 +37,7 @@ class History:
     def written(self, notebook: str) -> set[str]:
         """Return the hashes of the files that ``collect`` has written to a notebook's place."""
         ours = self.now.get(notebook)
-        return {self.replaced.get(notebook, ""), ours.content if ours and not ours.by_hand else ""} - {""}
+        return {self.replaced.get(notebook, ""), ours.content if ours and not ours.is_by_hand else ""} - {""}
 
 
 class CollectedRecords:

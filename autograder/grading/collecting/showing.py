@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from autograder.cards.readable import printable
-from autograder.grading.collecting.outcomes import State
+from autograder.grading.collecting.line import State
 from autograder.grading.errors import course_command
 from autograder.grading.running.progress import plain_line
 from autograder.kit.in_words import counted
@@ -35,7 +35,7 @@ def _lines(report: CollectReport) -> Iterator[str]:
     for one in report.having(State.PLACED):
         when = f", handed in {one.when:%Y-%m-%d %H:%M} {one.when.tzinfo}" if one.when else ""
         late = ", late as the LMS says" if one.late else ""
-        again = ", instead of an earlier one" if one.replaced else ""
+        again = f", {one.reason}" if one.reason else ""
         yield f"placed       {one.student}/{one.assignment}: {one.label}{when}{late}{again}"
     for state in (State.EARLIER, State.BESIDE, State.LEFT_OUT, State.NOT_PLACED):
         for one in report.having(state):
@@ -50,9 +50,9 @@ def _lines(report: CollectReport) -> Iterator[str]:
     if untimed:
         marked = any(one.late and one.student in untimed for one in report.outcomes)
         yield (
-            "note         nothing says when that was handed in"
-            + (", though the LMS marks some of it as late" if marked else "")
-            + ", so nothing is taken off for being late: write it under handed_in in collected.csv"
+            "note         nothing says when these were handed in"
+            + (", though the LMS marks some of them as late" if marked else "")
+            + ", so they have no late penalty: write the time under handed_in in collected.csv"
         )
     for note in report.notes:
         yield f"note         {note}"
@@ -62,7 +62,7 @@ def _lines(report: CollectReport) -> Iterator[str]:
         yield (
             f"note         {counted(report.waiting, 'line')} of {report.path / 'collected.csv'} to decide: write the "
             f"student or the assignment, or yes or no under use, and type {course_command('collect', report.path)}. "
-            "If many names have one form, --from or --names tells it"
+            "If many names have the same form, --from or --names can describe it"
         )
     if counts[State.PLACED]:
         yield f"Then         {course_command('grade', report.path)}"

@@ -17,7 +17,8 @@ from autograder.grading.reporting.spreadsheet import blank, csv_text
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from autograder.grading.collecting.records import Collected, CollectedRecords
+    from autograder.grading.collecting.line import Line
+    from autograder.grading.collecting.records import CollectedRecords
     from autograder.grading.table.class_table import ClassTable
 
 
@@ -73,7 +74,7 @@ LAYOUTS = {
 }
 
 
-def known_there(records: CollectedRecords, assignment: str, student: str, lms: str) -> Collected | None:
+def known_there(records: CollectedRecords, assignment: str, student: str, lms: str) -> Line | None:
     """Return how the LMS named a student whose work was collected from it; None if the work came another way."""
     history = records.get(assignment, student)
     found = [one for one in history.now.values() if one.lms == lms] if history else []

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
 NAME = "students.csv"
-LMS = ("canvas", "moodle", "blackboard", "brightspace", "google", "github", "gradescope", "sakai", "ilias")
+LMS = ("canvas", "moodle", "blackboard", "brightspace", "github", "gradescope", "sakai", "ilias")
 """Learning management systems. ``students.csv`` may have a column for each, with the student's id or user name there.
 """
 _OWN = ("id", "first_name", "last_name", "email", "section", "excused")

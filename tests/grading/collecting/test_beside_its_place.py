@@ -23,26 +23,11 @@ def refused(report: GradeReport) -> str:
     return "\n".join(f"{one.path.name}: {one.reason}" for one in report.refused)
 
 
-@pytest.mark.parametrize(
-    "name", ["lab_1_2 (1).ipynb", "lab_1_2(1).ipynb", "lab_1_2-1.ipynb", "LAB_1_2 - Copy.ipynb"]
-)
-def test_a_number_that_a_browser_adds_costs_nothing(
-    tiny: TinyClass, fake_engine: FakeEngine, name: str
-) -> None:
-    path = tiny.submit("ada", 4, 7)
-    path.rename(path.with_name(name))
-    report = tiny.grade()
-    assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
-    assert any(name in notice for notice in report.notices)
-    assert report.exit_code == 0
-    assert tiny.grade().notices == ()
-
-
 def test_beside_the_notebook_it_is_mentioned(tiny: TinyClass, fake_engine: FakeEngine) -> None:
     path = tiny.submit("ada", 4, 7)
     path.with_name("lab_1_2 (1).ipynb").write_text("{}")
     report = tiny.grade()
-    assert any("lab_1_2 (1).ipynb is left out" in notice for notice in report.notices)
+    assert any("lab_1_2 (1).ipynb is not graded" in notice for notice in report.notices)
     assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
 
 
@@ -60,7 +45,10 @@ def test_one_folder_too_high_is_named_and_stays_there(tiny: TinyClass, fake_engi
     path = tiny.submit("ada", 4, 7)
     high = path.rename(path.parent.parent / "lab_1_2.ipynb")
     report = tiny.grade()
-    assert f"lab_1_2.ipynb: it is not graded in this place: move it into {high.parent}" in refused(report)
+    assert (
+        f"lab_1_2.ipynb: it is not graded in this place: put it into {tiny.path}/submitted/STUDENT"
+        in refused(report)
+    )
     assert (report.exit_code, high.exists()) == (2, True)
 
 
@@ -82,12 +70,6 @@ def test_a_name_as_a_mac_writes_it_is_the_same_name(tiny: TinyClass, fake_engine
     assert report.exit_code == 0
     assert tiny.scores("José") == {TALKER: 4, LISTENER: 7}
     assert any("José" in notice for notice in report.notices)
-
-
-def test_capitals_alone_deserve_a_word(tiny: TinyClass, fake_engine: FakeEngine) -> None:
-    tiny.submit("bob")
-    tiny.submit("Bob")
-    assert any("Bob and bob" in notice for notice in tiny.grade().notices)
 
 
 def test_who_asks_for_one_student_hears_of_that_one(tiny: TinyClass, fake_engine: FakeEngine) -> None:
@@ -152,7 +134,7 @@ def test_a_thousand_notebooks_beside_one_are_one_line(
         (tiny.path / "submitted" / folder / f"beside_{number}.ipynb").touch()
     report = tiny.grade()
     lines = [*report.notices, *(one.reason for one in report.refused)]
-    assert (len(lines), "999 more" in lines[0]) == (1, True)
+    assert (len(lines), "nor are 999 more" in lines[0]) == (1, True)
     assert tiny.scores("ada") == {TALKER: 4, LISTENER: 7}
 
 

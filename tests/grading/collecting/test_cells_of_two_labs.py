@@ -12,7 +12,7 @@ from test_where_it_goes import MOODLE, gathered
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.classes.new_class import release
-from autograder.grading.collecting.outcomes import State
+from autograder.grading.collecting.line import State
 from autograder.grading.reporting.rows import remarks_on
 
 if TYPE_CHECKING:

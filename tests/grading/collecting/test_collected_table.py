@@ -11,7 +11,7 @@ from downloads import ROSTER, write_zip, zipped
 from test_collect import lies, placed, stamp, why, work
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.outcomes import State
+from autograder.grading.collecting.line import State
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -171,7 +171,7 @@ def turn(lines: Lines) -> Lines:
 
 
 @pytest.mark.parametrize(
-    ("change", "words"), [(drop, "lacks 1 lines"), (double, "and they differ"), (turn, "")]
+    ("change", "words"), [(drop, "lacks 1 lines"), (double, "has 2 different lines for"), (turn, "")]
 )
 def test_lines_that_are_missing_double_or_elsewhere_lose_nothing(
     klass: TinyClass, tmp_path: Path, change: Callable[[Lines], Lines], words: str

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING
 import pytest
 from downloads import write_zip, zipped
 from test_collect import placed, why, work
+from test_collected_table import edit
 from tiny_class import LISTENER, TALKER
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.outcomes import State
+from autograder.grading.collecting.line import State
 from autograder.grading.collecting.reading import archives
-from autograder.grading.collecting.reading.lms_file_names import base_and_number
+from autograder.grading.collecting.reading.lms_file_names import base_of
 from autograder.grading.rebuilding.submission import read_bytes
 from autograder.regular_files import remove_unfinished
 
@@ -135,15 +136,12 @@ def test_a_name_longer_than_any_floods_nobody(klass: TinyClass, tmp_path: Path) 
     long = zipped({f"lab_1_2{'(1)' * 20_000}.ipynb": work(klass), "lab_1_2.ipynb": work(klass)})
     report = collect(klass.path, [in_moodle(klass, tmp_path / "m.zip", {"w.zip": long})])
     assert placed(report).keys() == {"ben", "zoe"}
-    (refused,) = (
-        one for one in report.outcomes if one.reason.startswith("its name has more than 1000 characters")
-    )
-    assert (refused.student, len(refused.label) < 1200) == ("ben", True)
+    assert max(len(one.label) for one in report.outcomes) < 1200
 
 
 def test_a_name_with_many_numbers_is_read_in_a_moment() -> None:
     began = time.process_time()
-    assert base_and_number("lab" + "-1 (2)" * 10_000) == ("lab", 2)
+    assert base_of("lab" + "-1 (2)" * 10_000) == "lab"
     assert time.process_time() - began < 10
 
 
@@ -167,10 +165,13 @@ def test_who_has_too_many_files_hides_nobody_behind(
     for number in range(30):
         (download / "ben" / "node_modules").mkdir(parents=True, exist_ok=True)
         (download / "ben" / "node_modules" / f"{number}.js").write_text("x")
-    label = "download/ben"
+    label = "download/ben/node_modules"
     if form == "zip":
         files = {str(path.relative_to(tmp_path)): path.read_bytes() for path in download.rglob("*.*")}
-        download, label = write_zip(tmp_path / "download.zip", files), "download.zip/download/ben"
+        download, label = (
+            write_zip(tmp_path / "download.zip", files),
+            "download.zip/download/ben/node_modules",
+        )
     elif form == "folder around":
         (tmp_path / "all").mkdir()
         download, label = download.rename(tmp_path / "all" / "download").parent, "all/download/ben"
@@ -243,8 +244,11 @@ def test_folders_without_end_keep_nobodys_work_from_being_read_where_a_backup_ha
         (tiny.path / "submitted" / "ben").rename(deep)
 
 
-@pytest.mark.parametrize("when", ["9999-12-31T23:59:59-05:00", "0001-01-01T00:00:00+05:00"])
+@pytest.mark.parametrize(
+    "when", ["9999-12-31T23:59:59-05:00", "9999-12-31T23:59:59Z", "0001-01-01T00:00:00+05:00"]
+)
 def test_a_time_that_no_clock_shows_is_none(klass: TinyClass, tmp_path: Path, when: str) -> None:
+    klass.configure('c.NbGraderAPI.timezone = "Asia/Kolkata"')
     times = tmp_path / "times.csv"
     times.write_text(
         "Identifier,Full name,Grade,Last modified (submission)\n"
@@ -255,6 +259,9 @@ def test_a_time_that_no_clock_shows_is_none(klass: TinyClass, tmp_path: Path, wh
         "ben": None,
         "zoe": 2025,
     }
+    edit(klass, "Ben", handed_in=when)
+    (note,) = collect(klass.path).notes
+    assert f"'{when}' under handed_in is not a time" in note
 
 
 def test_a_long_text_in_an_lmss_list_keeps_nobodys_time_from_being_read(

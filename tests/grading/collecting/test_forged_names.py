@@ -35,8 +35,8 @@ STYLES = {
     "CS_101_22_{id}_attempt_2025-10-03-10-00-00_": "blackboard",
     "1{number}-7 - {name} - Oct 3, 2025 205 PM - ": "brightspace",
     "1{number}-7 - {name} - Oct 3, 2025 205 PM/": "brightspace",
-    "lab-submissions/lab-{id}git/": "github",
-    "lab-{id}git/": "",
+    "lab-submissions/lab-{id}git/": "lab-submissions/lab-{github}",
+    "lab-{id}git/": "lab-{github}",
     "{id}/": "",
     "assignment_5_export/submission_{number}/": "gradescope",
 }
@@ -104,7 +104,10 @@ def test_no_name_that_somebody_chooses_makes_work_anothers(
                     (folder / name).parent.mkdir(parents=True, exist_ok=True)
                     (folder / name).write_bytes(held if isinstance(held, bytes) else held.encode())
             sources = [folder] if how == "folder" else sorted(folder.iterdir())
-        report = collect(tiny.path, sources, form=chance.choice(["", STYLES[style]]))
+        names = STYLES[style] if "{" in STYLES[style] else ""
+        report = collect(
+            tiny.path, sources, form=chance.choice(["", "" if names else STYLES[style]]), names=names
+        )
         assert {one.student for one in report.outcomes} <= {"", *(one["id"] for one in known)}, (
             seed,
             sources,

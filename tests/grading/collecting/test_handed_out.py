@@ -10,12 +10,14 @@ from downloads import write_zip, zipped
 from test_collect import kept, lies, why, work
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.outcomes import CollectReport, State
+from autograder.grading.collecting.line import State
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from tiny_class import TinyClass
+
+    from autograder.grading.collecting.outcomes import CollectReport
 
 COPY = "lab_1_2 (your copy, 2026-11-21).ipynb"
 

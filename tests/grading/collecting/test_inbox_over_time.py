@@ -25,7 +25,7 @@ from autograder.boxes.sandbox import why_impossible
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting import apply, collected_csv, inbox
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.outcomes import State
+from autograder.grading.collecting.line import State
 from autograder.grading.errors import ClassBusy, GradingError
 
 if TYPE_CHECKING:

@@ -55,7 +55,8 @@ def within(archives: Archives, folder: Path, data: bytes, room: Room | None = No
     path = folder / "x.zip"
     path.write_bytes(data)
     (file,) = archives.files_of(path, is_opened=False)
-    return {"/".join(one.inner): held(one) for one in archives.within(file, data, room or Room())}
+    found = archives.within(file.arrival, data, room or Room())
+    return {"/".join(one.arrival.inner): held(one) for one in found}
 
 
 def refusals(archives: Archives, folder: Path, several: Iterable[bytes]) -> list[str]:
@@ -130,7 +131,7 @@ def test_a_tar_is_unpacked_without_its_links(archives: Archives, tmp_path: Path,
     assert found == {
         "a/lab.ipynb": b"{}",
         "link": "it is a link, or not an ordinary file",
-        "../up": "its name leads out of the archive",
+        "up": b"{}",
     }
 
 

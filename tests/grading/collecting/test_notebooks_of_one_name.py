@@ -9,12 +9,14 @@ from downloads import write_zip
 from test_collect import why, work
 
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.outcomes import CollectReport, State
+from autograder.grading.collecting.line import State
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from tiny_class import TinyClass
+
+    from autograder.grading.collecting.outcomes import CollectReport
 
 NAME = "Ada Lovelace_1_assignsubmission_file_{}"
 
@@ -63,9 +65,7 @@ def test_of_another_assignment_it_is_refused(klass: TinyClass, tmp_path: Path) -
 def test_where_cells_say_nothing_the_instructor_does(klass: TinyClass, tmp_path: Path) -> None:
     nameless = work(klass).replace('"grade_id"', '"nobody"')
     report = gathered(klass, tmp_path, nameless, "problem1.ipynb")
-    assert "notebooks of ps1 and ps2 are called so, or have its cells): write it under assignment" in why(
-        report
-    )
+    assert "(ps1, ps2): write it under assignment" in why(report)
     report = gathered(klass, tmp_path, nameless, "problem1.ipynb", "ps1")
     assert [one.assignment for one in report.having(State.PLACED)] == ["ps1"]
 
@@ -74,4 +74,4 @@ def test_of_an_assignment_of_several_notebooks_the_name_says_which(klass: TinyCl
     (klass.path / "source" / "ps1" / "problem2.ipynb").write_text("{}")
     nameless = work(klass).replace('"grade_id"', '"nobody"')
     report = gathered(klass, tmp_path, nameless, "homework.ipynb", "ps1")
-    assert "which notebook of ps1 it is (problem1, problem2): write that one under notebook" in why(report)
+    assert "which notebook of ps1 it is (problem1, problem2): write it under notebook" in why(report)

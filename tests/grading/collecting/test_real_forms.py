@@ -40,7 +40,7 @@ from test_collect import lies, stamp, why, work
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.outcomes import State
+from autograder.grading.collecting.line import State
 from autograder.grading.collecting.reading.desk import read_list
 from autograder.grading.table.roster import read_students_csv
 

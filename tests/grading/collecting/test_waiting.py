@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 import pytest
 from downloads import ROSTER, write_zip
 from test_collect import work
+from test_collected_table import edit
 from test_where_it_goes import other_lab
 
 from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_csv import Table
-from autograder.grading.collecting.outcomes import State
+from autograder.grading.collecting.line import State
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -59,11 +60,10 @@ def test_collected_again_it_is_repeated_once(klass: TinyClass, tmp_path: Path) -
     assert len(waiting(klass)) == 3
 
 
-def test_the_same_file_at_its_place_settles_it(klass: TinyClass, tmp_path: Path) -> None:
+def test_a_cell_settles_it(klass: TinyClass, tmp_path: Path) -> None:
     week(klass, tmp_path, nameless(klass, 1))
-    alone = tmp_path / "ada.ipynb"
-    alone.write_text(nameless(klass, 1))
-    collect(klass.path, [alone], assignment="lab_1_2")
+    edit(klass, "homework", assignment="lab_1_2")
+    assert [one.state for one in collect(klass.path).outcomes] == [State.PLACED]
     assert waiting(klass) == []
 
 

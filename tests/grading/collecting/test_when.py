@@ -13,7 +13,7 @@ from test_where_it_goes import MOODLE, gathered
 
 from autograder.cli import cli
 from autograder.grading.collecting.collect import collect
-from autograder.grading.collecting.outcomes import State
+from autograder.grading.collecting.line import State
 
 if TYPE_CHECKING:
     from pathlib import Path

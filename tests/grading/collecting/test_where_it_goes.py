@@ -24,7 +24,7 @@ from autograder.grading.classes.class_directory import ClassDirectory
 from autograder.grading.collecting import apply, collected_csv, records
 from autograder.grading.collecting.collect import collect
 from autograder.grading.collecting.collected_csv import Table
-from autograder.grading.collecting.outcomes import CollectReport, State
+from autograder.grading.collecting.line import State
 from autograder.grading.exporting.export_files import export
 from autograder.grading.report_page.page import write_report
 from autograder.regular_files import write_whole
@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from tiny_class import FakeEngine
+
+    from autograder.grading.collecting.outcomes import CollectReport
 
 UTC = ZoneInfo("UTC")
 MOODLE = "{}_1_assignsubmission_file_{}"
@@ -96,7 +98,7 @@ def test_who_fills_an_archive_harms_nobody_else(klass: TinyClass, tmp_path: Path
         ("lab_1_2.tar.gz", "it is not an archive that can be read"),
         ("lab_1_2.7z", "unpack it into a folder named ada"),
         ("lab_1_2.py", "write no under use"),
-        ("answer.docx", "it is not a notebook: ask for the notebook"),
+        ("answer.docx", "it is not a notebook; to leave it out"),
     ],
 )
 def test_what_is_not_taken_is_named_with_its_student_the_reason_and_what_to_type(
@@ -133,7 +135,7 @@ def test_the_notebook_of_one_assignment_gives_no_place_to_a_file_of_another(
         ("lovelaceada_101_9002_lab_1_2.py", "it is not a notebook")
     ]
     assert named(report, State.NOT_PLACED) == [("lovelaceada_101_9003_lab_1_3.py", "ada")]
-    assert "ask for the notebook" in why(report)
+    assert "it is not a notebook; to leave it out" in why(report)
 
 
 def test_what_has_no_place_is_repeated_until_it_has_one(
@@ -258,12 +260,12 @@ def test_a_notebook_without_a_place_is_named_whatever_else_its_student_has_hande
         }
 
 
-def test_a_second_copy_is_beside_the_notebook_whose_cells_it_has(klass: TinyClass, tmp_path: Path) -> None:
+def test_a_second_copy_under_another_labs_name_waits(klass: TinyClass, tmp_path: Path) -> None:
     other = other_lab(klass)
     held = zipped({"lab_1_2 (1).ipynb": other, "lab_1_3.ipynb": other})
     report = gathered(klass, tmp_path, {MOODLE.format("Ada Lovelace", "work.zip"): held})
-    (beside,) = report.having(State.BESIDE)
-    assert (report.exit_code, beside.assignment) == (0, "lab_1_3")
+    assert [one.assignment for one in report.having(State.PLACED)] == ["lab_1_3"]
+    assert "its name says lab_1_2 and its cells are those of lab_1_3" in why(report)
 
 
 def test_a_notebook_of_the_course_that_is_no_assignment_here_is_beside_the_work(

@@ -7,7 +7,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from autograder.grading.classes.class_directory import SUFFIX
-from autograder.grading.collecting.reading.lms_file_names import base_and_number
+from autograder.grading.collecting.reading.lms_file_names import base_of
 from autograder.grading.rebuilding.desk import read_notebook
 from autograder.grading.rebuilding.submission import UnreadableSubmission
 
@@ -22,18 +22,16 @@ _UNDER = "under assignment in collected.csv"
 
 
 class NoTarget(ValueError):
-    """The notebook of a file is unclear, or is not one to collect now. The message says what to do.
+    """The notebook of a file is unclear, or the file is not to be collected now. The message says what to do.
 
     Args:
         message: The reason, and what to type.
-        assignment: The assignment to which the file's cells belong; empty if they do not show it.
-        is_left_out: True if the file is not to be collected, because the instructor asked for another assignment, or
-            because the class has no assignment with its cells.
+        is_left_out: True if the file need not be collected: the instructor asked for another assignment, or the class
+            has no assignment with the file's cells.
     """
 
-    def __init__(self, message: str, assignment: str = "", *, is_left_out: bool = False) -> None:
+    def __init__(self, message: str, *, is_left_out: bool = False) -> None:
         super().__init__(message)
-        self.assignment = assignment
         self.is_left_out = is_left_out
 
 
@@ -44,93 +42,94 @@ def is_notebook(name: str, data: bytes) -> bool:
     return held or name.lower().endswith(SUFFIX)
 
 
-def stem_of(name: str) -> tuple[str, int]:
-    """Return the name of a notebook without the suffix that programs add, and the number in that suffix."""
+def stem_of(name: str) -> str:
+    """Return the name of a file without ``.ipynb``, and without what programs add to a copy, such as `` (1)``."""
     end = name.lower().find(SUFFIX)
-    return base_and_number(name[:end] if end > 0 else name.rpartition(".")[0] or name)
+    return base_of(name[:end] if end > 0 else name.rpartition(".")[0] or name)
 
 
 class AssignmentOf:
-    """Finds notebooks of a class by their names and their cells.
+    """Finds out which notebook of a class a collected file is, by the name and the cells of the file.
 
     Args:
         directory: The class.
-        asked: The assignment that the instructor named for all files; empty to find it for each file.
     """
 
-    def __init__(self, directory: ClassDirectory, asked: str = "") -> None:
+    def __init__(self, directory: ClassDirectory) -> None:
         self._directory = directory
-        self._asked = asked
 
     def is_notebook(self, file: str) -> bool:
         """Return True if a file with this name is a notebook of the class."""
-        return stem_of(file)[0].casefold() in self._notebooks
+        return stem_of(file).casefold() in self._notebooks
 
-    def named(self, name: str) -> str:
-        """Return the assignment that a file's name contains, or that the instructor named; empty if there is none."""
-        stem = base_and_number(name.partition(".")[0])[0]
+    def notebooks(self, assignment: str) -> list[str]:
+        """Return the notebooks of an assignment; none if the class has no assignment with this name."""
+        return [
+            notebook for several in self._notebooks.values() for of, notebook in several if of == assignment
+        ]
+
+    def named(self, name: str, asked: str) -> str:
+        """Return ``asked`` or, if that is empty, the assignment in a file's name; empty if there is none."""
+        stem = base_of(name.partition(".")[0])
         assignments = {assignment for assignment, _ in self._notebooks.get(stem.casefold(), ())}
-        return self._asked or (assignments.pop() if len(assignments) == 1 else "")
+        return asked or (assignments.pop() if len(assignments) == 1 else "")
 
-    def target(self, name: str, data: bytes) -> tuple[Target, bool]:
-        """Return the notebook to which a file belongs, and whether the file's name agrees.
+    def target(self, name: str, data: bytes, asked: str) -> tuple[Target, bool]:
+        """Return the assignment and the notebook of a file, and whether the file has the notebook's name.
 
         Args:
             name: The name that the student gave the file.
             data: The content of the file.
+            asked: The assignment that the instructor named; empty to find it.
 
         Raises:
-            NoTarget: The notebook is unclear; or the cells belong to several notebooks, or to one that contradicts
-                the file's name or the instructor.
+            NoTarget: The notebook is unclear; or the cells belong to several assignments, or to another assignment
+                than the file's name or the instructor says.
         """
-        named = self._notebooks.get(stem_of(name)[0].casefold(), [])
+        named = self._notebooks.get(stem_of(name).casefold(), [])
         cells = _cells(data)
         names = {cell.grade_id for cell in cells} - {""}
         mixed = self._directory.named_cells.assignments(cells)
-        if len(mixed) > 1 and self._asked not in mixed:
+        if len(mixed) > 1 and asked not in mixed:
             raise NoTarget(
                 f"it has the cells of {' and of '.join(mixed)}: ask for a notebook of each, or write the one that it "
                 f"is to count for {_UNDER}"
             )
-        held = self._directory.named_cells.closest(names, self._asked if self._asked in mixed else "")
+        held = self._directory.named_cells.closest(names, asked if asked in mixed else "")
         meant = [target for target in named if not held or target in held] or held
-        here = [target for target in meant if self._asked in ("", target[0])]
+        here = [target for target in meant if asked in ("", target[0])]
         if meant and not here:
             other = meant[0][0]
-            why = f"it is not for {self._asked}: it is the notebook of {other}"
+            why = f"it is not for {asked}: it is the notebook of {other}"
             raise NoTarget(f"{why}; to have it there, write {other} {_UNDER}", is_left_out=True)
-        if named and not self._asked and not set(named) & set(meant):
+        if named and not asked and not set(named) & set(meant):
             says, other = " or ".join(assignment for assignment, _ in named), held[0][0]
             raise NoTarget(
                 f"its name says {says} and its cells are those of {other}: ask for the right notebook, or write "
-                f"{other} {_UNDER}",
-                other if all(assignment == other for assignment, _ in held) else "",
+                f"{other} {_UNDER}"
             )
-        if self._asked and not here:
-            here = [(self._asked, one) for one in self._directory.notebooks(self._asked)]
+        if asked and not here:
+            here = [(asked, one) for one in self._directory.notebooks(asked)]
         if len(here) != 1:
             # The file has named cells, but none from this class: it is another notebook of the course, such as its
             # summary.
-            raise NoTarget(self._unclear(meant), is_left_out=not meant and bool(names))
+            raise NoTarget(self._unclear(meant, asked), is_left_out=not meant and bool(names))
         return here[0], here[0] in named
 
-    def _unclear(self, meant: list[Target]) -> str:
-        """Return why it is unclear which notebook a file is: one of ``meant``, or any of the class if that is empty."""
-        assignments = sorted({self._asked} if self._asked else {assignment for assignment, _ in meant})
+    def _unclear(self, meant: list[Target], asked: str) -> str:
+        """Return a message with the notebooks or assignments that are possible."""
+        assignments = sorted({asked} if asked else {assignment for assignment, _ in meant})
         if len(assignments) == 1:
             names = ", ".join(self._directory.notebooks(assignments[0]))
-            return (
-                f"it is not clear which notebook of {assignments[0]} it is ({names}): write that one under notebook in "
-                "collected.csv"
-            )
-        known = f"the class has: {', '.join(self._directory.assignments())}"
-        if assignments:
-            known = f"notebooks of {' and '.join(assignments)} are called so, or have its cells"
-        return f"it is not clear which assignment it is for ({known}): write it {_UNDER}"
+            which = f"which notebook of {assignments[0]} it is ({names}): write it under notebook in collected.csv"
+        else:
+            known = ", ".join(assignments or self._directory.assignments())
+            which = f"which assignment it is for ({known}): write it {_UNDER}"
+        return f"it is not clear {which}"
 
     @functools.cached_property
     def _notebooks(self) -> dict[str, list[Target]]:
-        """The targets by the name of the notebook, because several assignments may have a notebook with that name."""
+        """All assignments and notebooks, by the name of the notebook: several assignments may use one name."""
         found: dict[str, list[Target]] = defaultdict(list)
         for assignment in self._directory.assignments():
             for name in self._directory.notebooks(assignment):

@@ -8,129 +8,70 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.grading.classes.class_directory import in_zone
-from autograder.grading.collecting.deciding.handed_out import HandedOut
-from autograder.grading.collecting.outcomes import State
+from autograder.grading.classes.class_directory import SUFFIX, in_zone
+from autograder.grading.collecting.deciding.handed_out import has_work
+from autograder.grading.collecting.line import Line, Place, State
 from autograder.grading.rebuilding.desk import why_unreadable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
-    from datetime import datetime
 
     from autograder.grading.classes.class_directory import ClassDirectory
     from autograder.grading.collecting.apply import Submitted
-    from autograder.grading.collecting.deciding.proposals import Line
     from autograder.grading.collecting.inbox import Inbox
 
-Place = tuple[str, str, str]
-"""The place of a notebook: student, assignment and notebook."""
-_Why = tuple["Line", State, str]
+_Why = tuple[Line, State, str]
 _ONE_NUMBER = ("canvas", "moodle", "brightspace")
 """The systems that give each person one number in a download, and in which users may change their names."""
 _CELL = re2.compile(r"(?:under|the cell) (use|student|assignment|notebook|handed_in)\b")
 
 
-class Looks:
-    """Questions about a class and the content of its files. They are asked only if more than one file may count.
-
-    Args:
-        directory: The class.
-        inbox: The inbox of the class.
-        submitted: The folder ``submitted`` of the class.
-    """
-
-    def __init__(self, directory: ClassDirectory, inbox: Inbox, submitted: Submitted) -> None:
-        self._zone = directory.time_zone
-        self._handed_out = HandedOut(directory)
-        self._inbox = inbox
-        self._submitted = submitted
-
-    def has_work(self, line: Line) -> bool:
-        """Return True if the notebook contains more than what was handed out."""
-        return self._handed_out.has_work(line.assignment, line.notebook, self._inbox.read(line.content))
-
-    def why_unreadable(self, line: Line) -> str:
-        """Return why the notebook cannot be read; empty if it can."""
-        return why_unreadable(self._inbox.read(line.content))
-
-    def is_there(self, line: Line, place: Place) -> bool:
-        """Return True if the file with these bytes is at its place in ``submitted``."""
-        return self._submitted.content(place) == line.content
-
-    def shown(self, when: datetime) -> str:
-        """Return a time as text, in the time zone of the class."""
-        return in_zone(when, self._zone)
-
-
 @dataclass(frozen=True)
-class Decision:
-    """The decision about a file for one student.
+class Looks:
+    """The folders of a class by which one of several files of a student is chosen.
 
     Attributes:
-        line: The file, with everything that is known about it.
-        student: The id of the student; empty if it is unknown, or if the file belongs to a group.
-        state: The state of the file: ``PLACED`` if it counts.
-        reason: The reason, for every state except ``PLACED``.
+        directory: The class, with the notebooks that were handed out.
+        inbox: The inbox, with the bytes of the files.
+        submitted: The folder ``submitted``, with the files that count so far.
     """
 
-    line: Line
-    student: str
-    state: State
-    reason: str = ""
-
-    @property
-    def place(self) -> Place:
-        """The place of the notebook."""
-        return self.student, self.line.assignment, self.line.notebook
+    directory: ClassDirectory
+    inbox: Inbox
+    submitted: Submitted
 
 
-def decide(lines: Iterable[Line], looks: Looks) -> tuple[list[Decision], dict[Place, Line]]:
-    """Decide about all files.
-
-    Returns:
-        A decision for each file and student; and the file that counts, for each notebook.
-    """
-    decisions: list[Decision] = []
+def decide(lines: Iterable[Line], looks: Looks) -> list[Line]:
+    """Return the lines with a state and a reason. The work of a group becomes one line for each student."""
+    decided: list[Line] = []
     soft: list[Line] = []
     groups: dict[Place, list[Line]] = defaultdict(list)
     for line in sorted(lines, key=lambda one: (one.key, one.assignment)):
-        student = line.students[0] if len(line.students) == 1 else ""
         if line.use == "no":
-            decisions.append(Decision(line, student, State.LEFT_OUT, "no is written under use"))
+            decided.append(replace(line, state=State.LEFT_OUT, reason="no is written under use"))
         elif line.is_soft:
             soft.append(line)
         elif line.reason:
-            decisions.append(Decision(line, student, State.NOT_PLACED, _with_cell(line.reason)))
+            decided.append(replace(line, reason=_with_cell(line.reason)))
         else:
-            for one in line.students:
-                groups[one, line.assignment, line.notebook].append(line)
-    counts = {}
+            for student in line.students:
+                own = replace(line, students=(student,))
+                groups[own.place].append(own)
     for place, group in groups.items():
-        for line, state, reason in _of_group(place, group, looks):
-            decisions.append(Decision(line, place[0], state, reason))
-            if state == State.PLACED:
-                counts[place] = line
-    known = {(student, line.content) for (student, _, _), line in counts.items()}
-    decisions = [
-        replace(one, state=State.UNCHANGED, reason="")
-        if one.state == State.NOT_PLACED and (one.student, one.line.content) in known
-        else one
-        for one in decisions
-    ]
-    came = {
-        (one.student, one.line.assignment) for one in decisions if one.state in (State.PLACED, State.EARLIER)
-    }
+        decided += [
+            replace(line, state=state, reason=reason)
+            for line, state, reason in _of_group(place, group, looks)
+        ]
+    came = {(one.student, one.assignment) for one in decided if one.state in (State.PLACED, State.EARLIER)}
     came |= {(student, "") for student, _ in came}
-    return decisions + [_beside(line, came) for line in soft], counts
+    return decided + [_beside(line, came) for line in soft]
 
 
-def _beside(line: Line, came: set[tuple[str, str]]) -> Decision:
-    """Return the decision about a file that needs no attention once a notebook of its student was collected."""
-    student = line.students[0] if len(line.students) == 1 else ""
-    if line.lms == "list" or (student and (student, line.assignment) in came):
-        return Decision(line, student, State.BESIDE, line.reason)
-    reason = f"{line.reason}: {line.what_to_do}" if line.what_to_do else line.reason
-    return Decision(line, student, State.NOT_PLACED, _with_cell(reason))
+def _beside(line: Line, came: set[tuple[str, str]]) -> Line:
+    """Return the line of a file, such as a picture, that waits only as long as its student has no notebook."""
+    if line.lms == "list" or (line.student and (line.student, line.assignment) in came):
+        return replace(line, state=State.BESIDE)
+    return replace(line, reason=_with_cell(line.reason))
 
 
 def _with_cell(reason: str) -> str:
@@ -145,12 +86,12 @@ def cell_in(reason: str) -> str:
 
 
 def _of_group(place: Place, group: list[Line], looks: Looks) -> Iterator[_Why]:
-    """Decide between the files of one student for one notebook."""
+    """Yield the state and the reason of each file that a student handed in for one notebook."""
     by_hand = [one for one in group if one.is_by_hand]
-    lying = [one for one in by_hand if looks.is_there(one, place)]
+    lying = [one for one in by_hand if looks.submitted.content(place) == one.content]
     chosen = lying or [one for one in group if one.use == "yes"]
     if chosen:
-        best, others = _best(chosen, _time, place, looks)
+        best, others = _best(place, chosen, looks)
         yield from others
         if best:
             # A later correction of a file does not change the time at which its student handed it in.
@@ -170,138 +111,64 @@ def _of_group(place: Place, group: list[Line], looks: Looks) -> Iterator[_Why]:
         yield from ((one, State.NOT_PLACED, reason) for one, reason in doubts)
         doubtful = {one.key for one, _ in doubts}
         pool = [one for one in pool if one.key not in doubtful]
-    best, whys = _newest(place, pool, looks)
-    yield from whys
-    if best:
-        yield best, State.PLACED, ""
+    if pool:
+        best, others = _best(place, pool, looks)
+        yield from others
+        if best:
+            yield best, State.PLACED, ""
 
 
 def _people(place: Place, pool: Sequence[Line], _: Looks) -> list[tuple[Line, str]]:
-    """Return the files that belong to a student only by a name that several people or repositories have.
+    """Return the files that belong to a student only by a name that several people have.
 
-    In Canvas each person has one number; in other systems, one number per download.
+    In Canvas a person always has the same number; in other systems, one number in each download.
     """
     numbers: dict[str, set[str]] = defaultdict(set)
-    for one in pool:
-        if one.lms in _ONE_NUMBER:
-            for download in ("canvas",) if one.lms == "canvas" else one.came_in:
-                numbers[download].add(one.number)
-        elif one.repository:
-            numbers["github"].add(one.repository)
-    several = {lms: sorted(found) for lms, found in numbers.items() if len(found) > 1}
-    repositories = several.pop("github", [])
-    whose = (
-        f"work came from several repositories, {' and '.join(repositories)}, and only the ends of their names are "
-        f"{place[0]}'s"
+    of_systems = [one for one in pool if one.lms in _ONE_NUMBER]
+    for one in of_systems:
+        for download in ("canvas",) if one.lms == "canvas" else one.came_in:
+            numbers[download].add(one.number)
+    several = next((sorted(found) for found in numbers.values() if len(found) > 1), [])
+    reason = (
+        f"several people have the name of {place[0]}, with the numbers {', '.join(several)}: write the id under "
+        "student, or no under use"
     )
-    found = [(one, whose) for one in pool if repositories and one.repository not in ("", one.number)]
-    people = f"there are several people who are read as {place[0]}, of the numbers "
-    by_name = [one for one in pool if several and one.lms in _ONE_NUMBER and not one.is_sure]
-    found += [(one, people + ", ".join(next(iter(several.values())))) for one in by_name]
-    return [(one, f"{why}: write the id under student, or no under use") for one, why in found]
+    return [(one, reason) for one in of_systems if several and not one.is_sure]
 
 
 def _unreadable(place: Place, pool: Sequence[Line], looks: Looks) -> list[tuple[Line, str]]:
     """Return the unreadable files; none if all are unreadable. An incomplete file must not replace readable work."""
     if len({one.content for one in pool}) < 2:
         return []
-    reasons = [(one, reason) for one in pool if (reason := looks.why_unreadable(one))]
+    reasons = [(one, reason) for one in pool if (reason := why_unreadable(looks.inbox.read(one.content)))]
     what_to_do = (
         f"Other work of {place[0]} counts: ask for this file again if it is newer, or write no under use"
     )
     return [(one, f"{reason} {what_to_do}") for one, reason in reasons] if len(reasons) < len(pool) else []
 
 
-def _newest(place: Place, pool: list[Line], looks: Looks) -> tuple[Line | None, list[_Why]]:
-    """Return the file that counts, and why the others do not; None if it is unclear which is the newest.
+def _best(place: Place, files: Sequence[Line], looks: Looks) -> tuple[Line | None, list[_Why]]:
+    """Return the file that counts, and the decisions about the others.
 
-    Of files that were handed in together, a file with work takes precedence over one that is unchanged since it was
-    handed out; after that, the exact name decides. Between attempts, the time decides, or else the system's
-    numbering.
+    The newest counts, by its time. If that does not decide, a file with answers goes before a file that is as it was
+    handed out. Then the exact name decides between files of one download, and last the system's numbering. If several
+    different files are left, the one that counted before still counts; None if none did.
     """
-    is_several = len({one.content for one in pool}) > 1
-    work = {one.key: not is_several or looks.has_work(one) for one in pool}
-    firsts: list[Line] = []
-    whys: list[_Why] = []
-    for files in _together(pool):
-
-        def rank(one: Line) -> tuple[float, ...]:
-            return work[one.key], one.is_named, one.order, one.number_of_copy
-
-        first, others = _best(files, rank, place, looks, work)
-        whys += others
-        firsts += [first] if first else []
-    alike = len({one.readings[:1] for one in firsts}) == 1
-    is_ordered = len({one.lms for one in firsts}) == 1  # the numbers of two systems have nothing in common
-    timed = [one for one in firsts if one.when is not None]
-
-    def later(one: Line) -> tuple[float, ...]:
-        order = one.order if is_ordered else 0
-        return *(_time(one) if timed else (work[one.key],)), order, one.number_of_copy if alike else 0
-
-    best, others = _best(timed or firsts, later, place, looks, work)
-    whys += others
-    for one in firsts if timed else ():
-        if one.when is None:
-            whys.append((one, *_without_time(one, best, work, looks)))
-    return best, whys
-
-
-def _together(pool: Iterable[Line]) -> list[list[Line]]:
-    """Return the groups of files that were handed in together: by one person, at one time, in one download."""
-    found: list[list[Line]] = []
-    for one in pool:
-        mine = [one]
-        for files in [files for files in found if _is_together(one, files)]:
-            mine += files
-            found.remove(files)
-        found.append(sorted(mine, key=lambda line: line.key))
-    return found
-
-
-def _is_together(one: Line, files: Sequence[Line]) -> bool:
-    return any(
-        (one.when, one.readings[:1]) == (other.when, other.readings[:1]) and one.came_in & other.came_in
-        for other in files
+    is_several = len({one.content for one in files}) > 1
+    work = {one.key: not is_several or _has_work(one, looks) for one in files}
+    best = _top(
+        [one for one in files if one.when] or files, lambda one: one.when.timestamp() if one.when else 0
     )
-
-
-def _time(one: Line) -> tuple[float, ...]:
-    return (one.when.timestamp() if one.when else 0.0,)
-
-
-def _without_time(one: Line, best: Line | None, work: dict[str, bool], looks: Looks) -> tuple[State, str]:
-    """Return the decision about a file whose time is unknown, given the best file whose time is known."""
-    if best is None or best.when is None:
-        return State.NOT_PLACED, "nothing says when it was handed in: write the time under handed_in"
-    if one.content == best.content:
-        return State.UNCHANGED, ""
-    at = f"{best.label}, handed in {looks.shown(best.when)}"
-    if one.order and best.order and one.lms == best.lms and one.order < best.order:
-        return State.EARLIER, f"{at}, was handed in later"
-    if work[best.key] and not work[one.key]:
-        return State.EARLIER, f"{at}, has answers; this one is as it was handed out, and is kept"
-    return State.NOT_PLACED, f"nothing says whether it is newer than {at}: write its time under handed_in"
-
-
-def _best(
-    files: list[Line],
-    rank: Callable[[Line], tuple[float, ...]],
-    place: Place,
-    looks: Looks,
-    work: dict[str, bool] | None = None,
-) -> tuple[Line | None, list[_Why]]:
-    """Return the file with the highest rank, and the decisions about the others.
-
-    If several different files have that rank, the one that counted before still counts; None if none did.
-    """
-    best = max(files, key=lambda one: (rank(one), one.when is not None, bool(one.lms)), default=None)
-    if best is None:
-        return None, []
-    rivals = [one for one in files if rank(one) == rank(best) and one.content != best.content]
-    if applied := next((one for one in (best, *rivals) if rivals and looks.is_there(one, place)), None):
-        best = applied
-    elif rivals:
+    best = _top(best, lambda one: work[one.key])
+    named = [one for one in best if one.is_named]
+    if named and all(any(one.came_in & other.came_in for one in named) for other in best):
+        best = named
+    if len({one.lms for one in best}) == 1:  # the numbers of two systems have nothing in common
+        best = _top(best, lambda one: one.order)
+    best = _top(best, lambda one: bool(one.lms)) if len({one.content for one in best}) == 1 else best
+    there = looks.submitted.content(place)
+    first = next((one for one in best if one.content == there), best[0])
+    if any(one.content != first.content for one in best) and first.content != there:
         reason = (
             f"{place[0]} has several different files for {place[1]}, and nothing says which is the newest: "
             "write yes under use for the one that counts, or the times under handed_in"
@@ -309,21 +176,35 @@ def _best(
         return None, [(one, State.NOT_PLACED, reason) for one in files]
     others: list[_Why] = []
     for one in files:
-        if one.content == best.content and one is not best:
-            others.append((one, State.UNCHANGED, ""))
-        elif applied and rank(one) == rank(best):
-            reason = (
-                f"nothing says whether it is newer than {best.label}, which counts: write yes under use if this one "
-                "is to count, or no"
-            )
+        is_older = work[one.key] < work[first.key] or (one.lms == first.lms and 0 < one.order < first.order)
+        if one.content == first.content:
+            others += [(one, State.UNCHANGED, "")] if one is not first else []
+        elif one in best:
+            what_to_do = "write yes under use if this one is to count, or no"
+            reason = f"nothing says whether it is newer than {first.label}, which counts: {what_to_do}"
             others.append((one, State.NOT_PLACED, reason))
-        elif one is not best:
-            others.append((one, State.EARLIER, f"{best.label} {_why_it_counts(best, one, work or {})}"))
-    return best, others
+        elif first.when and not one.when and not is_older:
+            at = f"{first.label}, handed in {in_zone(first.when, looks.directory.time_zone)}"
+            reason = f"nothing says whether it is newer than {at}: write its time under handed_in"
+            others.append((one, State.NOT_PLACED, reason))
+        else:
+            others.append((one, State.EARLIER, f"{first.label} {_why_it_counts(first, one, work)}"))
+    return first, others
+
+
+def _top(files: Sequence[Line], rank: Callable[[Line], float]) -> list[Line]:
+    """Return the files with the highest rank."""
+    highest = max(map(rank, files))
+    return [one for one in files if rank(one) == highest]
+
+
+def _has_work(one: Line, looks: Looks) -> bool:
+    released = looks.directory.path / "release" / one.assignment / f"{one.notebook}{SUFFIX}"
+    return has_work(released, looks.inbox.read(one.content))
 
 
 def _why_it_counts(best: Line, other: Line, work: dict[str, bool]) -> str:
-    if work.get(best.key, True) > work.get(other.key, True):
+    if work[best.key] > work[other.key]:
         return "has answers and counts; this one is as it was handed out, and is kept"
     if best.is_named > other.is_named:
         return (

@@ -1,4 +1,4 @@
-"""Finds a file's student by comparing its name with the list of students and with the lists in the download."""
+"""Finds the student who handed in a file, by its name, by students.csv, and by lists from the LMS."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 _WRITE_IT = "write the id under student in collected.csv"
 _NO_ID = f"its name does not say whose it is: {_WRITE_IT}, or add a line to students.csv"
 _LIST_OF = {"moodle": "the grading worksheet (Grades-….csv)", "gradescope": GRADESCOPE}
-"""For each system that gives a student a new number in every submission, the list that maps the numbers to students."""
+"""For the systems that number submissions instead of students, the list that maps these numbers to students."""
 _NOBODY = Identity()
-_BY_NUMBER, _BY_LOGIN = ("canvas", "brightspace"), ("github", "blackboard", "google", "sakai", "ilias")
-"""The systems whose names contain a person's number, and those whose names contain a user name. Both stay the same for
-all assignments.
+_BY_NUMBER = ("canvas", "brightspace", "gradescope")
+"""The systems whose file names contain a person's number. The others use a user name or, in Moodle, a number for one
+submission.
 """
 _LISTED = ("canvas", "github", "gradescope")
 """The systems whose lists identify students. (A number from Moodle or Gradescope belongs to one submission only.)"""
@@ -42,8 +42,8 @@ class Owners:
     """The students who may have handed in a file, according to its name.
 
     Attributes:
-        found: The facts in the name; None if its form is unknown, or if several systems may have made the name, and
-            would mean different students or times by it.
+        found: The facts in the name; None if no system writes such names, or if several systems do, which would mean
+            different students or times.
         members: For each member of the group, the students who may be meant; empty if none is known.
         is_sure: True if a number of the system identifies the students, and not just a name that students may choose.
     """
@@ -83,13 +83,13 @@ class StudentOf:
         self._entries = list(entries)
         self._timed = (_times(own), _times(others))
         self._by_number = {(one.lms, one.number): one for one in self._entries if one.number}
-        self._of = functools.cache(self._who)  # cached, because many files are in the same folder
+        self._of = functools.cache(self._who)  # cached, because many files have the same folder in their path
 
     def owners(self, parts: Sequence[str], levels: int, *, is_alone: bool = False) -> Owners:
-        """Return the students of a file, found by the topmost name in its path that identifies any.
+        """Return the students of a file, by the topmost name in its path that identifies any student.
 
-        Whatever name a student gives a file, the system's own part of the path is above that name or before it. If
-        two systems may have made a name, both must mean the same student by it; "no match" counts as a disagreement.
+        The topmost name is the system's: a name that the student chose comes below it or after it. If two systems may
+        have written a name, both must mean the same student; "no match" counts as a disagreement.
 
         Args:
             parts: The folders of the path and the file.
@@ -103,22 +103,38 @@ class StudentOf:
             meant = _distinct(students for members in hits for students in members)
             return Owners(found, (meant,) if meant else ())
         forms = [self._form] if self._form else TOLD_APART
-        names = [*parts[:-1], PurePath(parts[-1]).stem if is_alone and self._form != "google" else ""]
-        # In a download from Google Classroom, students may have chosen the name of any folder, however deep.
-        for place in range(len(parts) if self._form == "google" else min(levels, len(parts))):
+        names = [*parts[:-1], PurePath(parts[-1]).stem if is_alone else ""]
+        for place in range(min(levels, len(parts))):
             if ways := [way for form in forms if (way := read_at(parts, place, form, self._is_notebook))]:
                 return self._undisputed(self._agreed(ways), parts[place])
-            if place < levels and (owners := self.find(plain(names[place], parts[-1]))):
+            if owners := self.find(plain(names[place], parts[-1])):
                 return owners
         return Owners(None)
 
+    def written(self, cell: str) -> tuple[tuple[str, ...], str]:
+        """Return the ids of the students that a person wrote into a cell, or what is wrong with the cell."""
+        ids = []
+        for one in filter(None, map(str.strip, cell.replace(",", ";").split(";"))):
+            found = self._roster.find(Identity(login=one, name=one)) or self._without_zeros(one)
+            if len(found) != 1 and self._roster.students:
+                return (), f"students.csv has no student {one}: correct the cell student"
+            ids.append(found[0].id if found else one)
+            if reason := reason_against_name(ids[-1]):
+                return (), f"{ids[-1]} cannot be a student's id: {reason}: correct the cell student"
+        return tuple(ids), ""
+
+    def _without_zeros(self, written: str) -> tuple[Student, ...]:
+        """Return the students whose id equals this number after a spreadsheet has dropped leading zeros."""
+        plain = written.removesuffix(",0").removesuffix(".0").lstrip("0")
+        return tuple(one for one in self._roster.students.values() if plain and one.id.lstrip("0") == plain)
+
     def has_form(self, path: Path) -> bool:
-        """Return True if a file or folder has a name of the kind that a system makes for one student's work."""
+        """Return True if a file or folder has a name that an LMS gives to the work of one student."""
         owners = self._of_name(path)
         if owners.found is None:
             return bool(owners.members)
-        # Names from these systems have no part by which they could be recognized.
-        return owners.found.identity.lms not in ("", "google", "github")
+        # A user name on GitHub looks like any other name.
+        return owners.found.identity.lms not in ("", "github")
 
     def is_called(self, path: Path) -> bool:
         """Return True if a file or folder has the name of a student in the list of students."""
@@ -146,7 +162,7 @@ class StudentOf:
         return Owners(None, (_distinct(students for one in read for students in one.members),))
 
     def _undisputed(self, owners: Owners, name: str) -> Owners:
-        """Return ``owners``; if a name may be another student's Canvas number, all students with these numbers."""
+        """Return ``owners``. If the name contains numbers of several students in Canvas, all of these may be meant."""
         if owners.found is None or owners.found.identity.lms != "canvas" or not owners.members:
             return owners
         others = map(self._of, (Identity("canvas", number) for number in numbers_in(name)))
@@ -155,18 +171,17 @@ class StudentOf:
         return replace(owners, members=(meant,)) if len(meant) > 1 else owners
 
     def _who(self, identity: Identity) -> tuple[tuple[tuple[Student, ...], ...], bool]:
-        """Return the students who may be meant, and whether that is certain. Without a list, use the LMS's name."""
+        """Return the students who may be meant, for each member of a group, and whether a number makes it certain."""
         known = self._by_number.get((identity.lms, identity.number or identity.login))
         if known is not None:
             hits = [hit for names in known.members if (hit := self._first(names))]
             hits = [hit for hit in hits if hit[1] or not self._is_another(hit[0], identity)]
             if hits and len(hits) == len(known.members):
                 return tuple((student,) for student, _ in hits), all(is_sure for _, is_sure in hits)
-        # students.csv may have a different Moodle number; the number in the name belongs to one student in one
-        # assignment.
+        # Moodle's number in a file name belongs to one submission, so it is not a student's number in students.csv.
         asked = replace(identity, number="") if identity.lms == "moodle" else identity
         found = self._roster.find(asked)
-        number = asked.number.casefold()  # case does not matter in GitHub's user names
+        number = asked.number.casefold()  # upper and lower case are the same in user names on GitHub
         is_sure = bool(found and number) and found[0].lms.get(identity.lms, "").casefold() == number
         found = tuple(one for one in found if is_sure or not self._is_another(one, identity))
         if found and (identity.login or number):
@@ -181,32 +196,27 @@ class StudentOf:
 
     def _is_another(self, student: Student, identity: Identity) -> bool:
         """Return True if the student has a different number in that system, and so is not the person with this name."""
-        lms = identity.lms
-        by_number = lms in (*_BY_NUMBER, "gradescope")
-        theirs = (by_number and identity.number) or (lms in _BY_LOGIN and identity.login) or ""
-        known = {
-            student.lms.get(lms, "") if lms != "gradescope" else "",
-            *self._listed.get((lms, student.id), ()),
-        }
-        # The column of a system that uses numbers may contain a user name.
-        known = {one.casefold() for one in known if one and (one.isdigit() or lms not in _BY_NUMBER)}
+        theirs = identity.number if identity.lms in _BY_NUMBER else identity.login
+        known = self._numbers.get((identity.lms, student.id), set()) if identity.lms != "moodle" else set()
         return bool(theirs and known) and theirs.casefold() not in known
 
     @functools.cached_property
-    def _listed(self) -> dict[tuple[str, str], set[str]]:
-        """Return the numbers by which lists identify students with certainty, by system and student id."""
+    def _numbers(self) -> dict[tuple[str, str], set[str]]:
+        """Return, by system and student, the numbers or user names that certainly are that student's."""
         numbers: dict[tuple[str, str], set[str]] = defaultdict(set)
-        entries = (
-            (entry, names) for entry in self._entries if entry.lms in _LISTED for names in entry.members
-        )
-        hits = ((entry, self._first(names)) for entry, names in entries if entry.number)
-        for entry, hit in hits:
-            if hit and hit[1]:
-                numbers[entry.lms, hit[0].id].add(entry.number)
+        for student in self._roster.students.values():
+            for lms, number in student.lms.items():
+                # Some instructors write user names into the column of a system that uses numbers.
+                if lms not in _BY_NUMBER or (number.isdigit() and lms != "gradescope"):
+                    numbers[lms, student.id].add(number.casefold())
+        for entry in (one for one in self._entries if one.number and one.lms in _LISTED):
+            for hit in map(self._first, entry.members):
+                if hit and hit[1]:
+                    numbers[entry.lms, hit[0].id].add(entry.number.casefold())
         return numbers
 
     def _first(self, names: Iterable[Identity]) -> tuple[Student, bool] | None:
-        """Return the student of the first identity that only one student has, and whether it is more than a name."""
+        """Return the student whom the first unambiguous identity means, and whether it is more than a name."""
         hits = ((self._roster.find(name), bool(name.login)) for name in names)
         return next(((found[0], is_sure) for found, is_sure in hits if len(found) == 1), None)
 
@@ -216,24 +226,23 @@ class StudentOf:
             ids = ", ".join(one.id for one in owners.members[0])
             return f"its name fits several systems, which mean different students or times by it ({ids}): {_WRITE_IT}"
         if owners.found is None:
-            return _NO_ID if self._roster.students else f"{_NO_ID}, which the class does not have"
+            return _NO_ID
         identity = owners.found.identity
-        if not owners.members:
-            return self._unknown(identity)
-        for students in owners.members:
-            if len(students) > 1:
-                return _of_several(identity, students)
-            if reason := reason_against_name(students[0].id):
-                return f"{students[0].id} cannot be a student's id: {reason}. List it in students.csv"
-        return ""
-
-    def _unknown(self, identity: Identity) -> str:
         number = identity.number or identity.login
         known = self._by_number.get((identity.lms, number))
+        what_to_do = _WRITE_IT
+        if identity.lms in _LIST_OF and known is None:
+            which = f"{_LIST_OF[identity.lms]}, which says who number {number} is"
+            what_to_do = f"collect it together with {which}, or {_WRITE_IT}"
+        for students in owners.members:
+            if len(students) > 1:
+                return f"{identity} may be {', '.join(one.id for one in students)}: {what_to_do}"
+            if reason := reason_against_name(students[0].id):
+                return f"{students[0].id} cannot be a student's id: {reason}. List it in students.csv"
+        if owners.members:
+            return ""
         called = " and ".join(str(names[-1]) for names in known.members if names) if known else str(identity)
-        is_listed = identity.lms in _LIST_OF and known is None
-        what_to_do = _with_list(identity) if is_listed else f"{_WRITE_IT}, or add a line to students.csv"
-        return f"no student in the class is called {called or number}: {what_to_do}"
+        return f"no student in the class is called {called or number}: {what_to_do}, or add a line to students.csv"
 
     def time(self, identity: Identity) -> datetime | None:
         """Return the time of handing in that the lists have for this number; None if they have none, or several."""
@@ -241,14 +250,8 @@ class StudentOf:
         times = next((known[number] for known in self._timed if number in known), set())
         return next(iter(times)) if len(times) == 1 else None
 
-    @property
-    def of_several_times(self) -> list[str]:
-        """Return the numbers for which the lists have several times, so that none of these counts."""
-        return sorted({number for (_, number), times in self._timed[0].items() if len(times) > 1})
-
 
 def _distinct(several: Iterable[Iterable[Student]]) -> tuple[Student, ...]:
-    """Return all these students, each once."""
     return tuple({one.id: one for students in several for one in students}.values())
 
 
@@ -258,13 +261,3 @@ def _times(entries: Iterable[Entry]) -> dict[tuple[str, str], set[datetime]]:
         if one.when is not None and one.number:
             times[one.lms, one.number].add(one.when)
     return dict(times)
-
-
-def _of_several(identity: Identity, students: Iterable[Student]) -> str:
-    names = ", ".join(student.id for student in students)
-    return f"{identity} may be {names}: {_with_list(identity) if identity.lms in _LIST_OF else _WRITE_IT}"
-
-
-def _with_list(identity: Identity) -> str:
-    who = f"which says who number {identity.number} is"
-    return f"collect it together with {_LIST_OF[identity.lms]}, {who}, or {_WRITE_IT}"

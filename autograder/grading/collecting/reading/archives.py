@@ -15,11 +15,12 @@ import os
 from collections import Counter
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Self
+from typing import IO, TYPE_CHECKING, NamedTuple, Self
 
 import msgspec
 
 from autograder.boxes.desk import in_memory
+from autograder.grading.collecting.inbox import Arrival
 from autograder.grading.collecting.reading.desk import unpack
 from autograder.grading.collecting.reading.unpack import LONGEST_LINE, LONGEST_NAME, is_left_by_a_program
 from autograder.grading.rebuilding.submission import MAX_BYTES, UnreadableSubmission, read_bytes
@@ -30,42 +31,27 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 MOST_FILES = 20_000
-"""The maximum number of files in one student's folder of a download. It is counted per folder, so that a folder with a
-whole repository does not affect other students.
+"""The maximum number of files in one student's folder. Files are counted by the first three folders of their paths, so
+that a huge repository of one student does not affect other students.
 """
 _DEEPEST = 3
 """The maximum nesting of archives: an archive that a student handed in, one inside it, and so on."""
 _DEEPEST_FOLDER = 100
 """The maximum nesting of folders. Python can follow no more than some hundreds."""
-_LEADS_OUT = "its name leads out of the archive"
-_TOO_LONG = f"its name has more than {LONGEST_NAME} characters"
 
 
 class NotTaken(ValueError):
     """A file or archive cannot be taken. The message gives the reason."""
 
 
-@dataclass(frozen=True)
-class File:
-    """A file in an archive or folder.
+class File(NamedTuple):
+    """A file in an archive or folder: what is known about it, and a function that reads it.
 
-    Attributes:
-        source: The archive, or the folder that contains the folder or file that the instructor named.
-        parts: The path in ``source``, without anything that leads upwards. For a file inside a student's archive, the
-            path of that archive.
-        read: Reads the file, up to the size limit of a notebook. Raises :class:`NotTaken`.
-        inner: The path within the archive that a student has handed in; the student chose this path.
+    The function reads up to the size limit of a notebook, and raises :class:`NotTaken`.
     """
 
-    source: Path
-    parts: tuple[str, ...]
+    arrival: Arrival
     read: Callable[[], bytes]
-    inner: tuple[str, ...] = ()
-
-    @property
-    def name(self) -> str:
-        """The name of the file without its path."""
-        return (self.source.name, *self.parts, *self.inner)[-1]
 
 
 @dataclass
@@ -116,17 +102,17 @@ class Archives:
             is_opened: True to open an archive here; False to treat it as a file, as inside a download.
         """
         counts: Counter[tuple[str, ...]] = Counter()
-        levels = 2 + _has_one_folder_around_all(source)
         for file in self._of_source(source.absolute(), is_opened=is_opened):
-            folder = file.parts[:levels]
+            folder = file.arrival.parts[:-1][:3] or file.arrival.parts
             counts[folder] += 1
             if counts[folder] <= MOST_FILES:
                 yield file
             elif counts[folder] == MOST_FILES + 1:
                 reason = f"it has more than {MOST_FILES} files; the others in it were not looked at"
-                yield File(file.source, folder, _refusing(reason))
+                yield File(replace(file.arrival, parts=folder), _refusing(reason))
 
     def _of_source(self, source: Path, *, is_opened: bool) -> Iterator[File]:
+        name = name_as_text(source.name)
         if source.is_dir():
             yield from _of_folder(source)
         elif source.suffix.lower() == ".zip" and is_opened:
@@ -135,29 +121,25 @@ class Archives:
             try:
                 archive = self._stack.enter_context(opened(source.resolve()))
             except OSError as error:
-                yield File(source, (), _refusing(f"it cannot be read: {error.strerror}"))
+                yield File(Arrival(name, ()), _refusing(f"it cannot be read: {error.strerror}"))
                 return
             for names, read in _unpacked(archive.fileno(), room, 1, out):
-                parts, read = _path(names[-1], read) if names else ((), read)
-                yield File(source, parts, read)
+                yield File(Arrival(name, _path(names[-1]) if names else ()), read)
         else:
-            yield File(source.parent, (name_as_text(source.name),), functools.partial(_read_file, source))
+            yield File(Arrival("", (name,)), functools.partial(_read_file, source))
 
-    def within(self, file: File, data: bytes, room: Room) -> Iterator[File]:
+    def within(self, arrival: Arrival, data: bytes, room: Room) -> Iterator[File]:
         """Yield the files in a student's archive, and in archives inside it. Read each one before taking the next.
 
         Args:
-            file: The archive, as a file of the download.
+            arrival: The archive.
             data: The bytes of the archive.
             room: The remaining limits for this student's archives. They are reduced here.
         """
         with in_memory(data) as archive, unnamed_file(self._disk) as out:
             for names, read in _unpacked(archive, room, _DEEPEST, out):
-                inner: tuple[str, ...] = ()
-                for name in names:
-                    parts, read = _path(name, read)
-                    inner += parts
-                yield File(file.source, file.parts, read, inner)
+                inner = tuple(part for name in names for part in _path(name))
+                yield File(replace(arrival, inner=inner, content=""), read)
 
 
 def _unpacked(
@@ -179,7 +161,7 @@ def _unpacked(
 
 
 def _lines(out: IO[bytes]) -> Iterator[tuple[_Unpacked, int]]:
-    """Yield the lines that a box has written, each with the offset of the bytes that follow it."""
+    """Yield the descriptions of files in the answer of a desk, each with the position of the file's bytes."""
     place, end = 0, os.fstat(out.fileno()).st_size
     while place < end:
         line, mark, _ = os.pread(out.fileno(), LONGEST_LINE, place).partition(b"\n")
@@ -193,44 +175,28 @@ def _lines(out: IO[bytes]) -> Iterator[tuple[_Unpacked, int]]:
         place += size
 
 
-def _path(name: str, read: Callable[[], bytes]) -> tuple[tuple[str, ...], Callable[[], bytes]]:
-    """Return the path that a name in an archive means, and what reads the file; reading a forbidden name fails."""
-    parts = tuple(part for part in name.replace("\\", "/").split("/") if part not in ("", "."))
-    is_out = not parts or ".." in parts or name.startswith(("/", "\\")) or parts[0].endswith(":")
-    if not is_out and len(name) <= LONGEST_NAME:
-        return parts, read
-    # The first folders of the path stay unchanged, because the LMS made them.
-    above = itertools.takewhile(lambda part: part != "..", parts[:-1][:2])
-    shown = (*(part[:LONGEST_NAME] for part in above), name[:LONGEST_NAME])
-    return shown, _refusing(_TOO_LONG if len(name) > LONGEST_NAME else _LEADS_OUT)
-
-
-def _has_one_folder_around_all(source: Path) -> bool:
-    """Return True if a folder contains only one folder: archives are often unpacked into a folder of their own name."""
-    try:
-        inside = [path for path in source.iterdir() if not is_left_by_a_program(path.name)]
-    except OSError:  # for example because it is a file
-        return False
-    return len(inside) == 1 and inside[0].is_dir()
+def _path(name: str) -> tuple[str, ...]:
+    """Return the path of a file in an archive, without ``..``. The path is only a text: nothing is written there."""
+    parts = name[:LONGEST_NAME].replace("\\", "/").split("/")
+    return tuple(part for part in parts if part not in ("", ".", "..")) or (name[:LONGEST_NAME],)
 
 
 def _of_folder(source: Path) -> Iterator[File]:
-    above = source.parent
     for folder, folders, names in os.walk(source):
-        here = tuple(map(name_as_text, Path(folder).relative_to(above).parts))
+        here = tuple(map(name_as_text, Path(folder).relative_to(source.parent).parts))
         folders[:] = sorted(name for name in folders if not is_left_by_a_program(name))
         for name in sorted(names):
             path = Path(folder) / name
             if is_left_by_a_program(name):
                 continue
-            yield File(above, (*here, name_as_text(name)), functools.partial(_read_file, path))
+            yield File(Arrival("", (*here, name_as_text(name))), functools.partial(_read_file, path))
         for name in folders:
             if (Path(folder) / name).is_symlink():
-                yield File(above, (*here, name_as_text(name)), _refusing("it is a link"))
+                yield File(Arrival("", (*here, name_as_text(name))), _refusing("it is a link"))
         if folders and len(here) > _DEEPEST_FOLDER:
             folders.clear()
             reason = f"more than {_DEEPEST_FOLDER} folders are in each other; the others were not looked at"
-            yield File(above, here, _refusing(reason))
+            yield File(Arrival("", here), _refusing(reason))
 
 
 def _refusing(reason: str) -> Callable[[], bytes]:

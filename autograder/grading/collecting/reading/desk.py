@@ -39,7 +39,7 @@ def unpack(source: int, answer: int, limits: tuple[int, int, int, int], most: in
     return _ask(source, answer, most, limits=limits)
 
 
-@functools.lru_cache(maxsize=16)  # a list is asked for again for every delivery
+@functools.lru_cache(maxsize=16)  # one command needs each list several times
 def read_list(name: str, data: bytes) -> list[Entry] | None:
     """Return the entries of a list; None if its form is unknown, or if a limit was met.
 

@@ -19,19 +19,17 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     _Who = Callable[[Mapping[str, str]], tuple[Identity, tuple[Identity, ...]]]
-    """A function that returns, from the groups of a pattern, the student, and the student by each way to read the name.
+    """A function from the groups of a pattern to the student, and to the student in each way to read the name.
     """
     _Reader = Callable[[Sequence[str], int], "Found | None"]
     """A function that returns the facts in the name at one index of a path; None if it has another form."""
 
 _MOST_MARKS = 10
-"""The maximum number of marks at which a name is divided; real names have fewer."""
+"""The maximum number of hyphens or underscores at which a name is divided; real names have fewer."""
 # Browsers, Canvas and Drive add one of these marks to a name that already exists. File managers add one to the name of
 # a copy.
 _COPY_OF = "Copy of "
-_MARK = r" ?\((\d{1,6})\)|-(\d{1,6})| - [Cc]opy"
-_MARKED = re2.compile(rf"^(?P<base>.+?)(?P<marks>(?:{_MARK})+)$")
-_MARKS = re2.compile(_MARK)
+_MARKED = re2.compile(rf"(?s)^(?:{_COPY_OF})*(?P<base>.+?)(?: ?\(\d{{1,6}}\)|-\d{{1,6}}| - [Cc]opy)*$")
 
 
 @dataclass(frozen=True)
@@ -69,53 +67,32 @@ def read_at(parts: Sequence[str], place: int, form: str, is_notebook: Callable[[
     """
     is_folder = place < len(parts) - 1
     found = _READERS[form](parts, place)
-    if found is None or form not in ("canvas", "google"):
+    if found is None or form != "canvas":
         return found
-    if form == "google" and is_folder:
-        return None
     if found.file != parts[-1] and is_notebook(parts[-1]):
         return None  # lab_1_2_3.ipynb and "lab_1_2 - Copy.ipynb" are names that a student chose
-    if form == "canvas" and is_folder:
+    if is_folder:
         return found if found.order >= 100 else None  # lab_1_2_submissions is a name that an instructor chose
     # A name from Blackboard, such as lab_1_2_ada_attempt_..., may have the form of Canvas's names. But Canvas writes
     # names in lower case, and numbers the users and files of its whole site: no student is among the first nine users
     # and has also sent one of the first nine files.
     login, number = found.identity.login, found.identity.number
-    if form == "canvas" and (login != login.lower() or (len(number) == 1 and found.order < 10)):
+    if login != login.lower() or (len(number) == 1 and found.order < 10):
         return None if _READERS["blackboard"](parts, place) else found
     return found
 
 
-def base_and_number(stem: str) -> tuple[str, int]:
-    """Return a name without what was added because the name already existed, and the number that was added."""
-    stem, number = name_as_text(stem), 0
-    while stem.startswith(_COPY_OF) and stem != _COPY_OF:
-        stem, number = stem.removeprefix(_COPY_OF), 1
-    if (found := _MARKED.match(stem)) is not None:
-        stem = found["base"]
-        number = max(number, *(int(one[1] or one[2] or 1) for one in _MARKS.finditer(found["marks"])))
-    return stem, number
+def base_of(stem: str) -> str:
+    """Return a name without what programs add to the name of a copy, such as `` (1)`` or ``Copy of``."""
+    found = _MARKED.match(name_as_text(stem))
+    return found["base"] if found else name_as_text(stem)
 
 
 def plain(name: str, file: str) -> Found:
-    """Return the facts in a name that is a student's id or name, or that ends with a user name on GitHub.
-
-    Repositories that were downloaded one by one have names like ``lab-1-2-adalove-main``. Classroom Assistant makes
-    folders named after users.
-    """
-    bare = without_branch(name)
-    # The folder that gh makes around all repositories has a name like lab-1-2-submissions. But a user may be named
-    # 2-submissions.
-    ends = [] if bare.endswith("submissions") else [bare, *_ends(bare, "-")]
-    # A listed user named adalove-main takes precedence over Ada's repository.
-    logins = dict.fromkeys((*(f"{end}{name.removeprefix(bare)}" for end in ends), *ends))
-    repository = (Identity("github", number=login) for login in logins)
-    return Found(Identity(), file, readings=(Identity(login=name, name=name), *repository))
-
-
-def without_branch(repository: str) -> str:
-    """Return the name of a repository without the branch that GitHub adds in a download."""
-    return next((repository.removesuffix(end) for end in _BRANCHES if repository.endswith(end)), repository)
+    """Return the facts in a name that is a student's id or name, or a user name on GitHub."""
+    return Found(
+        Identity(), file, readings=(Identity(login=name, name=name), Identity("github", number=name))
+    )
 
 
 def read_time(text: str) -> datetime | None:
@@ -172,7 +149,7 @@ _IN_NUMBERS = ("%Y-%m-%d-%H-%M-%S", "%Y-%m-%d %H:%M:%S %z")
 
 
 def _ends(text: str, mark: str) -> list[str]:
-    """Return the ends of a text, one after each of its last few marks, the longest end first."""
+    """Return the text behind each of its last few marks, such as hyphens; the longest text first."""
     pieces = text.rsplit(mark, _MOST_MARKS)[1:]
     return [end for start in range(len(pieces)) if (end := mark.join(pieces[start:]).strip())]
 
@@ -206,25 +183,10 @@ def _at_its_end(lms: str) -> _Who:
     return who
 
 
-def _brightspace(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
-    number, name = found["number"], found["name"]
-    whole = Identity("brightspace", number, name=name)
-    own_number, dash, behind = name.partition(" - ")
-    if not dash or not _STUDENT_NUMBER.fullmatch(own_number):
-        return whole, (whole,)
-    own = Identity("brightspace", login=own_number)
-    return whole, (whole, own, Identity("brightspace", number, name=behind))
-
-
 def numbers_in(name: str) -> list[str]:
     """Return all numbers in a Canvas name that may be the student's; names of users and files may have numbers, too."""
     pieces = name.split("_")[1:-1]
     return [one for one, file in itertools.pairwise(pieces) if f"{one}{file}".isdecimal() and len(file) >= 3]
-
-
-def _google(found: Mapping[str, str]) -> tuple[Identity, tuple[Identity, ...]]:
-    bare = found["name"].removeprefix(_COPY_OF)
-    return Identity("google", login=bare if "@" in bare else "", name=bare), ()
 
 
 def _in_one_part(pattern: str, who: _Who, *, says_file: bool = False) -> _Reader:
@@ -234,7 +196,7 @@ def _in_one_part(pattern: str, who: _Who, *, says_file: bool = False) -> _Reader
         pattern: The pattern of the name. Its groups ``file``, ``when``, ``order`` and ``late`` are the fields of
             :class:`Found`.
         who: Returns, from the groups, the student, and the student by each way to read the name.
-        says_file: True if a name without the group ``file`` is the name of a folder.
+        says_file: True if only the name of a folder has no group ``file``.
     """
     expression = re2.compile(f"(?s){pattern}")  # (?s) because a name may contain line breaks
 
@@ -253,34 +215,6 @@ def _in_one_part(pattern: str, who: _Who, *, says_file: bool = False) -> _Reader
     return read
 
 
-def _first_of(*readers: _Reader) -> _Reader:
-    """Return a reader for names in one of several forms."""
-
-    def read(parts: Sequence[str], place: int) -> Found | None:
-        return next((found for one in readers if (found := one(parts, place))), None)
-
-    return read
-
-
-def _github(parts: Sequence[str], place: int) -> Found | None:
-    """Read ``lab-1-2-submissions/lab-1-2-adalove/lab_1_2.ipynb``, as ``gh classroom clone`` makes it."""
-    above, part = parts[place - 1] if place else "", parts[place]
-    slug, dash, _ = above.rpartition("-")
-    if (
-        place == len(parts) - 1
-        or not dash
-        or above != f"{slug}-submissions"
-        or not part.startswith(f"{slug}-")
-    ):
-        return None
-    login = part.removeprefix(f"{slug}-")
-    # If the user already had a repository with that name, GitHub Classroom adds a number.
-    logins = dict.fromkeys((login, base_and_number(login)[0]))
-    readings = tuple(Identity("github", login=one) for one in logins)
-    return Found(readings[0], parts[-1], readings=readings)
-
-
-_STUDENT_NUMBER = re2.compile(r"[A-Za-z]{0,4}\d[\dA-Za-z]{2,}")
 _READERS = {
     # Ada Lovelace_12345_assignsubmission_file_lab_1_2.ipynb. Since Moodle 4.1 (before that, if folders were chosen)
     # this is the name of a folder.
@@ -294,34 +228,22 @@ _READERS = {
         _at_its_end("blackboard"),
     ),
     # 12345-67890 - Ada Lovelace - Oct 3, 2025 205 PM is a folder; with " - lab_1_2.ipynb" after it, it is a file. The
-    # date is in the language of the course: 3 October, 2025 1405. Some universities put the student's own number
-    # before the name: 12345-67890 - N0123456 - Ada Lovelace- 3 October, 2025 205 PM - lab_1_2.ipynb
+    # date is in the language of the course: 3 October, 2025 1405.
     "brightspace": _in_one_part(
         r"^(?P<number>\d+)-\d+ ?- ?(?P<name>.+?) ?- ?"
         r"(?P<when>(?:[^\d\s,.-]+\.? \d\d?|\d\d?\.? (?:de )?[^\d\s,.-]+\.?),? (?:de )?\d{4} "
         r"\d\d?[:.h]?\d\d(?: ?[AaPp]\.?[Mm]\.?)?)"
         r"(?: ?- ?(?P<file>.+))?$",
-        _brightspace,
+        _plainly("brightspace"),
         says_file=True,
     ),
     # lovelaceada_LATE_123_456_lab_1_2-1.ipynb: first the number of the student, then that of the file. Canvas keeps
     # only the word characters of a name (github.com/instructure/canvas-lms, content_zipper.rb).
-    "canvas": _first_of(
-        # A user named 🙂 has an empty name there: 123_456_lab_1_2.ipynb is such a name, and 2025_10_03_lab_1_2.zip is
-        # a date.
-        _in_one_part(
-            r"^(?P<login>[\pN_]*?)_(?:(?P<late>LATE)_)?(?P<number>\d{3,})_(?P<order>\d{3,})_(?P<file>.+)$",
-            _plainly("canvas"),
-        ),
-        _in_one_part(
-            r"^(?P<login>[\pL\pM\pN_-]*?[\pL\pM-][\pL\pM\pN_-]*?)_(?i:(?P<late>LATE)_)?"
-            r"(?P<number>\d+)_(?P<order>\d+)_(?P<file>.+)$",
-            _plainly("canvas"),
-        ),
+    # A user named 🙂 has an empty name there.
+    "canvas": _in_one_part(
+        r"^(?P<login>[\pL\pM\pN_-]*?)_(?i:(?P<late>LATE)_)?(?P<number>\d+)_(?P<order>\d+)_(?P<file>.+)$",
+        _plainly("canvas"),
     ),
-    # Ada Lovelace - lab_1_2.ipynb
-    "google": _in_one_part(r"^(?P<name>[^/]*?\S) - (?P<file>.+)$", _google),
-    "github": _github,
     # Lab 1.2/Lovelace, Ada(ada)/Submission attachment(s)/lab_1_2.ipynb
     "sakai": _in_one_part(
         r"^(?P<name>[^,()]+, [^()]*)\((?P<login>[^()]+)\)$", _plainly("sakai"), says_file=True
@@ -334,10 +256,7 @@ _READERS = {
     "gradescope": _in_one_part(r"^submission_(?P<number>\d+)$", _plainly("gradescope"), says_file=True),
 }
 FORMS = tuple(_READERS)
-TOLD_APART = tuple(form for form in FORMS if form not in ("google", "ilias"))
-"""The forms that can be recognized from the names alone.
-
-A name from Google may have been chosen by a student, and a name from ILIAS resembles many others. So these two are
-used only if the instructor names the system.
+TOLD_APART = tuple(form for form in FORMS if form != "ilias")
+"""The forms that can be recognized from the names alone. A name from ILIAS resembles many others, so that form is used
+only if the instructor names the system.
 """
-_BRANCHES = ("-main", "-master")

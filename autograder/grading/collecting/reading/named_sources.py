@@ -3,8 +3,8 @@
 Only the names on the command line decide, never the contents:
 
 - **One student's own**: a file or folder whose name, or whose system, identifies one student; and every file that is
-  neither a zip nor a list. Names inside it identify no student. Several folders in one place, as with
-  ``repositories/*``, and zips and folders next to a name that a student may have chosen, are also one student's own.
+  neither a zip nor a list. Names inside it identify no student. If a student may have chosen one of the names of a
+  command, or if the command names several folders, as with ``repositories/*``, everything is one student's own.
 - **A download**: every other zip and folder. The names at its top identify students. If a single folder contains all
   others, the names in that folder do so, too. Students have chosen all names further down.
 """
@@ -12,7 +12,6 @@ Only the names on the command line decide, never the contents:
 from __future__ import annotations
 
 import functools
-from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from autograder.grading.collecting.deciding.student_of import StudentOf
+    from autograder.grading.collecting.inbox import Arrival
     from autograder.grading.collecting.reading.archives import Archives, File
 
 _EXPORT = re2.compile(r"^assignment_\d+_export(?: ?\(\d+\)|-\d+)?$")
@@ -56,35 +56,37 @@ class Source:
         if self.is_own:
             return 1
         above = 1 if self.path.is_dir() else 0  # the name of the folder itself, which identifies no student
-        return above + (2 if len({file.parts[above : above + 1] for file in self.files} - {()}) == 1 else 1)
+        return above + (
+            2 if len({file.arrival.parts[above : above + 1] for file in self.files} - {()}) == 1 else 1
+        )
 
     @property
     def download(self) -> Path:
         """Return the file or folder in which everything came; for files named one by one, their folder."""
         return self.path.absolute().parent if self.is_own else self.path
 
-    def is_list(self, file: File, form: str) -> bool:
+    def is_list(self, arrival: Arrival, form: str) -> bool:
         """Return True if a file is the list in Gradescope's export, and not a student's file with that name."""
-        *above, name = file.parts or ("",)
+        *above, name = arrival.parts or ("",)
         is_said = (
-            name == GRADESCOPE and len(file.parts) <= self.levels and not any(map(_SUBMISSION.match, above))
+            name == GRADESCOPE
+            and len(arrival.parts) <= self.levels
+            and not any(map(_SUBMISSION.match, above))
         )
         return is_said and (form == "gradescope" or bool(above and _EXPORT.match(above[-1])))
 
 
 def own_of(paths: Sequence[Path], student_of: StudentOf) -> set[Path]:
     """Return those paths of one command that are each one student's own."""
-    beside = {path: path.absolute().parent for path in paths}
-    by_system, loose = set(filter(student_of.has_form, paths)), set(filter(_is_loose, paths))
-    # Next to a student's own file, a student may have chosen such a name as well.
+    formed = set(filter(student_of.has_form, paths))
     downloads = {path for path in paths if _DOWNLOAD.match(name_as_text(path.name))}
-    downloads -= {
-        path for path in downloads if beside[path] in {beside[one] for one in (by_system | loose) - downloads}
-    }
-    called = (loose | set(filter(student_of.is_called, paths))) - downloads - by_system
-    folders = Counter(beside[path] for path in paths if path.is_dir() and path not in by_system)
-    chosen = {beside[path] for path in called} | {parent for parent, number in folders.items() if number > 1}
-    return (by_system - downloads) | {path for path in paths if beside[path] in chosen}
+    others = set(paths) - formed
+    if sum(path.is_dir() for path in others) > 1 or any(
+        _is_loose(path) or student_of.is_called(path) for path in others - downloads
+    ):
+        return set(paths)
+    # Next to a student's own file, a student may have chosen the name of a download as well.
+    return formed if formed - downloads else set()
 
 
 def source_of(path: Path, archives: Archives, *, is_own: bool) -> Source:

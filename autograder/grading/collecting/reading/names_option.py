@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.grading.collecting.reading.lms_file_names import Found, base_and_number, read_time
+from autograder.grading.collecting.reading.lms_file_names import Found, base_of, read_time
 from autograder.grading.errors import GradingError
 from autograder.grading.table.roster import Identity
 
@@ -37,8 +37,8 @@ def check_names(pattern: str, columns: Collection[str]) -> None:
     if set(words) - {*WORDS, *columns} or len(set(words)) < len(words) or not says_who:
         known = ", ".join(f"{{{word}}}" for word in (*WORDS, *columns))
         raise GradingError(
-            f"--names {pattern!r} cannot be used. It takes each of {known} once, and one that says who it is: for "
-            "example '{id}-{last}_{assignment}'."
+            f"--names {pattern!r} cannot be used. Use each of {known} at most once, and at least one that "
+            "identifies the student. For example: '{id}-{last}_{assignment}'."
         )
 
 
@@ -46,34 +46,27 @@ def read_names(pattern: str) -> Callable[[Sequence[str]], Found | None]:
     """Return a function that reads paths according to a pattern.
 
     A pattern without a slash describes a single name: a file without its suffix, or a folder around it. A pattern
-    with slashes describes the end of a path. ``{any}`` stands for any text. A word that is not in :data:`WORDS`
-    stands for a column of ``students.csv``.
+    with slashes describes names that follow each other in a path. ``{any}`` stands for any text. A word that is not
+    in :data:`WORDS` stands for a column of ``students.csv``.
     """
     words = _WORD.findall(pattern)
     literals = [unicodedata.normalize("NFC", one).casefold() for one in _WORD.split(pattern)[::2]]
     levels = pattern.count("/") + 1
 
     def read(parts: Sequence[str]) -> Found | None:
-        for place in range(len(parts)):
-            names = list(parts[place : place + levels])
-            is_file = place + levels >= len(parts)
-            bare = names[-1].rpartition(".")[0] if is_file and "." in names[-1] else names[-1]
-            for last in dict.fromkeys((bare, names[-1])):
-                text = "/".join([*names[:-1], last])
-                ways = (
-                    list(itertools.islice(_ways(text, literals, words), _MOST_WAYS))
-                    if len(names) == levels
-                    else []
+        for place in range(len(parts) - levels + 1):
+            *above, last = parts[place : place + levels]
+            bare = last.rpartition(".")[0] if place + levels == len(parts) else ""
+            texts = ("/".join([*above, name]) for name in (bare, last) if name)
+            ways = (list(itertools.islice(_ways(text, literals, words), _MOST_WAYS)) for text in texts)
+            if divided := next(filter(None, ways), None):
+                # In 2025-10-03_140506_lab, the day alone could be the time, too. The longest possible time is meant.
+                divided.sort(
+                    key=lambda way: -len(way.get("time", "")) if read_time(way.get("time", "")) else 0
                 )
-                if ways:
-                    # In 2025-10-03_140506_lab, the day alone could be the time, too. The longest possible time is
-                    # meant.
-                    ways.sort(
-                        key=lambda way: -len(way.get("time", "")) if read_time(way.get("time", "")) else 0
-                    )
-                    # ben_b_7 may belong to ben or to ben_b: either the class has only one of them, or it is unclear.
-                    found = [_found(way, parts[-1]) for way in ways]
-                    return replace(found[0], readings=tuple(dict.fromkeys(one.identity for one in found)))
+                # ben_b_7 may belong to ben or to ben_b: either the class has only one of them, or it is unclear.
+                found = [_found(way, parts[-1]) for way in divided]
+                return replace(found[0], readings=tuple(dict.fromkeys(one.identity for one in found)))
         return None
 
     return read
@@ -108,5 +101,5 @@ def _found(said: dict[str, str], file: str) -> Found:
         identity,
         word.get("file") or file,
         when=read_time(word.get("time", "")),
-        assignment=base_and_number(word.get("assignment", ""))[0],
+        assignment=base_of(word.get("assignment", "")),
     )
