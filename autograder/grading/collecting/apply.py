@@ -58,9 +58,6 @@ class Submitted:
         Raises:
             OSError: A file could not be written.
         """
-        known = {
-            file for one in self._inbox.deliveries.values() if one.form == BY_HAND for file in one.arrivals
-        }
         for submission in self._directory.submissions()[0]:
             student, assignment = submission.student, submission.assignment
             history = self._records.get(assignment, student) or History({})
@@ -68,11 +65,12 @@ class Submitted:
                 place = (student, assignment, notebook)
                 content = self.content(place)
                 arrival = Arrival("submitted", (student, assignment, f"{notebook}{SUFFIX}"), content=content)
+                delivery = Delivery((arrival,), form=BY_HAND)
                 is_ours = content in history.written(notebook) and content in self._inbox
-                if content and not is_ours and arrival not in known:
+                if content and not is_ours and delivery.id not in self._inbox.deliveries:
                     with self._inbox.receiving() as receiving:
                         receiving.keep(read_bytes(self.path(place)))
-                        receiving.delivery = Delivery((arrival,), form=BY_HAND)
+                        receiving.delivery = delivery
 
     def bring(self, lines: Iterable[Line]) -> dict[Place, tuple[State, str]]:
         """Write each notebook that counts into ``submitted``, and remove notebooks that no longer count.

@@ -18,7 +18,7 @@ from autograder.grading.collecting.line import State
 from autograder.grading.collecting.outcomes import CollectReport
 from autograder.grading.collecting.reading.archives import Archives, File, NotTaken, Room
 from autograder.grading.collecting.reading.desk import read_list, without_sandbox
-from autograder.grading.collecting.reading.named_sources import Source, note_on, own_of, source_of
+from autograder.grading.collecting.reading.named_sources import Source, note_on, own_of
 from autograder.grading.collecting.reading.names_option import check_names
 from autograder.grading.collecting.reading.unpack import is_archive
 from autograder.grading.errors import GradingError, check_known
@@ -113,8 +113,9 @@ class _Collecting:
                 own, lists = own.union(lists), []
             arrivals = [self._list(file, receiving) for path in lists for file in archives.files_of(path)]
             student_of = self._knowing()
-            sources = [source_of(path, archives, is_own=path in own) for path in paths if path not in lists]
-            for source in sources:
+            for path in (path for path in paths if path not in lists):
+                files = tuple(archives.files_of(path, is_opened=path not in own))
+                source = Source(path, files, path in own)
                 arrivals += self._source(source, student_of, receiving, archives)
                 note = note_on(source, student_of, options.form or options.names)
                 self._notes += [note] if note else []
@@ -157,7 +158,7 @@ class _Collecting:
             yield replace(arrival, is_archive=True)
             owners = student_of.owners(arrival.parts, source.levels, is_alone=source.is_own)
             whose = tuple(one.id for members in owners.members for one in members) or arrival.parts[:2]
-            for inner in archives.within(arrival, data, self._rooms[source.download, whose]):
+            for inner in archives.within(arrival, data, self._rooms[whose]):
                 yield _taken(inner, receiving)[0]
 
     # -- the result

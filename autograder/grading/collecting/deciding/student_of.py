@@ -28,7 +28,6 @@ _WRITE_IT = "write the id under student in collected.csv"
 _NO_ID = f"its name does not say whose it is: {_WRITE_IT}, or add a line to students.csv"
 _LIST_OF = {"moodle": "the grading worksheet (Grades-….csv)", "gradescope": GRADESCOPE}
 """For the systems that number submissions instead of students, the list that maps these numbers to students."""
-_NOBODY = Identity()
 _BY_NUMBER = ("canvas", "brightspace", "gradescope")
 """The systems whose file names contain a person's number. The others use a user name or, in Moodle, a number for one
 submission.

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from autograder.grading.collecting.deciding.student_of import StudentOf
     from autograder.grading.collecting.inbox import Arrival
-    from autograder.grading.collecting.reading.archives import Archives, File
+    from autograder.grading.collecting.reading.archives import File
 
 _EXPORT = re2.compile(r"^assignment_\d+_export(?: ?\(\d+\)|-\d+)?$")
 _SUBMISSION = re2.compile(r"^submission_\d+$")
@@ -60,11 +60,6 @@ class Source:
             2 if len({file.arrival.parts[above : above + 1] for file in self.files} - {()}) == 1 else 1
         )
 
-    @property
-    def download(self) -> Path:
-        """Return the file or folder in which everything came; for files named one by one, their folder."""
-        return self.path.absolute().parent if self.is_own else self.path
-
     def is_list(self, arrival: Arrival, form: str) -> bool:
         """Return True if a file is the list in Gradescope's export, and not a student's file with that name."""
         *above, name = arrival.parts or ("",)
@@ -87,11 +82,6 @@ def own_of(paths: Sequence[Path], student_of: StudentOf) -> set[Path]:
         return set(paths)
     # Next to a student's own file, a student may have chosen the name of a download as well.
     return formed if formed - downloads else set()
-
-
-def source_of(path: Path, archives: Archives, *, is_own: bool) -> Source:
-    """Return a file or folder as a source, with all its files."""
-    return Source(path, tuple(archives.files_of(path, is_opened=not is_own)), is_own)
 
 
 def note_on(source: Source, student_of: StudentOf, form: str) -> str:
