@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.grading.classes.class_directory import SUFFIX, in_zone
+from autograder.grading.classes.class_directory import in_zone
 from autograder.grading.collecting.deciding.handed_out import has_work
 from autograder.grading.collecting.line import Line, Place, State
 from autograder.grading.rebuilding.desk import why_unreadable
@@ -155,7 +155,11 @@ def _best(place: Place, files: Sequence[Line], looks: Looks) -> tuple[Line | Non
     different files are left, the one that counted before still counts; None if none did.
     """
     is_several = len({one.content for one in files}) > 1
-    work = {one.key: not is_several or _has_work(one, looks) for one in files}
+    work = {
+        one.key: not is_several
+        or has_work(looks.directory, one.assignment, one.notebook, looks.inbox.read(one.content))
+        for one in files
+    }
     best = _top(
         [one for one in files if one.when] or files, lambda one: one.when.timestamp() if one.when else 0
     )
@@ -196,11 +200,6 @@ def _top(files: Sequence[Line], rank: Callable[[Line], float]) -> list[Line]:
     """Return the files with the highest rank."""
     highest = max(map(rank, files))
     return [one for one in files if rank(one) == highest]
-
-
-def _has_work(one: Line, looks: Looks) -> bool:
-    released = looks.directory.path / "release" / one.assignment / f"{one.notebook}{SUFFIX}"
-    return has_work(released, looks.inbox.read(one.content))
 
 
 def _why_it_counts(best: Line, other: Line, work: dict[str, bool]) -> str:

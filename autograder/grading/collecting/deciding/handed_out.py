@@ -4,22 +4,27 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from autograder.grading.classes.class_directory import SUFFIX
+from autograder.grading.errors import GradingError
 from autograder.grading.rebuilding.desk import read_notebook
 from autograder.grading.rebuilding.parsing import parse
+from autograder.grading.rebuilding.rebuild import grade_id, is_answer
 from autograder.grading.rebuilding.submission import UnreadableSubmission, read_bytes
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from autograder.grading.classes.class_directory import ClassDirectory
 
 
-def has_work(released: Path, data: bytes) -> bool:
-    """Return True if a notebook has a cell that was not handed out.
+def has_work(directory: ClassDirectory, assignment: str, notebook: str, data: bytes) -> bool:
+    """Return True if a notebook has an answer, or an added cell, that was not handed out.
 
-    If the notebook in ``release`` cannot be read, every notebook counts as containing work. An unreadable notebook
-    contains none.
+    What was handed out is the notebook in ``release``, which may be older than the source, and the source. If one of
+    these cannot be read, every notebook counts as containing work. An unreadable notebook contains none.
 
     Args:
-        released: The path of the notebook in ``release``.
+        directory: The class.
+        assignment: The name of the assignment.
+        notebook: The name of the notebook.
         data: The bytes that a student handed in.
     """
     try:
@@ -27,7 +32,10 @@ def has_work(released: Path, data: bytes) -> bool:
     except UnreadableSubmission:
         return False
     try:
-        given = {"", *(cell.source.strip() for cell in parse(read_bytes(released))[0])}
-    except UnreadableSubmission:
+        source = directory.master(assignment, notebook).cells
+        released, _ = parse(read_bytes(directory.path / "release" / assignment / f"{notebook}{SUFFIX}"))
+    except (GradingError, UnreadableSubmission):
         return True
-    return any(cell.source.strip() not in given for cell in cells)
+    given = {"", *(cell.source.strip() for cell in (*source, *released))}
+    unchanged = {grade_id(cell) for cell in source if not is_answer(cell)} - {""}
+    return any(cell.source.strip() not in given for cell in cells if cell.grade_id not in unchanged)

@@ -28,10 +28,8 @@ _WRITE_IT = "write the id under student in collected.csv"
 _NO_ID = f"its name does not say whose it is: {_WRITE_IT}, or add a line to students.csv"
 _LIST_OF = {"moodle": "the grading worksheet (Grades-….csv)", "gradescope": GRADESCOPE}
 """For the systems that number submissions instead of students, the list that maps these numbers to students."""
-_BY_NUMBER = ("canvas", "brightspace", "gradescope")
-"""The systems whose file names contain a person's number. The others use a user name or, in Moodle, a number for one
-submission.
-"""
+_BY_NUMBER, _BY_LOGIN = ("canvas", "brightspace", "gradescope"), ("blackboard", "sakai", "ilias")
+"""The systems whose file names contain a person's number, and those whose file names contain a user name."""
 _LISTED = ("canvas", "github", "gradescope")
 """The systems whose lists identify students. (A number from Moodle or Gradescope belongs to one submission only.)"""
 
@@ -195,8 +193,9 @@ class StudentOf:
 
     def _is_another(self, student: Student, identity: Identity) -> bool:
         """Return True if the student has a different number in that system, and so is not the person with this name."""
-        theirs = identity.number if identity.lms in _BY_NUMBER else identity.login
-        known = self._numbers.get((identity.lms, student.id), set()) if identity.lms != "moodle" else set()
+        by_number = identity.number if identity.lms in _BY_NUMBER else ""
+        theirs = by_number or (identity.login if identity.lms in _BY_LOGIN else "")
+        known = self._numbers.get((identity.lms, student.id), set())
         return bool(theirs and known) and theirs.casefold() not in known
 
     @functools.cached_property
