@@ -142,11 +142,11 @@ def test_google_names_the_student_first(klass: TinyClass, tmp_path: Path) -> Non
         tmp_path,
         f"{folder}/Ada Lovelace - lab_1_2.ipynb",
         f"{folder}/Zoë Zuse - Copy of lab_1_2 (2).ipynb",
-        names="{name} - {file}",
+        names="{any}/{any}/{any}/{any}/{any}/{name} - {file}",
     )
     assert not why(report)
     assert placed(report).keys() == {"ada", "zoe"}
-    report = gather(klass, tmp_path, f"{folder}/jose@uni.example - lab_1_2.ipynb", names="{email} - {file}")
+    report = gather(klass, tmp_path, "Lab 1.2/jose@uni.example - lab_1_2.ipynb", names="{email} - {file}")
     assert placed(report).keys() == {"jose"}
     report = gather(klass, tmp_path, "Drive/lab_1_2 - Eve O'Neill.ipynb", names="{file} - {name}")
     assert placed(report).keys() == {"eve"}, "as it called copies that it made itself"

@@ -88,6 +88,21 @@ def test_a_pattern_may_name_a_column_of_the_list_of_students(klass: TinyClass, t
         gathered(klass, tmp_path, files, names="{martikel}-{last}")
 
 
+@pytest.mark.parametrize(
+    ("top", "names"),
+    [("", "lab-1-2-{github}"), ("clone/", "{any}/lab-1-2-{github}"), ("clone/", "lab-1-2-{github}")],
+)
+def test_a_pattern_fits_no_name_that_a_student_chose(
+    klass: TinyClass, tmp_path: Path, top: str, names: str
+) -> None:
+    """Mallory's repository for another lab has a folder that is called as Ada's repository for this one."""
+    forged = f"{top}lab-1-3-mallory/lab-1-2-adalove/lab_1_2.ipynb"
+    files = of(klass, f"{top}lab-1-2-zz-top/lab_1_2.ipynb", forged)
+    report = gathered(klass, tmp_path, files, names=names)
+    assert placed(report).keys() == {"zoe"}
+    assert "its name does not say whose it is" in why(report)
+
+
 def test_of_a_time_in_a_pattern_the_day_alone_is_not_meant(klass: TinyClass, tmp_path: Path) -> None:
     """Both halves of the text before lab_1_2 can be read as a time; a time at midnight would make work late."""
     name = "lovelace_ada_b0012/2025-10-03_140506_lab_1_2.ipynb"

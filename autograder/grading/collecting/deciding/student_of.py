@@ -95,7 +95,7 @@ class StudentOf:
         """
         parts = [unicodedata.normalize("NFC", part) for part in parts]
         if self._names is not None:
-            found = self._names(parts)
+            found = self._names(parts, levels)
             hits = [self._of(one)[0] for one in found.readings] if found else []
             meant = _distinct(students for members in hits for students in members)
             return Owners(found, (meant,) if meant else ())

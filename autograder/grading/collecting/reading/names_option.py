@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Sequence
 
 WORDS = ("id", "email", "login", "number", "name", "first", "last", "assignment", "time", "file", "any")
+_NOT_WHO = {"any", "assignment", "time", "file"}
 _MOST_WAYS = 100
 """The maximum number of ways to divide a name that are tried; real names need a few."""
 _WORD = re2.compile(r"\{([^{}]*)\}")
@@ -42,8 +43,11 @@ def check_names(pattern: str, columns: Collection[str]) -> None:
         )
 
 
-def read_names(pattern: str) -> Callable[[Sequence[str]], Found | None]:
-    """Return a function that reads paths according to a pattern.
+def read_names(pattern: str) -> Callable[[Sequence[str], int], Found | None]:
+    """Return a function that reads a path according to a pattern.
+
+    The pattern has to fit from the top of the path, or to identify the student by one of the path's first ``levels``
+    names: a student may have chosen any name below these.
 
     A pattern without a slash describes a single name: a file without its suffix, or a folder around it. A pattern
     with slashes describes names that follow each other in a path. ``{any}`` stands for any text. A word that is not
@@ -51,12 +55,14 @@ def read_names(pattern: str) -> Callable[[Sequence[str]], Found | None]:
     """
     words = _WORD.findall(pattern)
     literals = [unicodedata.normalize("NFC", one).casefold() for one in _WORD.split(pattern)[::2]]
-    levels = pattern.count("/") + 1
+    number = pattern.count("/") + 1
+    says_who = (place for place, name in enumerate(pattern.split("/")) if set(_WORD.findall(name)) - _NOT_WHO)
+    who = next(says_who, 0)
 
-    def read(parts: Sequence[str]) -> Found | None:
-        for place in range(len(parts) - levels + 1):
-            *above, last = parts[place : place + levels]
-            bare = last.rpartition(".")[0] if place + levels == len(parts) else ""
+    def read(parts: Sequence[str], levels: int) -> Found | None:
+        for place in range(min(len(parts) - number + 1, max(levels - who, 1))):
+            *above, last = parts[place : place + number]
+            bare = last.rpartition(".")[0] if place + number == len(parts) else ""
             texts = ("/".join([*above, name]) for name in (bare, last) if name)
             ways = (list(itertools.islice(_ways(text, literals, words), _MOST_WAYS)) for text in texts)
             if divided := next(filter(None, ways), None):
