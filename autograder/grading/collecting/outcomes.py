@@ -23,8 +23,7 @@ class CollectReport:
         untimed: The students with work collected now whose time of handing in is unknown, by assignment.
         missing: The students who have handed in nothing, by assignment.
         waiting: The number of lines in the table that wait for a person.
-        notes: Sentences for the instructor, for example about recorded times, names in a list that are not students,
-            and empty downloads.
+        notes: Sentences for the instructor, for example about unclear cells and empty downloads.
     """
 
     path: Path

@@ -40,7 +40,9 @@ def _lines(report: CollectReport) -> Iterator[str]:
     for state in (State.EARLIER, State.BESIDE, State.LEFT_OUT, State.NOT_PLACED):
         for one in report.having(state):
             owner = f"{one.student}: " if one.student else ""
-            also = "; the notebook has come, too" if state == State.BESIDE and one.student else ""
+            also = (
+                "; the student's notebook was collected, too" if state == State.BESIDE and one.student else ""
+            )
             yield f"{state:<12} {one.label}: {owner}{one.reason}{also}"
     for assignment, students in report.missing.items():
         yield f"nothing of   {assignment}: {', '.join(students)}"

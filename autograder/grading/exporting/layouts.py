@@ -75,7 +75,7 @@ LAYOUTS = {
 
 
 def known_there(records: CollectedRecords, assignment: str, student: str, lms: str) -> Line | None:
-    """Return how the LMS named a student whose work was collected from it; None if the work came another way."""
+    """Return the line with the LMS's names for a student; None if the student's work did not come from that LMS."""
     history = records.get(assignment, student)
     found = [one for one in history.now.values() if one.lms == lms] if history else []
     return found[-1] if found else None
@@ -111,7 +111,7 @@ def gradebook(lms: str, table: ClassTable, records: CollectedRecords, assignment
 def _facts(
     table: ClassTable, records: CollectedRecords, id_: str, lms: str, assignments: Sequence[str]
 ) -> dict[str, str]:
-    """Return what a file may contain about a student. ``there`` and ``user`` are the student's names in the LMS."""
+    """Return the possible contents of a student's cells, by key. ``there`` and ``user`` are names in the LMS."""
     student = table.roster.students[id_]
     own = student.lms.get(lms, "")
     collected = (known_there(records, name, id_, lms) for name in assignments)

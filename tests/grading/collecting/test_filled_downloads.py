@@ -177,7 +177,7 @@ def test_who_has_too_many_files_hides_nobody_behind(
         download, label = download.rename(tmp_path / "all" / "download").parent, "all/download/ben"
     report = collect(klass.path, [download])
     assert placed(report).keys() == {"ada", "zoe"}
-    assert f"{label}: it has more than 20 files; the others in it were not looked at" in why(report)
+    assert f"{label}: it has more than 20 files; the others in it were not read" in why(report)
     assert report.exit_code == 2
 
 

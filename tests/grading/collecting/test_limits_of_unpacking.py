@@ -174,7 +174,7 @@ def test_a_limit_that_is_met_is_a_reason(
     archives: Archives, tmp_path: Path, act: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(desk, "_CPU_SECONDS", 1)
-    assert "it met a limit of what may be unpacked" in str(within(archives, tmp_path, act)[""])
+    assert "unpacking it would exceed a limit" in str(within(archives, tmp_path, act)[""])
     assert read_list("list.csv", act) is None
     assert within(archives, tmp_path, b"reach") == {"reached": b""}, "the next archive needs no new desk"
 

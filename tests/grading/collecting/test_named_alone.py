@@ -87,7 +87,7 @@ def test_an_archive_of_which_nothing_is_taken_has_a_line(klass: TinyClass, tmp_p
     (tmp_path / "ada" / "work.zip").write_bytes(archive)
     report = collect(klass.path, [tmp_path / "ada"])
     assert [one.student for one in report.having(State.NOT_PLACED)] == ["ada"]
-    assert "it holds no file, or only what programs leave beside a work" in why(report)
+    assert "it contains no file, or only files that programs leave there" in why(report)
 
 
 def test_a_students_table_is_no_list_of_the_instructors(klass: TinyClass, tmp_path: Path) -> None:

@@ -31,7 +31,7 @@ def test_times_are_cells_also_of_what_a_person_has_put_there(klass: TinyClass, t
     klass.submit("zoe")
     nothing = write_zip(tmp_path / "empty.zip", {})
     report = collect(klass.path, [nothing])
-    assert report.notes == (f"{nothing} holds no file, or only what programs leave beside a work",)
+    assert report.notes == (f"{nothing} contains no file, or only files that programs leave there",)
     edit(klass, "lovelaceada", handed_in="2025-10-03T14:05Z")
     edit(klass, "submitted/zoe", handed_in="2025-10-04 10:00:00 +0200")
     collect(klass.path)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _Why = tuple[Line, State, str]
 _ONE_NUMBER = ("canvas", "moodle", "brightspace")
-"""The systems that give each person one number in a download, and in which users may change their names."""
+"""The systems in which users may change their names, but have one number in all files of a download."""
 _CELL = re2.compile(r"(?:under|the cell) (use|student|assignment|notebook|handed_in)\b")
 
 

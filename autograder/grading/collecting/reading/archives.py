@@ -35,9 +35,9 @@ MOST_FILES = 20_000
 that a huge repository of one student does not affect other students.
 """
 _DEEPEST = 3
-"""The maximum nesting of archives: an archive that a student handed in, one inside it, and so on."""
+"""The maximum number of archives inside each other, counting the one that the student handed in."""
 _DEEPEST_FOLDER = 100
-"""The maximum nesting of folders. Python can follow no more than some hundreds."""
+"""The maximum number of folders inside each other: ``os.walk`` fails at some hundreds."""
 
 
 class NotTaken(ValueError):
@@ -108,7 +108,7 @@ class Archives:
             if counts[folder] <= MOST_FILES:
                 yield file
             elif counts[folder] == MOST_FILES + 1:
-                reason = f"it has more than {MOST_FILES} files; the others in it were not looked at"
+                reason = f"it has more than {MOST_FILES} files; the others in it were not read"
                 yield File(replace(file.arrival, parts=folder), _refusing(reason))
 
     def _of_source(self, source: Path, *, is_opened: bool) -> Iterator[File]:
@@ -151,7 +151,7 @@ def _unpacked(
     if code in (errno.ENOSPC, errno.EDQUOT):
         raise OSError(code, os.strerror(code))
     if code:
-        yield (), _refusing("it met a limit of what may be unpacked: unpack it, and collect the folder")
+        yield (), _refusing("unpacking it would exceed a limit: unpack it yourself, and collect the folder")
         return
     for line, begin in itertools.islice(_lines(out), room.files + 1):
         room.files -= not line.reason
@@ -195,7 +195,7 @@ def _of_folder(source: Path) -> Iterator[File]:
                 yield File(Arrival("", (*here, name_as_text(name))), _refusing("it is a link"))
         if folders and len(here) > _DEEPEST_FOLDER:
             folders.clear()
-            reason = f"more than {_DEEPEST_FOLDER} folders are in each other; the others were not looked at"
+            reason = f"more than {_DEEPEST_FOLDER} folders are in each other; the others were not read"
             yield File(Arrival("", here), _refusing(reason))
 
 

@@ -34,7 +34,7 @@ class ListForm:
 
     @property
     def sure(self) -> tuple[str, ...]:
-        """The columns that identify a person, the most certain first."""
+        """The columns that identify a person better than a name does, the most certain first."""
         return (self.number, *self.logins) if self.is_numbered else self.logins
 
 

@@ -52,7 +52,7 @@ class Source:
 
     @functools.cached_property
     def levels(self) -> int:
-        """Return the number of names, from the top of each path, that may identify a student."""
+        """Return how many names at the top of each path were not chosen by students, so that they may identify one."""
         if self.is_own:
             return 1
         above = 1 if self.path.is_dir() else 0  # the name of the folder itself, which identifies no student

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _TARS = (".tar", ".tgz", ".tar.gz", ".tar.bz2", ".tar.xz")
 _LEFT_BY_PROGRAMS = ("__MACOSX", ".git", ".ipynb_checkpoints", "__pycache__", ".DS_Store")
 """Files that operating systems and editors leave next to a student's work."""
-EMPTY = "holds no file, or only what programs leave beside a work"
+EMPTY = "contains no file, or only files that programs leave there"
 """The reason why an archive or folder was not taken, if it contains nothing to take."""
 LONGEST_NAME = 1_000
 """The maximum length of a path in characters. A zip may have paths of 65,535, too long to print."""
@@ -43,7 +43,7 @@ def is_archive(name: str, data: bytes) -> bool:
 
 
 def is_left_by_a_program(name: str) -> bool:
-    """Return True for a name that programs use and no student chose."""
+    """Return True for the name of a file or folder that a program made, not the student, such as ``.git``."""
     return name in _LEFT_BY_PROGRAMS or name.startswith("._")
 
 
@@ -77,7 +77,7 @@ def _opened(tar: tarfile.TarFile, one: tarfile.TarInfo) -> IO[bytes]:
 
 
 def _name_of(one: zipfile.ZipInfo) -> str:
-    """Return the name as it was meant: many programs write UTF-8 without saying so."""
+    """Return the name of a file in a zip. Many programs write names in UTF-8 without the flag for UTF-8."""
     try:
         return one.filename if one.flag_bits & 0x800 else one.filename.encode("cp437").decode("utf-8")
     except UnicodeError:
