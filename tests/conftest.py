@@ -53,6 +53,9 @@ LONGEST = (
     "tests/masters/test_programs.py",
     "tests/test_second_chapter.py",
     "tests/test_adding_an_exercise.py",
+    "tests/test_left_behind.py",
+    "tests/test_wheel.py",
+    "tests/test_cli.py",
     "tests/mutation",
     "tests/grading",
 )
