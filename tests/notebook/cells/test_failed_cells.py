@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from itertools import accumulate
+from itertools import accumulate, count
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from jupyter_client.manager import KernelManager
+from nbclient import NotebookClient
+from nbformat.v4 import new_code_cell, new_notebook
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
+
+LIMIT = 180.0
+"""Seconds after which a cell has failed that needs none."""
 
 # A judge that is reached has said enough.
 JUDGE = """
@@ -35,18 +41,39 @@ def text_of(output: Any) -> str:
     return " ".join(text.replace("│", "").split())
 
 
-@pytest.fixture
-def said(run_cells: Callable[..., list[Any]]) -> Callable[..., list[str]]:
-    """Run groups of cells below JUDGE, each about a Talker of its own; what the last cell of each shows."""
+@pytest.fixture(scope="module")
+def said(domain: int) -> Iterator[Callable[..., list[str]]]:
+    """Run groups of cells below JUDGE, each about a Talker of its own; what the last cell of each shows.
+
+    One kernel runs them all. In a test its Talkers are numbered from 0; in the kernel no two have one name.
+    """
+    manager, used = KernelManager(kernel_name="python3"), count()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROS_DOMAIN_ID", str(domain))
+        manager.start_kernel()
+
+    def run_cells(cells: Sequence[str]) -> list[Any]:
+        notebook = new_notebook(cells=[new_code_cell(cell) for cell in cells])
+        NotebookClient(notebook, manager, timeout=LIMIT, allow_errors=True, coalesce_streams=True).execute()
+        return [cell.outputs for cell in notebook.cells]
 
     def run(*groups: Sequence[str]) -> list[str]:
+        names = [f"Talker{next(used)}" for _ in groups]
         cells = [
-            cell.replace("Talker", f"Talker{number}") for number, group in enumerate(groups) for cell in group
+            cell.replace("Talker", name) for name, group in zip(names, groups, strict=True) for cell in group
         ]
-        shown = run_cells(JUDGE, *cells, allow_errors=True)[1:]
-        return [" ".join(map(text_of, shown[end - 1])) for end in accumulate(map(len, groups))]
+        shown = run_cells(cells)
+        last = [" ".join(map(text_of, shown[end - 1])) for end in accumulate(map(len, groups))]
+        return [
+            words.replace(name, f"Talker{number}")
+            for number, (name, words) in enumerate(zip(names, last, strict=True))
+        ]
 
-    return run
+    try:
+        run_cells([JUDGE])
+        yield run
+    finally:
+        manager.shutdown_kernel(now=True)
 
 
 def test_a_class_whose_newest_code_did_not_run_is_not_judged(said: Callable[..., list[str]]) -> None:
@@ -117,7 +144,6 @@ def test_any_other_class_is_judged(said: Callable[..., list[str]]) -> None:
             "def tell():\n    1 +",
         ),
         "text of a file": (RIGHT, "%%nothing\nclass Talker:\n    1 +"),
-        # The last one: it holds for all checks behind it.
         "a grader's kernel": (
             RIGHT,
             "class Talker:\n    1 +",
@@ -125,6 +151,7 @@ def test_any_other_class_is_judged(said: Callable[..., list[str]]) -> None:
         ),
     }
     told = said(*((*group, CHECK) for group in cells.values()))
+    said(("import os; del os.environ['AUTOGRADER_JUDGE_SOCKET']",))
     assert [name for name, words in zip(cells, told, strict=True) if "the judge was asked" not in words] == []
 
 
