@@ -183,6 +183,26 @@ def run_cells(as_in_a_notebook: None) -> Callable[..., list[Any]]:
     return run
 
 
+@pytest.fixture(scope="module")
+def run_in_one_kernel(domain: int) -> Iterator[Callable[..., list[Any]]]:
+    """As `run_cells`, but in one kernel for all tests of a file: each uses names of its own."""
+    manager = KernelManager(kernel_name="python3")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROS_DOMAIN_ID", str(domain))
+        patch.delenv("PYTEST_CURRENT_TEST", raising=False)
+        manager.start_kernel()
+
+    def run(*sources: str, allow_errors: bool = False) -> list[Any]:
+        notebook = new_notebook(cells=[new_code_cell(source) for source in sources])
+        NotebookClient(
+            notebook, manager, timeout=LIMIT, allow_errors=allow_errors, coalesce_streams=True
+        ).execute()
+        return [cell.outputs for cell in notebook.cells]
+
+    yield run
+    manager.shutdown_kernel(now=True)
+
+
 @dataclass
 class CellOutput:
     """What came out of one run of a cell."""

@@ -6,15 +6,9 @@ from itertools import accumulate, count
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from jupyter_client.manager import KernelManager
-from nbclient import NotebookClient
-from nbformat.v4 import new_code_cell, new_notebook
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
-LIMIT = 180.0
-"""Seconds after which a cell has failed that needs none."""
+    from collections.abc import Callable, Sequence
 
 # A judge that is reached has said enough.
 JUDGE = """
@@ -42,38 +36,27 @@ def text_of(output: Any) -> str:
 
 
 @pytest.fixture(scope="module")
-def said(domain: int) -> Iterator[Callable[..., list[str]]]:
+def said(run_in_one_kernel: Callable[..., list[Any]]) -> Callable[..., list[str]]:
     """Run groups of cells below JUDGE, each about a Talker of its own; what the last cell of each shows.
 
-    One kernel runs them all. In a test its Talkers are numbered from 0; in the kernel no two have one name.
+    In a test its Talkers are numbered from 0; in the kernel no two have one name.
     """
-    manager, used = KernelManager(kernel_name="python3"), count()
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("ROS_DOMAIN_ID", str(domain))
-        manager.start_kernel()
-
-    def run_cells(cells: Sequence[str]) -> list[Any]:
-        notebook = new_notebook(cells=[new_code_cell(cell) for cell in cells])
-        NotebookClient(notebook, manager, timeout=LIMIT, allow_errors=True, coalesce_streams=True).execute()
-        return [cell.outputs for cell in notebook.cells]
+    used = count()
+    run_in_one_kernel(JUDGE)
 
     def run(*groups: Sequence[str]) -> list[str]:
         names = [f"Talker{next(used)}" for _ in groups]
         cells = [
             cell.replace("Talker", name) for name, group in zip(names, groups, strict=True) for cell in group
         ]
-        shown = run_cells(cells)
+        shown = run_in_one_kernel(*cells, allow_errors=True)
         last = [" ".join(map(text_of, shown[end - 1])) for end in accumulate(map(len, groups))]
         return [
             words.replace(name, f"Talker{number}")
             for number, (name, words) in enumerate(zip(names, last, strict=True))
         ]
 
-    try:
-        run_cells([JUDGE])
-        yield run
-    finally:
-        manager.shutdown_kernel(now=True)
+    return run
 
 
 def test_a_class_whose_newest_code_did_not_run_is_not_judged(said: Callable[..., list[str]]) -> None:

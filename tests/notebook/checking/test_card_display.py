@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from typing import TYPE_CHECKING, Any
 
 import nbformat
@@ -24,6 +25,8 @@ from autograder.notebook import check
 checking = importlib.import_module("autograder.notebook.checking.check")
 from autograder.verdict import CriterionResult, Diagnosis, State, Verdict
 
+usual_display = globals().setdefault("usual_display", dict(vars(card_display)))
+vars(card_display).update(usual_display)
 scores, meanwhile = [], lambda place: None
 
 def verdict(exercise, subject, place):
@@ -42,9 +45,16 @@ class Talker:
 
 
 @pytest.fixture
-def run(run_cells: Callable[..., list[Any]]) -> Callable[..., list[Any]]:
-    """Run cells below JUDGE; what each shows in the end."""
-    return lambda *sources: run_cells(JUDGE, *sources)[1:]
+def run(
+    run_in_one_kernel: Callable[..., list[Any]], request: pytest.FixtureRequest
+) -> Callable[..., list[Any]]:
+    """Run cells below JUDGE, with an exercise of the test's own; what each shows in the end."""
+
+    def below(*sources: str, **options: bool) -> list[Any]:
+        own = [re.sub("""(['"])lab(['"])""", rf"\1lab.{request.function.__name__}\2", one) for one in sources]
+        return run_in_one_kernel(JUDGE, *own, **options)[1:]
+
+    return below
 
 
 def test_the_value_of_a_check_is_for_nbgrader_and_shows_nothing(run: Callable[..., list[Any]]) -> None:
@@ -149,9 +159,9 @@ def meanwhile(place):
     assert "agc-waiting" not in card.data["text/html"].partition("<style>")[0]
 
 
-def test_an_interrupted_check_shows_none_of_its_own_lines(run_cells: Callable[..., list[Any]]) -> None:
+def test_an_interrupted_check_shows_none_of_its_own_lines(run: Callable[..., list[Any]]) -> None:
     interrupted = "def meanwhile(place):\n    raise KeyboardInterrupt"
-    *_, (error,) = run_cells(JUDGE, interrupted, "check('lab', Talker)", allow_errors=True)
+    *_, (error,) = run(interrupted, "check('lab', Talker)", allow_errors=True)
     assert error.traceback == ["KeyboardInterrupt"]
 
 
