@@ -418,4 +418,4 @@ def test_a_person_or_a_program_reads_what_was_written_and_what_waits(
     assert any("guest.ipynb" in str(one.path) and cell in one.reason for one in graded.grade().refused)
     assert cell in (graded.path / "report.html").read_text()
     result = CliRunner().invoke(cli, ["report", str(graded.path), "--json", "--without-names"])
-    assert "leave out one of the two" in result.output
+    assert "cannot be combined with --without-names" in result.output
