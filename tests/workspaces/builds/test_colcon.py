@@ -35,7 +35,18 @@ def run_program(made: Build) -> str:
     ).stdout
 
 
-def test_the_first_build_is_real_and_the_second_is_reused(workspace: Path) -> None:
+def assert_that_it_can_be_placed_and_sourced(made: Build) -> None:
+    install = place(made)
+    script = (
+        f"source '{install}/setup.bash' && \"$AMENT_PREFIX_PATH_FIRST\" 2>/dev/null; echo $AMENT_PREFIX_PATH"
+    )
+    done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout.split(":")[0].strip() == str(install / "tiny_pkg")
+    texts = [file.read_bytes() for file in install.rglob("*") if file.is_file()]
+    assert not any(str(made.install).encode() in text for text in texts)
+
+
+def test_the_first_build_is_real_and_the_second_is_reused_and_can_be_placed(workspace: Path) -> None:
     first = build(workspace)
     assert first.ok, first.log
     assert not first.reused
@@ -44,6 +55,7 @@ def test_the_first_build_is_real_and_the_second_is_reused(workspace: Path) -> No
     assert second.reused
     assert second.install == first.install
     assert not (workspace / "install").exists()
+    assert_that_it_can_be_placed_and_sourced(second)
 
 
 def test_a_changed_byte_is_another_build(workspace: Path) -> None:
@@ -120,18 +132,6 @@ def test_a_package_that_colcon_would_mistake_is_named(workspace: Path) -> None:
     made = build(workspace)
     assert made.trouble == "bad_package"
     assert "email" in made.line
-
-
-def test_a_placed_build_can_be_sourced(workspace: Path) -> None:
-    made = build(workspace)
-    install = place(made)
-    script = (
-        f"source '{install}/setup.bash' && \"$AMENT_PREFIX_PATH_FIRST\" 2>/dev/null; echo $AMENT_PREFIX_PATH"
-    )
-    done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
-    assert done.stdout.split(":")[0].strip() == str(install / "tiny_pkg")
-    texts = [file.read_bytes() for file in install.rglob("*") if file.is_file()]
-    assert not any(str(made.install).encode() in text for text in texts)
 
 
 def test_a_merged_install_is_left_alone(workspace: Path) -> None:

@@ -147,22 +147,20 @@ def test_a_file_that_is_put_there_with_an_old_date_is_a_change(built: Path, tmp_
     assert run_program(made) == "older\n"
 
 
-def test_links_show_a_changed_module_without_a_build(workspace: Path, request: pytest.FixtureRequest) -> None:
-    colcon_build(workspace, "--symlink-install")
-    change(module_of(workspace))
-    request.getfixturevalue("nothing_is_built")
-    made = StudentsBuilds().build(look(workspace), None)
-    assert made.changed == ""
-    assert run_program(made) == "good evening from the workspace\n"
-
-
-def test_links_of_a_copied_workspace_lead_elsewhere(workspace: Path, tmp_path: Path) -> None:
+def test_links_show_a_changed_module_without_a_build_and_lead_elsewhere_once_they_are_copied(
+    workspace: Path, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
     colcon_build(workspace, "--symlink-install")
     copied = tmp_path / "copied" / "ros2_ws"
     for name in ("src", "install", "build"):
         shutil.copytree(workspace / name, copied / name, symlinks=True)
     as_if_built_now(copied)
     assert not is_current(copied, look(copied).packages)
+    change(module_of(workspace))
+    request.getfixturevalue("nothing_is_built")
+    made = StudentsBuilds().build(look(workspace), None)
+    assert made.changed == ""
+    assert run_program(made) == "good evening from the workspace\n"
 
 
 def test_what_colcon_has_left_of_a_deleted_module_is_not_used(built: Path) -> None:
