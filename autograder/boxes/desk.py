@@ -1,4 +1,4 @@
-"""Desks: processes in a box, each of which parses one file of a student, so that no trusted process has to.
+"""Desks: processes in a box, each of which parses one file of a student, so that no trusted process has to parse it.
 
 .. code-block:: python
 
@@ -6,9 +6,9 @@
     with in_memory(data) as source, in_memory() as answer:
         code = desk.ask(source, answer, most=1_000_000, seconds=20)
 
-All desks of one :class:`Desk` enter the same box. A desk can open no file, start no process and reach nothing
-(:func:`autograder.boxes.seccomp_filter.filter_for_readers`), so no data of one student is left for the next. On a
-machine on which no box can be made, a desk is still a separate process with limits and a filter of system calls.
+All desk processes of one :class:`Desk` enter the same box. A desk process cannot open files, start processes or use a
+network (:func:`autograder.boxes.seccomp_filter.filter_for_readers`), so it leaves no data of one student for the next.
+If no box can be made on this machine, a desk is still a separate process with limits and a filter of system calls.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ MEMORY_BYTES = 700_000_000
 thirds of it.
 """
 _WALL_SECONDS = 600.0
-"""Time limit in seconds of wall time. A desk cannot sleep, so this is reached only if the whole machine was stopped."""
+"""Time limit in seconds of wall time. A desk cannot sleep, so the limit of processor time usually ends it earlier."""
 
 
 class Desk:
@@ -50,8 +50,7 @@ class Desk:
 
     Args:
         module: The module that a desk process runs.
-        extra: More environment variables.
-
+        extra: Additional environment variables of the desk processes.
     """
 
     def __init__(self, module: str, extra: Mapping[str, str] | None = None) -> None:
@@ -76,12 +75,12 @@ class Desk:
         Args:
             source: The descriptor of the file to read.
             answer: The descriptor of an empty file for the answer.
-            most: The limit in bytes of the answer.
-            seconds: The limit in seconds of the processor time. A process that reaches it ends with ``-SIGXCPU``.
+            most: The maximum size of the answer in bytes.
+            seconds: The maximum processor time in seconds. If it is exceeded, the exit code is ``-SIGXCPU``.
             call: The argument for the function ``run`` of the module.
 
         Raises:
-            ChannelClosed: The desk process was lost or killed, and the file is not the reason.
+            ChannelClosed: The desk process was lost or killed for a reason other than the file.
         """
         entrance = Entrance(
             cwd="/",
@@ -98,7 +97,7 @@ class Desk:
                 raise ChannelClosed("the process that reads files was lost")
             code = os.waitstatus_to_exitcode(process.status)
             if code == -signal.SIGKILL:
-                # A desk cannot kill itself, so the system has killed it, usually because memory is short.
+                # A desk cannot kill itself. Linux has killed it, usually because the machine is short of memory.
                 raise ChannelClosed("the process that reads files was killed")
             return code
         finally:
@@ -125,8 +124,8 @@ class KeptDesk:
 
     Args:
         module: The module that a desk process runs.
-        attempts: The maximum number of desks that are started for one question, because a desk may be lost.
-        rehearse: Called with a new desk before its first question.
+        attempts: The maximum number of desks that one call of :meth:`ask` tries, because a desk may be lost.
+        rehearse: Called with each new desk before its first file, to test it. It may raise ``ChannelClosed``.
     """
 
     def __init__(
@@ -145,11 +144,10 @@ class KeptDesk:
     def ask(
         self, source: int, answer: int, most: int, seconds: int, call: Mapping[str, Any] | None = None
     ) -> int:
-        """Ask the desk; see :meth:`Desk.ask`. If the desk is lost, start another one and ask again.
+        """Do the same as :meth:`Desk.ask`. If the desk is lost, start another desk and try again.
 
         Raises:
-            ChannelClosed: Every attempt was lost, and the file is not the reason. The message gives the reason of the
-                last one.
+            ChannelClosed: All attempts failed for a reason other than the file. The message is about the last attempt.
         """
         reason = ""
         for _ in range(self._attempts):
@@ -164,7 +162,7 @@ class KeptDesk:
         raise ChannelClosed(reason)
 
     def close(self) -> None:
-        """End the desk, if there is one. The next question starts another one."""
+        """End the desk if it was started. The next call of :meth:`ask` starts another desk."""
         self._forget(self._desk)
 
     def _started(self) -> Desk:
@@ -188,7 +186,7 @@ class KeptDesk:
 
 @contextlib.contextmanager
 def in_memory(data: bytes = b"") -> Iterator[int]:
-    """Make a file in memory with these bytes for a ``with`` block, and yield its descriptor.
+    """Make a file in memory that contains ``data``, and yield its descriptor. The ``with`` block closes the file.
 
     Raises:
         ChannelClosed: The bytes do not fit into memory.
@@ -203,5 +201,5 @@ def in_memory(data: bytes = b"") -> Iterator[int]:
 
 
 def answer_in(descriptor: int, most: int) -> bytes:
-    """Return what a desk wrote into the file for its answer, at most ``most`` bytes."""
+    """Return the answer that a desk wrote into the file with this descriptor, at most ``most`` bytes."""
     return os.pread(descriptor, min(os.fstat(descriptor).st_size, most), 0)

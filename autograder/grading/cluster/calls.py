@@ -1,7 +1,6 @@
-"""Functions that a Dask worker calls by name. Their arguments and results are bytes.
+"""Functions that a Dask worker calls by name. Their results are bytes.
 
-This module has no imports at the top, because the client process also imports it, and should load as little as
-possible.
+The client process also imports this module, and should load as little as possible. So imports are inside the functions.
 """
 
 from __future__ import annotations
@@ -11,8 +10,7 @@ def offer_as_json(slots: int) -> bytes:
     """Return the worker's offer, as JSON of an :class:`autograder.grading.running.orders.Offer`.
 
     Args:
-        slots: The number of notebooks that the worker executes at the same time, which is the number of its Dask
-            threads.
+        slots: The number of notebooks that the worker executes at the same time: the number of its Dask threads.
     """
     import msgspec
 

@@ -1,4 +1,4 @@
-"""Connects to a cluster, finds the workers that can be given work, and cleans up afterwards."""
+"""Connects to a Dask cluster, and finds the workers that can execute tasks."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ def check_dask() -> None:
 
 
 def check_address(address: str) -> None:
-    """Check that a text can be the address of a Dask scheduler.
+    """Check that ``address`` has the form of a Dask scheduler's address, such as ``tcp://host:8786``.
 
     Raises:
-        GradingError: The text is not such an address.
+        GradingError: The address has another form.
     """
     if not _ADDRESS.fullmatch(address):
         raise GradingError(
@@ -49,20 +49,20 @@ def check_address(address: str) -> None:
 def connected(
     address: str, *, judge: str, boxed: bool, tell: Callable[[str], None] = lambda _: None
 ) -> Iterator[Dispatcher]:
-    """Give access to the workers of a cluster that can be given work.
+    """Connect to a Dask cluster, and yield a dispatcher that gives tasks to its workers.
 
-    At the end of the block, queued tasks are canceled within seconds.
+    At the end of the ``with`` block, the tasks that are not finished are canceled within seconds.
 
     Args:
         address: The scheduler's address, such as ``tcp://host:8786`` or ``tls://host:8786``.
         judge: The class that makes a judge, as ``module:class``.
-        boxed: True to execute tasks in boxes. Then a worker that cannot make boxes is rejected.
+        boxed: True to execute tasks in boxes. Workers that cannot make boxes are then rejected.
         tell: Called with a sentence for the instructor.
 
     Raises:
         GradingError: Dask is not installed.
         SchedulerGone: No scheduler answers at this address.
-        NoWorkers: The scheduler has no worker that can be given work.
+        NoWorkers: The scheduler has no workers, or none of them can execute tasks.
     """
     with client_of(address) as link:
         pool = Dispatcher(link, address, judge=judge, boxed=boxed, tell=tell)

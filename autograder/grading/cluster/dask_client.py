@@ -2,12 +2,12 @@
 
 It exchanges lines of JSON with the grader on its standard input, which is a socket.
 
-There are four reasons for a separate process. Dask's client unpickles messages from workers, and in this process
-nothing in a pickle can run (see inert_pickle.py). A memory limit stops an answer that is too large. The grader stays
-free of Dask's threads and event loop. And if this process is killed, the scheduler cancels the tasks that it queued.
+There are four reasons for a separate process. Dask's client unpickles messages from workers, and pickles can run code;
+here they cannot (inert_pickle.py). A memory limit stops an answer that is too large. The grader stays free of Dask's
+threads and event loop. If this process is killed, the scheduler cancels all tasks that this process gave it.
 
-The process knows nothing about the class. It passes orders to the workers that the grader names, and reports answers
-and which workers come and go.
+The process has no data of the class. It passes orders to the workers that the grader names. It reports the answers, and
+which workers have joined or left.
 """
 
 from __future__ import annotations
@@ -44,16 +44,16 @@ from autograder.grading.running.orders import (  # noqa: E402
 from autograder.messages.lines import Hangup, Lines  # noqa: E402
 
 _MEMORY = 3 << 30
-"""The limit of address space in bytes. Python and Dask take 0.2 GB of it."""
+"""The limit of this process's address space, in bytes. Python and Dask take 0.2 GB of it."""
 _CONNECT_SECONDS = 10
 _OFFER_SECONDS = 60.0
-"""Time limit in seconds for a worker's offer. Its first attempt to make a box takes a second on a busy machine."""
+"""Time limit in seconds for a worker's offer. The worker first tries to make a box, which can take a second."""
 _LINK_SECONDS = 5.0
-"""Seconds of silence after which the connection to the scheduler is checked."""
+"""If the scheduler has reported nothing for this many seconds, the connection to it is checked."""
 
 
 def main(address: str) -> None:
-    """Serve until the grader closes the connection or the scheduler ends.
+    """Pass on orders and answers until the grader closes the connection or the scheduler ends.
 
     Args:
         address: The scheduler's address, such as ``tcp://host:8786``.
@@ -69,7 +69,7 @@ async def _serve(address: str, grader: Lines) -> None:
         client = await Client(
             address,
             asynchronous=True,
-            deserializers=["msgpack"],  # so that workers send plain bytes in the first place
+            deserializers=["msgpack"],  # lets workers send plain bytes instead of pickles
             timeout=_CONNECT_SECONDS,
             name="autograder",
         )
@@ -111,7 +111,7 @@ class _Carrier:
                 self._drop(command.number)
 
     async def watch_workers(self) -> None:
-        """Report workers that come and go. The scheduler's events only trigger the check."""
+        """Report to the grader which workers join and leave. An event of the scheduler triggers a look at its list."""
         self._client.subscribe_topic("all", self._on_event)
         try:
             await asyncio.gather(*(self._introduce(*who) for who in await self._look()))
@@ -126,7 +126,7 @@ class _Carrier:
             _tell(self._grader, Broken(f"the scheduler has ended: {_first_line(error)}"))
 
     async def _look(self) -> list[tuple[str, str, int]]:
-        """Report workers that have left. Return address, name and number of threads of each new one."""
+        """Report the workers that have left. Return the address, name and number of threads of each new worker."""
         known = (await self._client.scheduler.identity())["workers"]
         for address in self._workers - known.keys():
             for number, worker_address in list(self._given.items()):
@@ -147,11 +147,13 @@ class _Carrier:
 
     async def _introduce(self, address: str, name: str, threads: int) -> None:
         try:
-            # This does not use the worker's threads, so a busy worker can answer as well.
+            # ``run`` does not need a free thread of the worker, so a busy worker answers, too.
             asking = self._client.run(calls.offer_as_json, threads, workers=[address])
             said = (await asyncio.wait_for(asking, _OFFER_SECONDS))[address]
         except TimeoutError:
-            _tell(self._grader, Unfit(address, name, f"it has not answered within {_OFFER_SECONDS:g} s"))
+            _tell(
+                self._grader, Unfit(address, name, f"the worker has not answered within {_OFFER_SECONDS:g} s")
+            )
         except Exception as error:
             _tell(self._grader, Unfit(address, name, _first_line(error)))
         else:
@@ -187,19 +189,17 @@ class _Carrier:
         await wait([future])
         if future.status == "error":
             return Failed(number, _first_line(await future.exception()))
-        # This is the size that the worker reported to the scheduler. An answer that is too large is not fetched.
+        # The worker reported this size to the scheduler. An answer that is too large is not fetched.
         size = (await self._client.nbytes(keys=[key], summary=False)).get(key, 0)
         if size > 2 * LARGEST_ANSWER:
-            return Failed(number, f"its answer has {size} bytes", forged=True)
+            return Failed(number, f"the answer has {size} bytes", forged=True)
         try:
             data = await future
-        except (
-            TypeError,
-            MemoryError,
-        ) as error:  # the answer is not plain bytes, or its declared size is wrong
+        except (TypeError, MemoryError) as error:
+            # The answer is not plain bytes, or is larger than the worker reported.
             return Failed(number, _first_line(error), forged=True)
         if not isinstance(data, bytes):
-            return Failed(number, "its answer is not bytes", forged=True)
+            return Failed(number, "the answer does not consist of bytes", forged=True)
         return Answered(number, data)
 
     def _drop(self, number: int) -> None:
@@ -220,7 +220,7 @@ def _first_line(error: BaseException) -> str:
 
 
 def _tell(grader: Lines, news: News) -> None:
-    with contextlib.suppress(Hangup):  # the grader is gone, and this process is about to end
+    with contextlib.suppress(Hangup):  # the grader has ended, so this process will end, too
         grader.say_json(msgspec.json.encode(news))
 
 

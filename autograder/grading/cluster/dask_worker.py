@@ -1,6 +1,6 @@
-"""Executes orders in a Dask worker, as on the instructor's machine.
+"""Executes orders in a Dask worker, in the same way as on the instructor's machine.
 
-A worker gets one task at a time and nothing else: not the class, no secret, and not the student's name.
+A worker gets only the tasks that it executes: no other files of the class, no secrets, and no names of students.
 """
 
 from __future__ import annotations
@@ -36,15 +36,15 @@ def execute(data: bytes) -> bytes:
 
 
 class _Watch(WorkerPlugin):
-    """Ends what a canceled order runs, because Dask itself would let it go on."""
+    """Ends the processes of canceled orders. Dask itself would let them run on."""
 
     def transition(self, key: Any, start: str, finish: str, **_: Any) -> None:
-        """End an order that was canceled. Dask calls this when a task of the worker changes its state."""
+        """End an order if it was canceled. Dask calls this when a task of the worker changes its state."""
         if start == "executing" and finish == "released" and _executor is not None:
             _executor.cancel(key)
 
     def teardown(self, worker: Worker) -> None:  # noqa: ARG002  (Dask's signature)
-        """End everything that the orders run. Dask calls this when the worker ends."""
+        """End the processes of all orders. Dask calls this when the worker ends."""
         if _executor is not None:
             _executor.stop()
         if _scratch is not None:

@@ -1,8 +1,8 @@
 """A replacement for ``pickle.loads`` that makes only plain values and inert exceptions, and runs no code.
 
-Dask's client unpickles more than results: also the type of each result, errors and warnings. The writer of a pickle
-chooses which function is called with which arguments. :func:`install` prevents such calls in the whole process. Use
-it only in a process that does nothing but communicate with a cluster.
+A pickle can make its reader call any function. Dask's client unpickles results, the types of results, errors and
+warnings from workers. :func:`install` prevents such calls in the whole process. Use it only in a process that does
+nothing but communicate with a cluster.
 
 The method is described in the documentation of :mod:`pickle` under "Restricting Globals".
 """
@@ -22,7 +22,7 @@ _PLAIN |= {"set", "str", "tuple"}
 
 
 class Inert(Exception):
-    """A stand-in for an object whose class is not loaded. The class of the stand-in has the same name."""
+    """Base class of the stand-ins for objects in a pickle. A stand-in's class has only the name of the real class."""
 
     def __call__(self, *_: Any, **__: Any) -> Any:
         """Do nothing."""
@@ -68,7 +68,7 @@ def _no_traceback(*_: Any) -> None:
 
 
 def _exception(kind: Any, *said: Any) -> Any:
-    """Return an inert error with the message that tblib stored."""
+    """Return an inert exception with the message that tblib stored in the pickle."""
     if not (isinstance(kind, type) and issubclass(kind, Inert)):
         return Inert()
     for part in said:

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 _CONNECT_SECONDS = 30
 _GOODBYE_SECONDS = 2.0
 
-# Dask watches only the memory of its own process, but submissions run in other processes, with their own limits.
 _SETTINGS = {
     "distributed.worker.profile.enabled": False,
     "distributed.admin.system-monitor.gil.enabled": False,
@@ -35,7 +34,7 @@ _SETTINGS = {
 
 
 def offer(slots: int) -> Offer:
-    """Return this machine's offer to a cluster: the version of its course, and whether it can execute in boxes.
+    """Return this machine's offer to a cluster: the version of its course, and whether it can make boxes.
 
     Args:
         slots: The number of notebooks to execute at the same time.
@@ -46,28 +45,31 @@ def offer(slots: int) -> Offer:
 def start_worker(
     address: str | None, *, jobs: int | None, name: str | None, sandbox: bool, tell: Callable[[str], None]
 ) -> None:
-    """Work for a scheduler until the scheduler ends or this process is asked to end.
+    """Run a Dask worker until its scheduler ends, or until this process gets SIGINT (Ctrl-C) or SIGTERM.
 
     Args:
         address: The scheduler's address; by default the one in Dask's own settings.
         jobs: The number of notebooks to execute at the same time; by default the number of processors.
-        name: The worker's name in messages; by default from Dask's settings, or else made of host and process.
+        name: The worker's name in messages; by default ``DASK_WORKER_NAME``, or else the host and the process id.
         sandbox: True to start only if boxes are possible on this machine.
-        tell: Called with a line about the offer.
+        tell: Called with lines about the offer, and about the beginning and end of the work.
 
     Raises:
-        GradingError: The scheduler does not answer, or this machine cannot execute anything.
+        GradingError: The address is missing or wrong, the scheduler does not answer, or a sandbox is required and
+            cannot be made here.
     """
     address = address or os.environ.get("DASK_SCHEDULER_ADDRESS")
     if not address:
-        raise GradingError(f"Name the scheduler, for example: {COMMAND} worker tcp://host:8786")
+        raise GradingError(
+            f"The scheduler's address is missing. Type, for example: {COMMAND} worker tcp://host:8786"
+        )
     check_address(address)
     name = name or os.environ.get("DASK_WORKER_NAME") or f"{os.uname().nodename}-{os.getpid()}"
     offered = offer(jobs or len(os.sched_getaffinity(0)))
     if sandbox and offered.obstacle:
         raise GradingError(
-            f"No sandbox is possible here: {offered.obstacle}. To offer this machine without one, for submissions "
-            "that you trust as your own programs, add --unsafe-no-sandbox."
+            f"No sandbox is possible here: {offered.obstacle}. If you trust all submissions like your own programs, "
+            "add --unsafe-no-sandbox to run them without a sandbox."
         )
     tell(
         f"{name} offers {offered.slots} notebooks at once, "
@@ -84,7 +86,7 @@ async def _work(address: str, name: str, slots: int, folder: str, tell: Callable
             address,
             name=name,
             nthreads=slots,
-            memory_limit=0,
+            memory_limit=0,  # Dask sees only its own process; submissions run in others, with limits of their own
             dashboard=False,
             local_directory=folder,
             death_timeout=_CONNECT_SECONDS,

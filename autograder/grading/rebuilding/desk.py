@@ -1,12 +1,12 @@
-"""Reads what students handed in. Each file is parsed by a desk: a separate process in a box.
+"""Reads the notebooks that students handed in. Each file is parsed by a desk, which is a separate process in a box.
 
 .. code-block:: python
 
     cells, left_out = read_notebook(read_bytes(path))
 
-Code that has taken over a desk decides only what is reported about this one file. The document that comes out is
-checked (:func:`autograder.grading.running.admission.admitted_notebook`). An impossible document, or a desk that fails,
-counts as the file's fault.
+A file that takes over its desk can only change what is read from this one file. The document that the desk returns is
+checked (:func:`autograder.grading.running.admission.admitted_notebook`). If the document is impossible, or the desk
+fails on the file, the file counts as unreadable.
 """
 
 from __future__ import annotations
@@ -30,16 +30,16 @@ CPU_SECONDS = 20
 """The maximum processor time of a desk process, in seconds. A file of 50 MB takes two seconds."""
 _SAMPLE = b'{"nbformat": 4, "metadata": {}, "cells": [{"cell_type": "code", "source": "x"}]}'
 _AS_SAVED = "Save the notebook in JupyterLab and hand in that file."
-_TOO_LONG = f"To read the file takes far more time than to read a notebook. {_AS_SAVED}"
+_TOO_LONG = f"Reading the file takes far more time than reading a notebook. {_AS_SAVED}"
 _NOT_READ = f"The file is not a notebook: the program that reads notebooks failed on it. {_AS_SAVED}"
 
 
 class DeskFailed(GradingError):
-    """No file can be read on this machine, so the files are not at fault. The message says what to do."""
+    """Desks do not work on this machine, so no file can be read. The message says what to do."""
 
 
 def read_notebook(data: bytes) -> tuple[Sequence[SubmittedCell], int]:
-    """Return the cells of a file that was handed in, and the number of cells that were left out.
+    """Return the cells of a submitted file, and the number of cells that were left out because they are not valid.
 
     Raises:
         UnreadableSubmission: The file is not a notebook. The message is a sentence for the student.
@@ -49,13 +49,13 @@ def read_notebook(data: bytes) -> tuple[Sequence[SubmittedCell], int]:
         return checked(document_of(_desk, data))
     except ChannelClosed as error:
         raise DeskFailed(
-            f"No file that was handed in can be read here: {error}. Mostly the machine is short of memory: end other "
-            "programs, and type the command again."
+            f"No submitted file can be read on this machine: {error}. The usual cause is too little free memory: end "
+            "other programs, and type the command again."
         ) from error
 
 
 def document_of(desk: Desk | KeptDesk, data: bytes) -> bytes:
-    """Let a desk process read the bytes of a file, and return its document, which is not yet checked.
+    """Let a desk process read the bytes of a file. Return the desk's document, which has not been checked yet.
 
     Raises:
         UnreadableSubmission: The desk process failed because of the file.
@@ -69,7 +69,11 @@ def document_of(desk: Desk | KeptDesk, data: bytes) -> bytes:
 
 
 def checked(document: bytes) -> tuple[Sequence[SubmittedCell], int]:
-    """Return the cells in a desk's document, and the number left out. Raises the same errors as read_notebook."""
+    """Check a desk's document. Return its cells, and the number of cells that the desk left out as not valid.
+
+    Raises:
+        UnreadableSubmission: The file is not a notebook, or the document is impossible.
+    """
     try:
         read = admitted_notebook(document)
     except Forged as error:
@@ -89,7 +93,7 @@ def why_unreadable(data: bytes) -> str:
 
 
 def _rehearse(desk: Desk) -> None:
-    """Let a new desk read a sample before the first student's file, so that a failure here is not blamed on a file."""
+    """Let a new desk read a sample. If that fails, this machine is the cause, not a student's file."""
     try:
         checked(document_of(desk, _SAMPLE))
     except UnreadableSubmission as error:

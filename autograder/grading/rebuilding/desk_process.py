@@ -1,8 +1,8 @@
 """The desk: a process in a box that parses the file of one student, and does nothing else.
 
-It is forked by the fork server (:mod:`autograder.boxes.fork_server`), with the system call filter for readers. It
-gets the bytes of one file, and answers with a document of typed cells or with the reason why there are none. A file
-can be crafted to keep a parser busy or to use up memory; the limits of this process then end it. Callers use
+The fork server (:mod:`autograder.boxes.fork_server`) forks it with the system call filter for readers. It gets the
+bytes of one file, and writes a document: the cells, or the reason why the file cannot be read. A student can craft a
+file that keeps a parser busy or uses up memory; the limits of this process then end it. The grader starts the desk with
 :mod:`autograder.grading.rebuilding.desk`.
 """
 
@@ -29,13 +29,13 @@ SAMPLE = (
     b'\xef\xbb\xbf{"nbformat": 4, "metadata": {}, "cells": [{"cell_type": "markdown", "source": ["\\ud800"], '
     b'"metadata": {"nbgrader": {"grade_id": "a", "grade": true}}, "attachments": {"a.png": {"image/png": "aa=="}}}]}'
 )
-"""A notebook that makes a desk load everything that it loads at first use."""
+"""A notebook that makes the parser load everything that it would otherwise load when it is first needed."""
 _PIECE = 1 << 20
 
 
 def prepare() -> None:
     """Load everything that a desk needs, because the desk itself cannot open files."""
-    # Garbage collection off: nothing made here can be freed before the end, and it would be checked again and again.
+    # No garbage collection: a desk process frees nothing before it ends, so searches for garbage only take time.
     gc.disable()
     for data in (SAMPLE, b"[", b"\xff"):
         answer_to(data)
@@ -56,7 +56,7 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
 
 
 def answer_to(data: bytes) -> bytes:
-    """Return the document about a file, as JSON."""
+    """Return the document about a file as JSON: the cells, or the reason why the file cannot be read."""
     document: ReadNotebook | Unreadable
     try:
         cells, left_out = parse(data)

@@ -1,8 +1,8 @@
 """Finds the cells of a notebook that take too long to render on a page.
 
-A text can be crafted to keep parsers of Markdown and code busy for minutes. So a desk (:mod:`autograder.boxes.desk`)
-renders a student's texts in the same steps as nbconvert's page template, and is ended at a limit of processor time. On
-pages and in formgrader, the texts that it did not finish are shown as typed, and cut
+A student can craft a text that keeps parsers of Markdown and code busy for minutes. So a desk
+(:mod:`autograder.boxes.desk`) renders the texts first as a trial, in the same steps as nbconvert's page template and
+with a limit of processor time. Pages and formgrader show the texts that the desk did not finish as typed, and cut them
 (:func:`autograder.grading.returning.sanitize.make_harmless`).
 """
 
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from autograder.execution.cells import Cell
 
 SECONDS = 1
-"""The time limit for a notebook, in seconds of processor time. Usual texts take a few hundredths of a second."""
+"""The time limit for all texts of a notebook, in seconds of processor time. Usually they take less than a tenth."""
 _desk = KeptDesk("autograder.grading.returning.rendering_trial")
 
 
 def too_costly(cells: Sequence[Cell]) -> tuple[int, ...]:
-    """Return the indexes of the cells to show as typed: the first cell that exceeds the time limit, and all after it.
+    """Return the indexes of the cells to show as typed: the cell at which the time limit is exceeded, and later cells.
 
     Args:
         cells: The cells of a rebuilt notebook.

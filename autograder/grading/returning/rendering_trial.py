@@ -1,6 +1,6 @@
-"""The program of the desk that renders a notebook's texts in the same steps as a page, to test how long they take.
+"""The program of the desk that renders a notebook's texts as a trial, to find out how long that takes.
 
-The desk writes one byte after each text. The rendered texts are not used. The module
+The desk writes one byte after each text that it has rendered. The rendered texts are not used. The module
 :mod:`autograder.grading.returning.rendering_time` starts the desk.
 """
 
@@ -35,13 +35,13 @@ _SAMPLES = (
     "<b>a</b>\n\n<div>b</div>",
     "```python\na\n```\n\n```no such language\nb\n```",
 )
-"""Texts for loading everything that a renderer loads at its first use. They are separate texts, because one text with
-all of this would be shown as typed.
+"""Texts that make nbconvert load everything that it would otherwise load when it is first needed. They are separate,
+because ``harmless_markdown`` would leave one text with so much markup unrendered.
 """
 
 
 def prepare() -> None:
-    """Load everything that a desk needs, such as all lexers, because the desk itself cannot open files."""
+    """Load everything that a desk needs, such as all of Pygments' lexers, because the desk itself cannot open files."""
     gc.disable()
     for name, *_ in pygments.lexers.get_all_lexers():
         pygments.lexers.find_lexer_class(name)
@@ -51,7 +51,7 @@ def prepare() -> None:
 
 
 def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
-    """Render the texts, and write one byte after each.
+    """Render the texts, and write one byte after each text.
 
     Args:
         call: Not used.
@@ -66,12 +66,12 @@ def run(call: Mapping[str, Any], descriptors: Sequence[int]) -> None:
 
 
 def render(kind: CellType, text: str) -> None:
-    """Render one text in the same steps as a page."""
-    # This follows the blocks "markdowncell" and "input" of nbconvert/templates/lab/base.html.j2.
+    """Render one text of a cell in the same steps as a page does, without returning the result."""
+    # The steps are those of the blocks "markdowncell" and "input" in nbconvert/templates/lab/base.html.j2.
     if kind is CellType.CODE:
         piece = clean_html(Highlight2HTML(pygments_lexer="ipython3")(text))
     elif kind is CellType.MARKDOWN:
         piece = strip_files_prefix(clean(markdown2html_mistune(harmless_markdown(text))))
     else:
-        return  # cells of any other type are always shown as typed
-    BeautifulSoup(piece, "html.parser")  # nbconvert/exporters/html.py: from_notebook_node
+        return  # pages show a cell of any other type as typed
+    BeautifulSoup(piece, "html.parser")  # as from_notebook_node in nbconvert/exporters/html.py does

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from autograder.grading.task import Task
 
     Execute = Callable[[Iterable[Task], Callable[[Task], None]], Generator[Done, None, None]]
-    """A function of the tasks, in order, and of a function to call when one begins. It yields results as they are
-    ready.
+    """Executes tasks in the given order, and yields each result as soon as it is ready. The second argument is called
+    when a task begins.
     """
 
 
 def remove_leftovers(directory: ClassDirectory) -> None:
-    """Remove temporary files that a killed batch left, even if nothing will be executed now.
+    """Remove temporary files that a killed batch left behind.
 
     The caller must hold the lock of the class, so that no other process uses the files.
     """
@@ -31,12 +31,12 @@ def remove_leftovers(directory: ClassDirectory) -> None:
 
 @contextlib.contextmanager
 def local(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[Execute]:
-    """Prepare to execute on this machine.
+    """Yield a function that executes tasks on this machine.
 
     Args:
         directory: The class.
         jobs: The number of notebooks to execute at the same time; None for as many as processors and memory allow.
-        judge: The class that makes a judge, as ``module:class``; the real one if empty.
+        judge: The class that makes a judge, as ``module:class``; empty for the real judge.
 
     Raises:
         SandboxMissing: Submissions cannot be boxed on this machine. The message says what to do.
@@ -59,12 +59,12 @@ def local(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[E
 def cluster(
     directory: ClassDirectory, scheduler: str, judge: str, tell: Callable[[str], None]
 ) -> Iterator[Execute]:
-    """Prepare to execute on the workers of a Dask cluster.
+    """Yield a function that executes tasks on the workers of a Dask cluster.
 
     Args:
         directory: The class.
         scheduler: The scheduler's address.
-        judge: The class that makes a judge, as ``module:class``; the real one if empty.
+        judge: The class that makes a judge, as ``module:class``; empty for the real judge.
         tell: Called with a sentence for the instructor.
 
     Raises:

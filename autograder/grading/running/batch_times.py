@@ -1,4 +1,4 @@
-"""The time that each part of a batch took."""
+"""Measures how long each step of a batch takes."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 @dataclass
 class Timings:
-    """Seconds of wall time for each part of a batch. The times of notebooks that run in parallel are added up.
+    """Wall time of each step of a batch, in seconds. The times of notebooks that run in parallel are added up.
 
     Attributes:
         boxes: Starting and ending boxes, kernels and judges.
-        students: Executing cells without a check: the student's own, and given cells.
-        judge: Executing check cells, including the subject that is judged in them.
+        students: Executing the cells that contain no check by the judge.
+        judge: Executing the cells that contain a check by the judge. This includes the time of the subject.
         rebuild: Reading submissions, and building the notebooks that are executed.
         gradebook: Converting notebooks and entering grades.
         feedback: Making feedback pages.
@@ -38,7 +38,7 @@ class Timings:
     last_ended: float = 0.0
 
     def count(self, cells: Sequence[Cell], execution: Execution) -> None:
-        """Add the times of one notebook."""
+        """Add the times of one executed notebook."""
         spent = [run.seconds for run in execution.cells]
         checks = sum(
             seconds
@@ -51,7 +51,7 @@ class Timings:
 
     @contextmanager
     def measure(self, part: str) -> Iterator[None]:
-        """Measure the duration of the block, and add it to ``part``."""
+        """Measure how long the ``with`` block takes, and add the time to the attribute named ``part``."""
         began = time.monotonic()
         try:
             yield
@@ -59,7 +59,7 @@ class Timings:
             setattr(self, part, getattr(self, part) + time.monotonic() - began)
 
     def line(self) -> str:
-        """Return the times as a line of text; empty if nothing took any time."""
+        """Return the times as a line of text; empty if they add up to almost nothing."""
         parts = (
             ("boxes and kernels", self.boxes),
             ("students' code", self.students),

@@ -1,9 +1,9 @@
 """Gives tasks to workers, on this machine or in a cluster, and decides which tasks run again and which run alone.
 
-A worker is a machine with slots; this machine counts as one worker. A task runs again, alone, if its execution proves
-nothing: the grader had trouble, or other tasks may have used up resources that this one needed. A task also runs
-again if its worker has ended. No answer is used before :func:`autograder.grading.running.admission.admitted` has
-checked it.
+A worker is a machine with a number of slots; each slot executes one task at a time. This machine counts as one worker.
+A task runs again if its worker ended. It runs again, alone on a worker, if the result is not reliable: the grader
+itself failed, or other tasks may have used up the memory or processor time that this task needed. Every answer is
+checked by :func:`autograder.grading.running.admission.admitted` before it is used.
 """
 
 from __future__ import annotations
@@ -45,17 +45,17 @@ if TYPE_CHECKING:
     from autograder.grading.task import Task
 
 ATTEMPTS = 3
-"""The maximum number of workers that may end while they run a task, because the task may be what ends them."""
+"""The maximum number of times that a task is given to a worker. If each worker ended, the task may be the cause."""
 _RETURN_SECONDS = 60.0
-"""Seconds to wait for a worker if none is left, because a worker that ended is often started again."""
+"""Seconds to wait for a worker if none is left. A worker that ended is often started again."""
 _EXTRA_SECONDS = 90.0
-"""Seconds after the end of the time limits of a task until its worker is assumed to be lost."""
+"""Seconds that a worker may take beyond the time limits of a task. Then its answer is no longer expected."""
 _MOST_IN_FLIGHT = 2_000
 _MOST_TROUBLES = 3
 
 
 class NoWorkers(GradingError):
-    """No worker can execute anything."""
+    """There is no worker that can execute tasks."""
 
 
 class SchedulerGone(GradingError):
@@ -69,7 +69,7 @@ class _Worker:
     name: str
     slots: int
     troubles: int = 0
-    """The number of notebooks in a row with which the worker had trouble."""
+    """The number of notebooks in a row on which the grader itself failed at this worker."""
     flights: set[int] = field(default_factory=set)
 
 
@@ -81,9 +81,9 @@ class _Job:
     attempts: int = 0
     tried: set[str] = field(default_factory=set)
     alone: bool = False
-    """True after an execution that proves nothing. The worker then executes nothing else at the same time."""
+    """True if a first result was not reliable. The task then runs on a worker that executes nothing else meanwhile."""
     cpu_seconds: float = 0.0
-    """The processor time of that execution, in seconds."""
+    """The processor time of the unreliable execution, in seconds."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ class _Flight:
 
 @dataclass(frozen=True)
 class Done:
-    """A task that was executed, or that could not be executed."""
+    """A task with its execution. If the task could not be executed, ``execution.trouble`` says why."""
 
     task: Task
     execution: Execution
@@ -105,10 +105,10 @@ class Link(Protocol):
     """The connection between the dispatcher and the workers."""
 
     def say(self, command: Command) -> None:
-        """Send a command. If the connection is broken, nothing happens, and :meth:`hear` returns ``Broken``."""
+        """Send a command. This raises no error if the connection is broken: :meth:`hear` then returns ``Broken``."""
 
     def hear(self, within: float | None) -> News | None:
-        """Return the next message; None if none came within this number of seconds (None: no limit)."""
+        """Wait at most ``within`` seconds (None: without limit) for the next message. Return None if none came."""
 
 
 class Dispatcher:
@@ -118,7 +118,7 @@ class Dispatcher:
         link: The connection to the workers.
         address: The address of the cluster's scheduler, for messages; empty for this machine.
         judge: The class of the judge, as ``module:class``.
-        boxed: True if tasks run in sandboxes. Then a worker that has none is rejected.
+        boxed: True if tasks run in sandboxes. Workers that cannot make sandboxes are then rejected.
         tell: Called with sentences for the instructor, for example that a worker was rejected and why.
         return_seconds: Seconds to wait for a worker if none is left.
     """
@@ -146,11 +146,11 @@ class Dispatcher:
         self._number = 0
 
     def await_workers(self) -> None:
-        """Wait until a worker is accepted, or until all workers have been asked for their offers.
+        """Wait until one worker has been accepted.
 
         Raises:
             SchedulerGone: The scheduler cannot be reached.
-            NoWorkers: No worker exists, or none can be given work.
+            NoWorkers: There are no workers, or all of them were asked for their offers and rejected.
         """
         while not self._workers:
             news = self._link.hear(None)
@@ -164,12 +164,12 @@ class Dispatcher:
         """Execute tasks on the workers, and yield results as they are ready.
 
         Args:
-            tasks: The tasks in the order in which they begin. They are taken one by one, when a worker is free.
+            tasks: The tasks in the order in which they begin. The next task is taken when a worker has a free slot.
             on_start: Called when a task is given to a worker for the first time.
 
         Raises:
             SchedulerGone: The scheduler can no longer be reached.
-            NoWorkers: No worker is left, and none came back.
+            NoWorkers: All workers have ended or were rejected, and no new worker came in time.
         """
         jobs = (_Job(task) for task in tasks)
         alone_until: float | None = None
@@ -190,7 +190,7 @@ class Dispatcher:
                 yield self._done.pop()
 
     def _give_out(self, jobs: Iterator[_Job], on_start: Callable[[Task], None]) -> None:
-        """Fill every free slot. Nothing is queued at a worker, so little is lost if the worker ends."""
+        """Give a task to every free slot. No tasks are queued at a worker: they would be lost if the worker ended."""
         for address, worker in self._workers.items():
             while len(worker.flights) < worker.slots and len(self._flights) < _MOST_IN_FLIGHT:
                 job = self._next_for(address, worker, jobs)
@@ -202,12 +202,11 @@ class Dispatcher:
         self._look_ahead(jobs)
 
     def _next_for(self, address: str, worker: _Worker, jobs: Iterator[_Job]) -> _Job | None:
-        """Return the next task for a worker.
+        """Return the next task for a worker; None if there is no task for it now.
 
-        A worker gets at most one task that was lost before, and if possible not one that it lost itself.
-
-        A task that was lost may be what ends workers, and no other such task must be lost together with it. Tasks
-        that must run alone come when there is nothing else for this worker, because it is empty then.
+        A task that was lost may have ended its worker. So a worker runs at most one such task at a time, and if
+        possible not one that it lost itself. A task that must run alone waits until the worker is idle because no
+        other tasks are left.
         """
         held = [self._flights[number].job for number in worker.flights]
         if any(job.alone for job in held):
@@ -220,7 +219,7 @@ class Dispatcher:
         return None if held else self._taken_from(self._alone, address)
 
     def _taken_from(self, waiting: list[_Job], address: str) -> _Job | None:
-        """Take the first waiting task that this worker has not tried, or that all workers have tried."""
+        """Remove and return the first waiting task that this worker has not tried, or that all workers have tried."""
         for job in waiting:
             if address not in job.tried or job.tried >= self._workers.keys():
                 waiting.remove(job)
@@ -228,7 +227,7 @@ class Dispatcher:
         return None
 
     def _look_ahead(self, jobs: Iterator[_Job]) -> None:
-        """Take the next new task in advance, to know whether there is one."""
+        """Take the next new task from the iterator, to know whether any are left."""
         if not self._new:
             self._new.extend(itertools.islice(jobs, 1))
 
@@ -248,7 +247,7 @@ class Dispatcher:
         return min(deadlines) - time.monotonic() if deadlines else None
 
     def _order(self, task: Task) -> bytes:
-        # The worker does not need to know the student.
+        # The student's name is removed, because a worker does not need it.
         nameless = msgspec.json.encode(replace(task, student=""))
         return msgspec.json.encode(Order(msgspec.Raw(nameless), self._judge))
 
@@ -259,14 +258,14 @@ class Dispatcher:
             case Unfit(address, name, reason):
                 self._refuse(address, name, _could_not_be_asked(reason))
             case Left(address, reason):
-                self._forget(address, reason or "its worker ended while it ran this submission")
+                self._forget(address, reason or "the worker ended while it ran this submission")
             case Answered(number, data) if number in self._flights:
                 self._answered(number, data)
             case Failed(number, reason, forged) if number in self._flights:
                 if forged:
                     self._forged(number, reason)
                 else:
-                    self._lost(number, f"its worker could not run it: {reason}")
+                    self._lost(number, f"the worker could not run this submission: {reason}")
             case Broken(reason) if not self._address:
                 raise NoWorkers(
                     f"This machine cannot execute notebooks: {reason}. What was graded so far is kept."
@@ -278,7 +277,7 @@ class Dispatcher:
                     "is kept."
                 )
             case _:
-                pass  # this answer is no longer needed
+                pass  # no message came, or an answer that is no longer needed
 
     def _consider(self, address: str, name: str, data: bytes) -> None:
         try:
@@ -290,8 +289,8 @@ class Dispatcher:
             self._refuse(
                 address,
                 name,
-                f"it has another version of the course ({offer.version:.16}, here it is {course_version()}). "
-                "Bring both to the same commit and start the worker again",
+                f"its version of the course is {offer.version:.16}, and here it is {course_version()}. "
+                "Bring both machines to the same commit and start the worker again",
             )
         elif self._boxed and offer.obstacle:
             self._refuse(address, name, f"it has no sandbox: {offer.obstacle[:500]}")
@@ -319,7 +318,8 @@ class Dispatcher:
             return
         worker = self._workers[flight.worker]
         self._land(number)
-        # If a task ran alone, its notebook may have caused the trouble, and such tasks come one after the other.
+        # The failure of a task that ran alone is not counted against the worker: the notebook may be the cause, and
+        # several such notebooks come one after the other.
         if not flight.job.alone:
             worker.troubles = worker.troubles + 1 if execution.trouble else 0
         if self._comes_again(flight.job, execution):
@@ -327,27 +327,27 @@ class Dispatcher:
         else:
             self._done.append(Done(flight.job.task, execution))
         if worker.troubles >= _MOST_TROUBLES and len(self._workers) > 1:
-            # For example, if a worker's disk is full, it would end each notebook at once and then get the next one.
+            # For example, a worker with a full disk would fail on each notebook at once, and then get the next one.
             self._turn_out(
-                flight.worker, f"it had trouble with {worker.troubles} notebooks: {execution.trouble}"
+                flight.worker, f"it failed on {worker.troubles} notebooks in a row: {execution.trouble}"
             )
 
     def _comes_again(self, job: _Job, execution: Execution) -> bool:
-        """Return True if the task must run again: its execution proves nothing, or another worker may succeed."""
+        """Return True if the task must run again: the result is not reliable, or another worker may succeed."""
         if not job.alone:
             return execution.says_nothing
         return bool(execution.trouble) and self._others_may_do(job)
 
     def _do_alone(self, flight: _Flight, execution: Execution) -> None:
         job = flight.job
-        if not execution.trouble:  # the worker did nothing wrong
+        if not execution.trouble:  # the worker did not fail, so this attempt does not count
             job.attempts -= 1
             job.tried.discard(flight.worker)
         job.alone, job.cpu_seconds = True, execution.cpu_seconds
         self._wait(job)
 
     def _wait(self, job: _Job) -> None:
-        """Put a job into the queue. Of jobs that run alone, the one that used most processor time comes last."""
+        """Queue a job. Jobs that must run alone are sorted by the processor time that they took, the least first."""
         if job.alone:
             bisect.insort(self._alone, job, key=operator.attrgetter("cpu_seconds"))
         else:
@@ -362,20 +362,20 @@ class Dispatcher:
             self._lost(number, f"the process that executes notebooks gave an impossible answer: {reason}")
             return
         for held in self._workers[address].flights:
-            self._flights[held].job.attempts -= 1  # this was the fault of the worker, not of the notebook
-        self._turn_out(address, f"it sent an impossible answer: {reason}. Look at that machine")
+            self._flights[held].job.attempts -= 1  # does not count: the worker is at fault, not the notebook
+        self._turn_out(address, f"it sent an impossible answer: {reason}. Check that machine")
 
     def _turn_out(self, address: str, reason: str) -> None:
-        """Give an accepted worker no more work. Other workers execute its tasks."""
+        """Give no more tasks to an accepted worker. Other workers execute the tasks that it was running."""
         name = self._workers[address].name
-        self._forget(address, f"its worker was given no more work: {reason}")
+        self._forget(address, f"the worker was given no more work: {reason}")
         self._refuse(address, name, reason)
 
     def _give_up_on_silent(self, now: float) -> None:
         for number, flight in list(self._flights.items()):
             if number in self._flights and flight.deadline <= now:
                 if flight.worker == ADDRESS:
-                    self._lost(number, "it has not ended in time")
+                    self._lost(number, "the execution has not ended in time")
                     continue
                 self._turn_out(flight.worker, "it has not answered in time. Start it again")
 
@@ -404,7 +404,7 @@ class Dispatcher:
 
 
 def _most_seconds(task: Task) -> float:
-    # The factor 2 is because the time limits of cells stretch while the machine is overloaded.
+    # Twice the limit, because the time limits of cells get longer while the machine is overloaded.
     return 2 * task.limits.longest + _EXTRA_SECONDS
 
 

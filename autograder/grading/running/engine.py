@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from autograder.grading.task import Task
 
 _PER_CORE = 4
-"""The maximum number of notebooks per processor at the same time. A notebook mostly waits: for a timer, for discovery,
-or for a program to start.
+"""The maximum number of notebooks per processor at the same time. A notebook spends most of its time waiting: for a
+timer, for ROS discovery, or for a program to start.
 """
 BOX_BYTES = Limits().beside_bytes + 150_000_000
-"""The memory in bytes that each further notebook may take, with its sandbox and judge."""
+"""The memory in bytes that is reserved for each notebook with its sandbox and judge."""
 _RESERVE_BYTES = 1_000_000_000
 
 
@@ -35,10 +35,10 @@ def cores() -> int:
 
 
 def at_once(processors: int, free_bytes: int) -> int:
-    """Return the default number of notebooks to execute at once: all fit into memory if each takes its full share.
+    """Return the default number of notebooks to execute at once. Each of them has ``BOX_BYTES`` of memory.
 
-    The memory also has to hold one build per processor. A notebook that needs more than its share is executed again,
-    alone.
+    There is also memory for one build per processor. A notebook that needs more memory than its share is executed
+    again, alone.
     """
     room = free_bytes - _RESERVE_BYTES - processors * BUILD_LIMITS.beside_bytes
     return max(1, min(processors * _PER_CORE, room // BOX_BYTES))
@@ -55,10 +55,10 @@ def execute_all(
 ) -> Generator[Done, None, None]:
     """Execute tasks in parallel, and yield results as they are ready.
 
-    If the caller leaves the loop early, everything that runs is ended.
+    If the caller leaves the loop early, the tasks that still run are ended.
 
     Args:
-        tasks: The tasks in the order in which they begin. A thread takes each of them when a slot becomes free.
+        tasks: The tasks in the order in which they begin. Another thread takes the next one when a slot is free.
         scratch: The folder in which submissions run. The caller removes it.
         workers: The number of notebooks to execute at the same time; None for the number that :func:`at_once`
             returns.
@@ -72,7 +72,7 @@ def execute_all(
         dispatcher = Dispatcher(machine, "", judge=judge, boxed=boxed, tell=lambda _: None)
 
         def dispatch() -> None:
-            """Dispatch in a separate thread, so that no slot is empty while the caller stores a result."""
+            """Run in a separate thread, so that free slots get tasks while the caller stores a result."""
             try:
                 for done in dispatcher.execute_all(tasks, on_start):
                     results.put(done)

@@ -1,8 +1,8 @@
-"""Executes orders on this machine, each in a thread: in the executor process of a batch, or in a Dask worker.
+"""Executes orders on this machine, each in a thread. Both the executor process of a batch and a Dask worker use it.
 
-A thread only starts the processes of a notebook and reads checked messages from them. The kernel, its desk and the
-judge are forked from fork servers, which are kept from order to order. As a program, this module is the executor
-process: it exchanges lines of JSON with the dispatcher over the socket on its standard input.
+A thread starts the processes of a notebook, and reads and checks their messages. It runs no student's code itself.
+The kernel, the kernel's desk and the judge are forked from fork servers, which serve all orders. Run as a program, this
+module is the executor process: it exchanges lines of JSON with the dispatcher over the socket on its standard input.
 """
 
 from __future__ import annotations
@@ -43,12 +43,12 @@ if TYPE_CHECKING:
     from autograder.execution.notebook_boxes import BoxedPlace, UnboxedPlace
 
 LAST_SECONDS = 10.0
-"""Seconds for the executor process to clean up after its grader has ended. A running grader allows less time."""
+"""Time limit in seconds for the clean-up of the executor process. A grader that still runs kills it earlier."""
 _JUDGE_MODULE = "autograder.judge.serving.attached"
 
 
 class Executor:
-    """Executes orders. Any thread may use it, and several at the same time.
+    """Executes orders. Several threads may use it at the same time.
 
     Args:
         scratch: The folder in which each submission gets its own folder.
@@ -65,7 +65,7 @@ class Executor:
         """Execute an order, and return the execution as JSON.
 
         Args:
-            key: A key for the order, for use in :meth:`cancel`.
+            key: A unique name for the order, with which :meth:`cancel` finds it.
             data: An :class:`autograder.grading.running.orders.Order` as JSON.
         """
         order = msgspec.json.decode(data, type=Order)
@@ -91,14 +91,14 @@ class Executor:
         return answer
 
     def cancel(self, key: str) -> None:
-        """End everything that an order runs, because its answer is no longer needed."""
+        """End the processes of an order whose answer is no longer needed."""
         with self._changing:
             running = self._running.get(key)
         if running is not None:
             running.end()
 
     def stop(self, within: float | None = None) -> None:
-        """End everything that runs, and the fork servers. Later orders end at once.
+        """End the processes of all orders, and the fork servers. An order that comes later fails at once.
 
         Args:
             within: The maximum number of seconds to wait for the threads that execute orders; by default
@@ -114,10 +114,10 @@ class Executor:
                 kept.stop()
 
     def fork_servers(self, *, boxed: bool) -> Addresses:
-        """Return the addresses of the fork servers. Start those that do not run, without waiting for their imports.
+        """Start the fork servers if they do not run, and return their addresses. Do not wait for their imports.
 
         Args:
-            boxed: True to include the fork server for the boxes' supervisors.
+            boxed: True to include the fork server for the supervisors of boxes.
         """
         with self._changing:
             kept = self._fork_servers.get(boxed)
@@ -143,14 +143,14 @@ class _Running:
         self._ended = False
 
     def began(self, place: BoxedPlace | UnboxedPlace) -> None:
-        """Record the boxes of the order."""
+        """Remember the boxes of the order, so that :meth:`end` can end them."""
         with self._changing:
             self._place = place
             if self._ended:
                 place.abandon()
 
     def end(self) -> None:
-        """End every process in the boxes. The execution then ends with trouble."""
+        """End every process in the boxes. The execution of the order then fails."""
         with self._changing:
             self._ended = True
             if self._place is not None:
@@ -167,9 +167,8 @@ def main(arguments: list[str]) -> None:
     raise_own()
     adopt_orphans()
     executor, grader = Executor(Path(arguments[0])), Lines.with_parent()
-    executor.fork_servers(
-        boxed="boxed" in arguments[2:]
-    )  # they import while the grader prepares the first order
+    # Start the fork servers now: they import their modules while the grader prepares the first order.
+    executor.fork_servers(boxed="boxed" in arguments[2:])
     offer = msgspec.json.encode(Offer("", int(arguments[1]), ""))
     with contextlib.suppress(Hangup):
         grader.say_json(msgspec.json.encode(Joined(ADDRESS, ADDRESS, offer)))

@@ -1,7 +1,7 @@
-"""Messages between the dispatcher and the machines that execute tasks; and the offer of a machine.
+"""Commands and messages between the dispatcher and its workers.
 
-For a cluster, they are lines of JSON to the client process; for this machine, plain objects. Orders and answers are
-bytes, which the client process never decodes.
+They are sent as lines of JSON, to and from the executor process of this machine or the client process of a cluster.
+The client process passes orders and answers on as bytes, without decoding them.
 """
 
 from __future__ import annotations
@@ -9,9 +9,9 @@ from __future__ import annotations
 import msgspec
 
 ADDRESS = "this machine"
-"""The address of the worker that is this machine. This worker is never rejected: otherwise nothing could be graded."""
+"""The address of this machine as a worker. Its version is not compared, because the grader runs from the same files."""
 JUDGE = "autograder.judge.serving.process:JudgeProcess"
-"""The class of the real judge, as ``module:class``. It is named, not imported: only workers load a judge."""
+"""The class of the real judge, as ``module:class``. It is a text, because only workers import the judge."""
 
 
 class Offer(msgspec.Struct, frozen=True):
@@ -20,8 +20,8 @@ class Offer(msgspec.Struct, frozen=True):
     Attributes:
         version: The version of the worker's course
             (:func:`autograder.grading.rebuilding.course_version.course_version`).
-        slots: The number of notebooks that it executes at the same time.
-        obstacle: Why it cannot execute in sandboxes, and what to do; empty if it can.
+        slots: The number of notebooks that the worker executes at the same time.
+        obstacle: Why the worker cannot make sandboxes, and what to do; empty if it can.
     """
 
     version: str
@@ -30,7 +30,7 @@ class Offer(msgspec.Struct, frozen=True):
 
 
 class Order(msgspec.Struct, frozen=True):
-    """An order to a worker: execute this task.
+    """An order to a worker to execute a task.
 
     Attributes:
         task: The task, as JSON.
@@ -42,7 +42,7 @@ class Order(msgspec.Struct, frozen=True):
 
 
 class Give(msgspec.Struct, frozen=True, tag=True):
-    """A command to the connection: have this worker execute this order.
+    """A command: pass this order to this worker.
 
     Attributes:
         number: A number that identifies the order in the answer.
@@ -56,13 +56,13 @@ class Give(msgspec.Struct, frozen=True, tag=True):
 
 
 class Drop(msgspec.Struct, frozen=True, tag=True):
-    """A command to the connection: the answer to this order is no longer needed."""
+    """A command: cancel this order, because its answer is no longer needed."""
 
     number: int
 
 
 class Joined(msgspec.Struct, frozen=True, tag=True):
-    """A message: a worker exists, and has sent something that should be an :class:`Offer`."""
+    """A message: a worker has joined. ``offer`` should be an :class:`Offer` as JSON, but has not been checked yet."""
 
     worker: str
     name: str
@@ -70,7 +70,7 @@ class Joined(msgspec.Struct, frozen=True, tag=True):
 
 
 class Unfit(msgspec.Struct, frozen=True, tag=True):
-    """A message: a worker exists, but has sent no offer."""
+    """A message: a worker has joined, but has sent no offer for the given reason."""
 
     worker: str
     name: str
@@ -78,30 +78,30 @@ class Unfit(msgspec.Struct, frozen=True, tag=True):
 
 
 class Asked(msgspec.Struct, frozen=True, tag=True):
-    """A message: every worker that existed at the beginning has been asked for its offer."""
+    """A message: all workers that existed at the beginning have been reported, with or without an offer."""
 
 
 class Left(msgspec.Struct, frozen=True, tag=True):
-    """A message: a worker has ended, and the reason if it is known."""
+    """A message: a worker has ended. ``reason`` is empty if it is not known."""
 
     worker: str
     reason: str = ""
 
 
 class Answered(msgspec.Struct, frozen=True, tag=True):
-    """A message: a worker's answer, which should be an execution as JSON. It has not been checked yet."""
+    """A message: a worker's answer to an order. ``data`` should be an execution as JSON, but is not checked yet."""
 
     number: int
     data: bytes
 
 
 class Failed(msgspec.Struct, frozen=True, tag=True):
-    """A message: there is no answer to an order.
+    """A message: an order will get no answer.
 
     Attributes:
         number: The number of the order.
         reason: Why there is no answer.
-        forged: True if the worker's answer was one that an unmodified worker would never send.
+        forged: True if the worker sent an answer that an unmodified worker would never send.
     """
 
     number: int
@@ -110,7 +110,7 @@ class Failed(msgspec.Struct, frozen=True, tag=True):
 
 
 class Broken(msgspec.Struct, frozen=True, tag=True):
-    """A message: no worker can be reached any more. No message follows this one."""
+    """A message: the connection to all workers is lost. No other message follows."""
 
     reason: str
 
@@ -119,6 +119,6 @@ Command = Give | Drop
 News = Joined | Unfit | Asked | Left | Answered | Failed | Broken
 
 LARGEST_ANSWER = 16_000_000
-"""The maximum size of an answer in bytes. A notebook's outputs are cut at 2 MB, and its evidence at 4 MB, which is a
-third more as JSON.
+"""The maximum size of an answer in bytes. An answer contains at most 2 MB of outputs and 4 MB of evidence; as JSON, the
+evidence takes a third more.
 """

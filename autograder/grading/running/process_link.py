@@ -30,16 +30,16 @@ if TYPE_CHECKING:
 GOODBYE_SECONDS = 2.0
 """Seconds after which a process that was asked to end is killed, so that Ctrl-C takes less than three seconds."""
 _STARTS = 3
-"""The maximum number of starts in a row of an executor process that says nothing."""
+"""The maximum number of starts in a row of an executor process that ends without having sent a message."""
 _STOPPED = Broken("the run was stopped")
 
 
 class ProcessLink:
-    """A running process. At the end of the ``with`` block, the process is ended.
+    """A process and the connection to it. The process starts and ends with the ``with`` block.
 
     Args:
-        words: The module of the process, and its arguments.
-        folder: The current folder of the process; None for the folder of this process.
+        words: The module that the process runs, and the arguments of the module.
+        folder: The working directory of the process; None for that of the caller.
     """
 
     _cleans_up = False
@@ -52,7 +52,7 @@ class ProcessLink:
         self._closing = self._stopped = False
 
     def __enter__(self) -> Self:
-        # The process prints into a file, because a pipe that no process reads would fill up.
+        # The process prints into a file: a pipe that is not read would fill up and block the process.
         self._log = unnamed_file()
         self._start()
         threading.Thread(target=self._listen, daemon=True).start()
@@ -61,14 +61,14 @@ class ProcessLink:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End the process. After an error, a client process ends at once, and its scheduler cancels its tasks."""
+        """End the process. After an error, a Dask client is killed, so that the scheduler cancels its tasks."""
         with self._changing:
             self._closing = True
         self._end(at_once=kind is not None and not self._cleans_up)
         self._log.close()
 
     def say(self, command: Command) -> None:
-        """Send a command. If the process has ended, :meth:`hear` reports that."""
+        """Send a command. This raises no error if the process has ended: :meth:`hear` then reports its end."""
         with contextlib.suppress(Hangup):
             self._lines.say_json(msgspec.json.encode(command))
 
@@ -85,7 +85,7 @@ class ProcessLink:
         return _STOPPED if self._stopped else news
 
     def stop(self) -> None:
-        """Let the dispatcher receive no more messages, so that it gives out no more tasks. Any thread may call this."""
+        """End the dispatcher's work: :meth:`hear` returns ``Broken`` from now on. Any thread may call this."""
         self._stopped = True
         self._news.put(_STOPPED)
 
@@ -104,7 +104,7 @@ class ProcessLink:
         self._lines = Lines(own, sys.maxsize)
 
     def _end(self, *, at_once: bool) -> None:
-        """Ask the process to end, and wait for its end. Kill it if it takes too long, or if it must end at once."""
+        """Ask the process to end, and wait for its end. Kill it if it takes too long, or first if ``at_once``."""
         if at_once:
             self._process.kill()
         self._lines.finish()
@@ -112,7 +112,7 @@ class ProcessLink:
         self._lines.close()
 
     def _listen(self) -> None:
-        """Read the messages continuously: a process that waits for us to read would not read our commands."""
+        """Read the messages of the process all the time. If nothing read them, it would stop and read no commands."""
         said_nothing = 0
         while True:
             said_nothing += 1
@@ -130,7 +130,7 @@ class ProcessLink:
                     return
 
     def _starts_again(self, reason: str) -> bool:
-        """Start the process again after it ended, if that is possible. Return whether it was started."""
+        """Start the process again after its end, and return True; False if such a process is not started again."""
         del reason
         return False
 
@@ -143,12 +143,12 @@ class ProcessLink:
 
 
 class ThisMachine(ProcessLink):
-    """The connection to the executor process of this machine. If the process dies, it is started again.
+    """The connection to the executor process of this machine. If the process ends by accident, it is started again.
 
     Args:
         scratch: The folder in which submissions run.
         slots: The number of notebooks to execute at the same time.
-        boxed: True if they will be executed in boxes.
+        boxed: True if notebooks are executed in boxes.
     """
 
     _cleans_up = True
@@ -167,14 +167,14 @@ class ThisMachine(ProcessLink):
     def _end(self, *, at_once: bool) -> None:
         super()._end(at_once=at_once)
         if self._process.returncode != 0:
-            end_processes_in(self._scratch)  # the process may not have cleaned up after itself
+            end_processes_in(self._scratch)  # the executor may have left processes of submissions
 
 
 def client_of(address: str) -> ProcessLink:
-    """Return the connection to a client process of a Dask cluster.
+    """Return the connection to a new process that is the client of a Dask cluster.
 
     Args:
         address: The scheduler's address.
     """
-    # The process starts in this process's folder, because Dask's settings may name certificates by relative paths.
+    # The client keeps the working directory, because Dask's settings may name certificates by relative paths.
     return ProcessLink("autograder.grading.cluster.dask_client", address, folder=None)

@@ -1,8 +1,7 @@
-"""Progress while a class is graded: a bar in a terminal, or plain lines in a log file or a notebook.
+"""Shows the progress of grading: a bar in a terminal, or plain lines in a log file or in Jupyter.
 
-The remaining time is estimated from the finished notebooks. If the estimated time has passed and a notebook is still
-running, the estimate was wrong. The text then names the notebook, how long it has been running, and when it will be
-stopped at the latest.
+The remaining time is estimated from the finished notebooks. If a notebook still runs after the estimated time, the text
+says instead which notebook it is, how long it has been running, and when it will be stopped at the latest.
 """
 
 from __future__ import annotations
@@ -22,9 +21,9 @@ if TYPE_CHECKING:
     from rich.progress import Task
 
 _LINES = 20
-"""The maximum number of lines that a batch writes into a log file."""
+"""The approximate number of lines that a large class gets in a log file. Each failure adds a line."""
 _SILENCE = 30.0
-"""Seconds of silence after which a log file gets a line about a notebook that runs longer than estimated."""
+"""Seconds between two lines in a log file about a notebook that runs longer than estimated."""
 
 
 def plain_line(console: Console, text: str, style: str = "") -> None:
@@ -33,20 +32,20 @@ def plain_line(console: Console, text: str, style: str = "") -> None:
 
 
 class _Now(ProgressColumn):
-    """A column of the progress bar that shows what is going on, computed each time the bar is drawn."""
+    """A column of the progress bar with a text that is computed each time the bar is drawn."""
 
     def __init__(self, now: Callable[[], str]) -> None:
         super().__init__()
         self._now = now
 
     def render(self, task: Task) -> Text:
-        """Return the text that is shown next to the bar."""
+        """Return the text of the column. Rich calls this each time it draws the bar."""
         del task
         return Text(self._now())
 
 
 class BatchProgress:
-    """Counts notebooks that are done, running, waiting or failed. Any thread may call it.
+    """Counts and shows the notebooks that are done, running, waiting or failed. Any thread may call it.
 
     Args:
         console: The console for the progress.
@@ -78,8 +77,7 @@ class BatchProgress:
         self._began = self._last = clock()
         self._closed = threading.Event()
         self._lock = threading.Lock()
-        # A notebook is treated like a log file, because it would show the characters that move the cursor in a
-        # terminal.
+        # Jupyter gets plain lines like a log file: it would show the control characters that move a terminal's cursor.
         self._lively = console.is_terminal and not console.is_jupyter
         self._bar = Progress(
             Words(doing),
@@ -120,7 +118,7 @@ class BatchProgress:
         Args:
             label: The name of the notebook, as in :meth:`started`.
             failed: True if the grader itself failed on the notebook.
-            note: Text to show after the name.
+            note: A text to show after the notebook's name.
         """
         with self._lock:
             self._running.pop(label, None)
@@ -135,7 +133,7 @@ class BatchProgress:
             plain_line(self._console, text)
 
     def tell(self) -> None:
-        """If a notebook runs longer than estimated, write a line about it into the log file."""
+        """Print a line about the slowest notebook if it runs longer than estimated."""
         with self._lock:
             late = self._is_late() and f"still {', '.join(self._now())}"
         if late:
@@ -146,7 +144,7 @@ class BatchProgress:
             self.tell()
 
     def _rest(self) -> str:
-        """Return the text in parentheses at the end of a line in the log; empty for the last line."""
+        """Return the counts in parentheses, for the end of a line in the log file; empty in the last line."""
         return f" ({', '.join(self._now())})" if self._done < self._total else ""
 
     def _now(self) -> list[str]:
@@ -173,7 +171,7 @@ class BatchProgress:
         return bool(self._running and self._done) and self._clock() > self._last + self._rest_of_all()
 
     def _slowest(self) -> list[str]:
-        # Use a copy, because notebooks begin and end in other threads.
+        # Copy the dictionary, because other threads add and remove notebooks.
         label, since = min(self._running.copy().items(), key=lambda one: one[1])
         seconds = self._clock() - since
         words = [f"{label} for {_duration(seconds)} now"]

@@ -12,10 +12,10 @@ if TYPE_CHECKING:
     from autograder.grading.classes.class_directory import ClassDirectory
 
 NOTE = (
-    "Graded without a sandbox: what was handed in ran with all rights of whoever graded it "
+    "Graded without a sandbox: the submissions ran with all rights of the person who graded them, "
     "and could have changed any grade."
 )
-"""A warning that the report and each page of feedback show."""
+"""A warning that the report and every feedback page show if a class was graded without a sandbox."""
 
 
 class SandboxMissing(GradingError):
@@ -23,13 +23,13 @@ class SandboxMissing(GradingError):
 
 
 _off: set[Path] = set()
-"""The folders of the classes for which ``--unsafe-no-sandbox`` was given. Folders are stored, because several objects
-may represent one class.
+"""The folders of the classes that this process grades without boxes. Folders are stored, because several
+``ClassDirectory`` objects may represent one class.
 """
 
 
 def switch_off(path: Path) -> None:
-    """Grade the class at ``path`` without boxes from now on, in this process, as ``--unsafe-no-sandbox`` does."""
+    """Let this process grade the class in the folder ``path`` without boxes, as ``--unsafe-no-sandbox`` does."""
     _off.add(path.resolve())
 
 
@@ -43,8 +43,8 @@ def require(directory: ClassDirectory) -> None:
     """Check that submissions of this class can be boxed, or that the user allowed grading without boxes.
 
     Raises:
-        SandboxMissing: They cannot be boxed, and the user did not allow grading without boxes. The message says what
-            to do.
+        SandboxMissing: Submissions cannot be boxed, and the user did not allow grading without boxes. The message says
+            what to do.
     """
     if switched_off(directory):
         return

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from autograder.verdict import Verdict
 
 MOST_EVIDENCE = 4_000_000
-"""The maximum size in bytes of the evidence of one notebook, enough for ten checks. The evidence of later checks is
-dropped.
+"""The maximum size in bytes of the evidence of one notebook, enough for ten checks. The evidence of a check that would
+exceed it is not kept.
 """
 
 
@@ -51,7 +51,7 @@ def execute(
         scratch: The folder in which the task gets its own folder.
         judge: The class of the judge, as ``module:class``. It is called with the path of a socket, a seed, and a
             function that starts the judge's process.
-        addresses: The addresses of the fork servers. Without the one for supervisors there is no sandbox.
+        addresses: The addresses of the fork servers. A boxed task needs the one for supervisors.
         began: Called with the boxes of the task before anything runs in them.
 
     Raises:
@@ -72,7 +72,7 @@ def _execute(
     began: Callable[[BoxedPlace | UnboxedPlace], None],
 ) -> Execution:
     if task.boxed and not addresses.supervisors:
-        raise NoSandbox("this task is for a box, and there is none here")
+        raise NoSandbox("this task must run in a box, but no box can be made here")
     boxed = task.boxed
     kind: type[BoxedPlace] | type[UnboxedPlace] = BoxedPlace if boxed else UnboxedPlace
     arrangement = arrange(task, folder)
@@ -121,7 +121,7 @@ def _execute(
 def a_check_was_stopped(cells: Sequence[Cell], execution: Execution) -> bool:
     """Return True if a check by the judge reached the time limit of its cell.
 
-    Each wait of the judge has its own limit, so this usually means that the machine is busy.
+    The judge has a shorter limit for each of its waits, so this usually means that the machine is busy.
     """
     judged = [cell.check is not None and not cell.check.asserts for cell in cells]
     runs = zip(judged, execution.cells, strict=True)
@@ -129,20 +129,20 @@ def a_check_was_stopped(cells: Sequence[Cell], execution: Execution) -> bool:
 
 
 def patiently(seconds: float) -> Left:
-    """A deadline that stretches while the machine is overloaded, as the judge's own deadlines do."""
+    """Return a function that returns the seconds left until a deadline, which moves while the machine is overloaded."""
     patience = Patience(seconds)
     return lambda: patience.left
 
 
 class _Judges:
-    """Makes a judge for each check, on the network of that check. Only one judge is alive at a time.
+    """Gives each check a judge on the network of its subject. Only one judge is alive at a time.
 
-    It distinguishes a check that the notebook never requested from one in which the judge itself failed.
+    :meth:`close` returns None if the notebook never requested the check, and raises an error if the judge failed.
 
     Args:
         made: Makes a judge that is not started yet: with True for programs, with False for the notebook's own nodes.
         runners: The exercises whose subjects are programs.
-        first: The exercise of the first check. Its judge is started together with the kernel.
+        first: The exercise of the first check. Its judge is started before the check is requested.
 
     Attributes:
         evidence: The evidence of the verdicts, by exercise.
@@ -188,7 +188,7 @@ class _Judges:
 
 
 def _ros_variables(stack: contextlib.ExitStack, *, boxed: bool) -> Mapping[str, str]:
-    """Return variables for ROS on loopback only, plain logs on stdout, and the domain of the demonstrations."""
+    """Return environment variables for ROS: loopback only, plain logs on stdout, and the notebook's ROS domain."""
     if boxed:
         # No other nodes are on this network, so any domain is free.
         return {**boxed_ros_environment(), "ROS_DOMAIN_ID": "0"}

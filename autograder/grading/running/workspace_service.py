@@ -1,4 +1,4 @@
-"""The workspace service of a notebook, for its checks of workspaces and launch files."""
+"""Makes the workspace service of a notebook, which builds and runs workspaces and launch files for the checks."""
 
 from __future__ import annotations
 
@@ -45,16 +45,16 @@ class Arrangement:
 
     @property
     def judges_folder(self) -> Path:
-        """Return the folder that the judge's box has to see and the student's box must not see."""
+        """The folder with the judge's socket. The judge's box sees it; the student's box must not see it."""
         return self.folder / "jobs"
 
     @property
     def judges_socket(self) -> Path:
-        """Return the path of the judge's socket, which is the same for the judge and the grader."""
+        """The path of the judge's socket. It is the same inside and outside the judge's box."""
         return self.judges_folder / "sock"
 
     def variables(self) -> Mapping[str, str]:
-        """Return more environment variables for the notebook."""
+        """Return environment variables that let ``colcon build`` in the notebook's box use the grader's builds."""
         if not self.boxed:
             return {}
         path = f"{SHARED_FOLDER / _PROGRAMS}{os.pathsep}{os.environ.get('PATH', os.defpath)}"
@@ -62,7 +62,7 @@ class Arrangement:
 
 
 def arrange(task: Task, folder: Path) -> Arrangement:
-    """Prepare everything that is needed before the boxes are made.
+    """Make the folder of the judge's socket, and find the exercises of programs. Call this before boxes are made.
 
     Args:
         task: The notebook.
@@ -80,7 +80,7 @@ def arrange(task: Task, folder: Path) -> Arrangement:
 def served(
     arrangement: Arrangement, place: BoxedPlace | UnboxedPlace, addresses: Addresses
 ) -> WorkspaceService:
-    """Return the service. Its sockets are open for as long as the notebook runs.
+    """Return the workspace service of a notebook, for use in a ``with`` block that lasts as long as the notebook runs.
 
     Args:
         arrangement: The result of :func:`arrange`.
@@ -104,13 +104,13 @@ def served(
         jobs = PlainJobs(kernel_environment(folder / "home", {}), handed_in=True)
         ros = ros_environment()
         sockets = ServiceSockets(arrangement.judges_socket, None)
-    # With these, a program that hangs can be asked for its stacks, and output comes without delay.
+    # Output comes without delay, and a program that hangs can be asked for the stacks of its threads.
     variables = {**ros, "PYTHONUNBUFFERED": "1", "PYTHONFAULTHANDLER": "1"}
     return WorkspaceService(sockets, jobs, builds, variables, folder, ahead)
 
 
 def _furnish(shared: Path) -> None:
-    """Write the replacement for colcon into the folder that the student's box can read. It contains no solution."""
+    """Write a replacement for the colcon command into ``shared``, a folder that the student's box can read."""
     programs = shared / _PROGRAMS
     programs.mkdir()
     colcon = programs / "colcon"

@@ -1,8 +1,8 @@
 """The result of a build, accepted only as data: regular files and folders, nothing else.
 
-Outside a box, files that were made in a box must be nothing but bytes. So the box packs its install folder as a list of
-typed entries, and every entry is checked before it is written here. A link (a library has one, from its name to the
-name with its version) becomes a copy of its target, so that no later reader of the folder follows a link.
+The code of a student can put anything into the install folder of a build. So the folder is packed in the box as a list
+of typed entries, and outside the box every entry is checked before it is written. Links are replaced by copies of their
+targets, so that no program follows a link out of the folder. (A library, for example, has a link to its file.)
 
 In a box, this module is a program that prints the packed folder: ``python -m autograder.workspaces.builds.artefacts
 FOLDER``.
@@ -27,13 +27,13 @@ if TYPE_CHECKING:
 MAX_FILES = 5_000
 MAX_BYTES = 64_000_000
 BLOCK = 4_096
-"""Bytes that each file and folder counts in addition to its content, so that thousands of empty ones count, too."""
+"""Bytes that are added to the size of each file and folder, so that thousands of empty files exceed the limit, too."""
 MAX_NAME = 240
-"""The maximum length of one part of a path, in bytes."""
+"""The maximum length of one name in a path, in bytes."""
 MAX_DEPTH = 24
-"""The maximum number of parts of a path."""
+"""The maximum number of names in a path."""
 MAX_LINKS = 8
-"""The maximum number of links in a chain."""
+"""The maximum number of links in a chain of links that lead to each other."""
 _OF_THIS_MACHINE = (
     errno.ENOSPC,
     errno.EDQUOT,
@@ -43,7 +43,7 @@ _OF_THIS_MACHINE = (
     errno.EIO,
     errno.EROFS,
 )
-"""Errors of this machine that no build can cause: a full disk, an exhausted quota, too many open files."""
+"""Error numbers for trouble of this machine that no build can cause, such as a full disk or too many open files."""
 
 
 class BadArtefacts(ValueError):
@@ -51,7 +51,7 @@ class BadArtefacts(ValueError):
 
 
 class Kind(StrEnum):
-    """What a path of an install folder is."""
+    """The type of an entry in an install folder."""
 
     FILE = "file"
     PROGRAM = "program"
@@ -64,8 +64,8 @@ class Entry(msgspec.Struct, frozen=True, array_like=True):
     """One file, folder or link.
 
     Attributes:
-        path: The path inside the install folder, as the system has it.
-        kind: What it is. A program is a file that its owner may execute.
+        path: The path inside the install folder, as bytes, because it may not be valid UTF-8.
+        kind: The type. A program is a file that its owner may execute.
         data: The content of a file, or the target of a link.
     """
 
@@ -108,19 +108,17 @@ def _entry(path: Path, install: Path) -> Entry:
 
 
 def unpack(packed: bytes, folder: Path, most: int = MAX_BYTES) -> None:
-    """Write the packed install folder into a new folder.
+    """Check a packed install folder, and write it into a new folder.
 
     Args:
-        packed: A list of :class:`Entry`. It may contain anything, because the code that was built could have written
-            it.
+        packed: The result of :func:`pack`, if it is genuine. A student's code may have written any bytes instead.
         folder: The folder to create. It must not exist yet.
         most: The maximum size in bytes of all files and folders together.
 
     Raises:
-        BadArtefacts: There are entries that lead out of the folder, links to anything but its own files, devices, or
-            too many files or bytes. Files written before the error stay.
-        OSError, MemoryError: The disk, memory or open files of this machine are used up, which is not the build's
-            fault.
+        BadArtefacts: An entry leads out of the folder or is a device, a link does not lead to a file of the build, or
+            there are too many files or bytes. The files that were written before the error stay.
+        OSError, MemoryError: The disk, memory or open files of this machine are used up. The build is not at fault.
     """
     if not packed:
         raise BadArtefacts("the result of the build could not be packed")
@@ -200,7 +198,7 @@ def _place(name: bytes) -> PurePosixPath:
 def _target(place: PurePosixPath, link: Entry) -> PurePosixPath:
     """Return the target of a link as a path inside the install folder.
 
-    The target is computed from text alone. This is correct because the folder on the disk never contains links.
+    The path is computed without looking at the disk. That is correct, because the written folder contains no links.
     """
     inside = os.path.normpath(place.parent / os.fsdecode(link.data))
     if inside.startswith(("..", "/")) or "\0" in inside:

@@ -206,8 +206,8 @@ def test_workers_that_forge_are_turned_out_by_name_and_run_nothing_here(
         4,
     ]
     for name, words in {
-        "pickler": "its answer is not an execution",
-        "large": "its answer has 400000",
+        "pickler": "the answer is not an execution",
+        "large": "the answer has 400000",
         "object": "it sent an impossible answer",
         "forger": "1000 of 10 points",
     }.items():
@@ -225,7 +225,7 @@ def test_a_worker_of_another_version_is_refused_by_name_and_the_batch_goes_on(
         report = graded_on(cluster, unboxed, said)
     assert report.exit_code == 0
     assert unboxed.scores("ada")[TALKER] == 4
-    assert "another version of the course (yesterday, here it is test)" in said.getvalue()
+    assert "its version of the course is yesterday, and here it is test" in said.getvalue()
     assert "The worker old (tcp://127.0.0.1:" in said.getvalue()
 
 

@@ -74,11 +74,11 @@ FORGERIES: dict[str, tuple[str, Callable[[Execution], Execution]]] = {
     "more points than there are": ("11 of 10 points", lambda e: first(e, score=11.0)),
     "fewer points than none": ("-1 of 10 points", lambda e: first(e, score=-1.0)),
     "another scale": ("100 of 100 points", lambda e: first(e, score=100.0, max_score=100.0)),
-    "another exercise": ("it judged", lambda e: first(e, exercise="lab_1_3.server")),
+    "another exercise": ("a verdict on", lambda e: first(e, exercise="lab_1_3.server")),
     "points for nothing": ("could not be checked", lambda e: first(e, state=State.NOT_CHECKED)),
-    "a verdict too few": ("not those", lambda e: replace(e, verdicts={})),
+    "a verdict too few": ("verdicts on other checks", lambda e: replace(e, verdicts={})),
     "a verdict too many": (
-        "not those",
+        "verdicts on other checks",
         lambda e: replace(e, verdicts={**e.verdicts, 99: e.verdicts[max(e.verdicts)]}),
     ),
     "cells too few": ("cells", lambda e: replace(e, cells=e.cells[1:])),
@@ -108,7 +108,7 @@ def test_what_cannot_be_is_refused(task: Task, execution: Execution, forgery: st
     ],
 )
 def test_what_is_no_execution_is_refused(task: Task, data: bytes) -> None:
-    with pytest.raises(Forged, match="its answer is not an execution"):
+    with pytest.raises(Forged, match="the answer is not an execution"):
         admitted(data, task)
 
 
@@ -142,5 +142,5 @@ def test_an_offer_is_looked_at_too() -> None:
         with pytest.raises(Forged, match="at once"):
             admitted_offer(msgspec.json.encode(Offer("version", slots=slots, obstacle="")))
     for data in (b"", b"\x80\x04K\x01.", b'{"version": 1}', b" " * (LARGEST_OFFER + 1)):
-        with pytest.raises(Forged, match="its offer"):
+        with pytest.raises(Forged, match="the worker.s offer"):
             admitted_offer(data)

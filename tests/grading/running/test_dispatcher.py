@@ -156,7 +156,7 @@ def test_a_worker_that_is_sick_does_not_swallow_the_class(tasks: list[Task]) -> 
     dispatcher = make_dispatcher(link, told)
     dispatcher.await_workers()
     assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
-    assert "name-sick (sick) gets no work: it had trouble with 3 notebooks: no space left." in told[0]
+    assert "name-sick (sick) gets no work: it failed on 3 notebooks in a row: no space left." in told[0]
     assert sum(give.worker == "sick" for give in link.given) <= 2 * HERE.slots
 
 
@@ -179,7 +179,7 @@ def test_what_no_worker_can_run_is_given_up(tasks: list[Task]) -> None:
     dispatcher.await_workers()
     done = list(dispatcher.execute_all(tasks))
     assert len(done) == len(tasks)
-    assert {one.execution.trouble for one in done} == {"its worker could not run it: no room"}
+    assert {one.execution.trouble for one in done} == {"the worker could not run this submission: no room"}
 
 
 def test_a_worker_that_forges_is_turned_out_by_name(tasks: list[Task]) -> None:
@@ -193,7 +193,7 @@ def test_a_worker_that_forges_is_turned_out_by_name(tasks: list[Task]) -> None:
     assert students(list(dispatcher.execute_all(tasks))) == [task.student for task in tasks]
     assert len(told) == 1
     assert (
-        "name-bad (bad) gets no work: it sent an impossible answer: its answer is not an execution" in told[0]
+        "name-bad (bad) gets no work: it sent an impossible answer: the answer is not an execution" in told[0]
     )
     assert sum(give.worker == "bad" for give in link.given) <= HERE.slots
 
@@ -230,12 +230,12 @@ def test_a_worker_that_falls_silent_is_turned_out(tasks: list[Task], monkeypatch
 @pytest.mark.parametrize(
     ("offer", "words"),
     [
-        (Offer("other", 2, obstacle=""), "it has another version of the course (other, here it is here)"),
+        (Offer("other", 2, obstacle=""), "its version of the course is other, and here it is here"),
         (
             Offer("here", 2, obstacle="bubblewrap is missing"),
             "no sandbox: bubblewrap is missing",
         ),
-        (Offer("here", 0, obstacle=""), "it offers to execute 0 notebooks"),
+        (Offer("here", 0, obstacle=""), "the worker offers to execute 0 notebooks"),
     ],
 )
 def test_a_worker_that_does_not_fit_is_refused_by_name_and_the_others_go_on(
@@ -264,7 +264,7 @@ def test_a_worker_cannot_write_on_the_terminal(tasks: list[Task]) -> None:
     link = FakeLink(Joined("a\x1b[31m", "b\nTotal: 100", msgspec.json.encode(offer)), Asked())
     with pytest.raises(NoWorkers):
         make_dispatcher(link, told).await_workers()
-    assert "another version" in told[0]
+    assert "its version of the course" in told[0]
     assert all(letter.isprintable() for letter in told[0])
 
 
