@@ -142,5 +142,5 @@ def test_an_offer_is_looked_at_too() -> None:
         with pytest.raises(Forged, match="at once"):
             admitted_offer(msgspec.json.encode(Offer("version", slots=slots, obstacle="")))
     for data in (b"", b"\x80\x04K\x01.", b'{"version": 1}', b" " * (LARGEST_OFFER + 1)):
-        with pytest.raises(Forged, match="the worker.s offer"):
+        with pytest.raises(Forged, match="the worker's offer"):
             admitted_offer(data)
