@@ -32,6 +32,9 @@ MAX_LABEL = 200
 EXPECTED = 5
 """The maximum number of missing messages that a failed card shows for each topic, beginning with the first."""
 
+_INPUTS = ("sent", "asked")
+"""The kinds of events that give the subject something: a message of the judge's, or a call of a service."""
+
 _ENDS = {
     "publisher": "your publisher is here",
     "subscription": "your subscription is here",
@@ -226,32 +229,63 @@ def _astray(part: Part, reference: Reference, title: str, start: float | None) -
 
 
 def _missed(part: Part, reference: Reference, title: str, start: float | None) -> Iterator[Moment]:
-    """Yield the reference solution's first messages that the subject did not send, if the part has the same inputs.
+    """Yield the reference solution's first messages that the subject did not send, if both had the same inputs.
 
-    A task asks only for intervals. So times are counted from the subject's first message or, if there is none, from the
-    first log line.
+    The time of a message is counted from the input before it. A task without inputs asks only for intervals. So its
+    times are counted from the subject's first message or, if there is none, from the first log line.
     """
     known = next(
         (one for one in reference.parts if one.name == part.name and one.inputs == part.inputs), None
     )
-    expected = [event for event in known.of("message") if event.sim is not None] if known else []
-    for topic in dict.fromkeys(event.name for event in expected):
+    if known is None or not _given_the_same(part, known):
+        return
+    inputs = [_time(event, start) for event in part.events if event.kind in _INPUTS]
+    expected = [pair for pair in _after_inputs(known) if pair[1].sim is not None]
+    for topic in dict.fromkeys(event.name for _, event, _ in expected):
         came = [(_time(event, start), _label(event)) for event in part.of("message", topic)]
-        due = [(event.moment, _label(event)) for event in expected if event.name == topic]
+        due = [one for one in expected if one[1].name == topic]
         if len(due) < 2:
             continue  # no interval
-        near = (due[1][0] - due[0][0]) / 2
+        near = (due[1][1].moment - due[0][1].moment) / 2
         # The judge may have missed the subject's first messages. DDS numbers each publisher's messages from 1, so the
         # number of the first message that arrived shows how many are missing.
         number = int(part.of("message", topic)[0].data.get("number", 1)) if came else 1
         due = due[min(number, len(due)) - 1 :]
         first = came or [(_time(event, start), "") for event in part.of("log")]
-        missed = _not_come(due, came, (first[0][0] if first else 0.0) - due[0][0], near)
+        shift = (first[0][0] if first else 0.0) - due[0][1].moment
+        said = [
+            (inputs[given - 1] + after if given else event.moment + shift, _label(event))
+            for given, event, after in due
+            if given <= len(inputs)
+        ]
+        missed = _not_come(said, came, near, carried=not inputs)
         for place, (t, label) in enumerate(missed[:EXPECTED]):
             yield Moment(round(t, 3), topic, "expected", label, title, start is not None, key=place == 0)
 
 
-def _not_come(due: Sequence[_Said], came: Sequence[_Said], shift: float, near: float) -> list[_Said]:
+def _given_the_same(part: Part, known: Part) -> bool:
+    """Return True if the contents of all inputs, which may be random, are those of the reference solution's run.
+
+    A subject that ended early has fewer of them.
+    """
+    mine, theirs = (
+        [(e.kind, e.name, e.data.get("fields")) for e in one.events if e.kind in _INPUTS]
+        for one in (part, known)
+    )
+    return all(one == other for one, other in zip(mine, theirs, strict=False))
+
+
+def _after_inputs(known: Part) -> Iterator[tuple[int, Event, float]]:
+    """Yield each message with the number of the inputs before it, and the seconds since the last of them."""
+    given, last = 0, 0.0
+    for event in known.events:
+        if event.kind in _INPUTS:
+            given, last = given + 1, event.moment
+        elif event.kind == "message":
+            yield given, event, event.moment - last
+
+
+def _not_come(due: Sequence[_Said], came: Sequence[_Said], near: float, *, carried: bool) -> list[_Said]:
     """Return the expected messages that did not come, each with the time at which it was due.
 
     A message has come if its time is right, or if the interval from the message before it is right. So if one message
@@ -260,11 +294,11 @@ def _not_come(due: Sequence[_Said], came: Sequence[_Said], shift: float, near: f
     Args:
         due: Time and label of each message of the reference solution.
         came: Time and label of each message of the subject.
-        shift: Seconds from the reference's first message to the subject's.
         near: Seconds by which a message may be early or late.
+        carried: True if a late message delays the next ones, because no input determines when they are due.
     """
     missed = []
-    last = -1
+    last, shift = -1, 0.0
     for place, (at, label) in enumerate(due):
         later = [k for k in range(last + 1, len(came)) if came[k][1] == label]
         found = next((k for k in later if abs(came[k][0] - at - shift) < near), None)
@@ -274,7 +308,7 @@ def _not_come(due: Sequence[_Said], came: Sequence[_Said], shift: float, near: f
         if found is None:
             missed.append((at + shift, label))
         else:
-            last, shift = found, came[found][0] - at
+            last, shift = found, (came[found][0] - at) * carried
     return missed
 
 

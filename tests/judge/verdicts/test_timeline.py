@@ -194,3 +194,40 @@ def test_where_inputs_are_random_no_message_is_expected() -> None:
     reference = Reference("an exercise", {}, [Part("talking", {"text": "one"}, said)])
     seen = Evidence([Part("talking", {"text": "two"}, ())], reference)
     assert moments(seen, missed=True) == ()
+
+
+def watched(
+    given: list[tuple[float, int]], said: list[tuple[float, bool]], *, simulated: bool = False
+) -> Part:
+    """A part in which these numbers were sent to the subject, and in which the subject said this, each at a time."""
+    events = [(t, "sent", "/beat", number) for t, number in given]
+    events += [(t, "message", "/alarm", alarm) for t, alarm in said]
+    return Part(
+        "met",
+        {},
+        [
+            Event(t, kind, name, {"fields": {"data": data}}, t if simulated else None)
+            for t, kind, name, data in sorted(events)
+        ],
+    )
+
+
+def demanded(part: Part) -> list[tuple[float, str]]:
+    """The messages that the card demands of a subject, if the solution was sent 1 to 3 and said when all is lost."""
+    usual = watched([(0, 1), (2, 2), (4, 3)], [(1.0, True), (2.1, False), (3.0, True)], simulated=True)
+    found = moments(Evidence([part], Reference("an exercise", {}, [usual])), missed=True)
+    return [(moment.t, moment.label) for moment in found if moment.direction == "expected"]
+
+
+def test_a_message_is_due_as_long_after_its_input_as_the_solution_took() -> None:
+    # In real time the inputs come at other times. The message before the first is too early, and moves no other.
+    given = [(3.0, 1), (5.4, 2), (7.9, 3)]
+    right = [(4.1, True), (5.5, False), (6.5, True)]
+    assert demanded(watched(given, right)) == []
+    assert demanded(watched(given, [(2.9, False), *right])) == []
+    assert demanded(watched(given, right[::2])) == [(5.5, "False")]
+    assert demanded(watched(given[:1], [])) == [(4.0, "True")]
+
+
+def test_where_other_numbers_were_drawn_no_message_is_expected() -> None:
+    assert demanded(watched([(3.0, 1), (5.0, 7), (7.0, 3)], [])) == []
