@@ -28,7 +28,7 @@ def watchdog() -> Exercise:
         return "lost" if beats and beats[-1].age >= limit else "back"
 
     watch = Watch(
-        "a.b", "A", "B", state=state, gives=[({}, 0.5), ({}, 1.5), ({}, 1.6)], within=0.3, waits=1.5
+        "a.b", "A", "B", state=state, gives=[({}, 0.5), ({}, 1.5), ({}, 1.6)], within=0.2, waits=1.5
     )
     watch.says("lost", "lost", 4, "Says lost")
     watch.says("back", "back", 4, "Says back")
@@ -68,7 +68,7 @@ def judged(part: Part) -> tuple[set[str], str | None]:
     ("said", "failed", "told"),
     [
         (USUAL, set(), None),
-        ([(1.5, "lost"), (2.05, "back"), (3.29, "lost")], set(), None),
+        ([(1.5, "lost"), (2.05, "back"), (3.19, "lost")], set(), None),
         ([(1.5, "lost"), (1.9, "lost"), (2.0, "back"), (3.1, "lost")], {"once"}, "told_too_often"),
         ([(1.5, "lost"), (3.1, "lost")], {"back"}, "never_told"),
         ([(1.5, "Lost"), (2.0, "Back"), (3.1, "Lost")], {"lost", "back", "once"}, "never_told"),
@@ -103,7 +103,7 @@ def test_a_state_after_one_that_was_not_said_costs_nothing_more() -> None:
 
 
 def test_in_real_time_a_busy_machine_may_hold_a_message_up() -> None:
-    late = [(1.95, "lost"), (2.4, "back"), (3.5, "lost")]
+    late = [(1.94, "lost"), (2.4, "back"), (3.4, "lost")]
     assert judged(run(late, simulated=False)) == (set(), None)
     assert judged(run(late))[0] == {"lost", "back"}
 
@@ -122,6 +122,45 @@ def test_a_state_that_ends_before_it_must_be_said_need_not_be_said() -> None:
     (lost,) = watch.exercise().criteria
     evidence = Evidence([run([(3.5, "lost")])], Reference("a.b", INTERFACE, [run([(3.5, "lost")])]))
     assert lost.judge(evidence).passed
+
+
+def watched(*seconds: float) -> Exercise:
+    """Return a watchdog of one second with these silences."""
+    watch = Watch(
+        "a.b",
+        "A",
+        "B",
+        state=lambda beats: "lost" if beats and beats[-1].age >= 1.0 else "back",
+        gives=[({}, one) for one in seconds],
+        within=0.3,
+    )
+    watch.says("lost", "lost", 1, "Lost")
+    watch.once("once", 1, "Once")
+    return watch.exercise()
+
+
+def test_messages_with_which_a_wrong_node_would_pass_are_refused() -> None:
+    watched(0.3, 1.65, 1.7, 0.97, 2.4)  # due at 1.3, 2.95 and 5.62 s
+    watched(0.3, 1.2, 0.7)  # lost for too short a time to be reported
+    with pytest.raises(ValueError, match=r"lost lasts 0\.4. s from 1\.3. s on.*longer than 0\.55 s"):
+        watched(0.3, 1.4, 1.7, 0.97, 2.4)
+    with pytest.raises(ValueError, match="looks only once a second"):
+        watched(0.3, 2.0, 2.0, 1.0, 2.4)
+
+
+def test_a_node_that_died_is_not_blamed_for_what_it_was_not_given() -> None:
+    exercise = watchdog()
+    usual = Reference(exercise.id, INTERFACE, [run(USUAL)])
+    findings = {one.name: one.judge(Evidence([run([], beats=1)], usual)) for one in exercise.criteria}
+    assert (findings["back"].expected, findings["back"].seen) == (
+        "back, 1 time, at most 0.2 s late",
+        "back, 0 times",
+    )
+    assert findings["once"].seen == "no message at all"
+    longer = Part("met", {}, [*run(USUAL).events, Event(6.0, "sent", "/any", {"fields": {}}, 104.0)])
+    (once,) = (one for one in exercise.criteria if one.name == "once")
+    finding = once.judge(Evidence([run(USUAL)], Reference(exercise.id, INTERFACE, [longer])))
+    assert (finding.passed, finding.seen) == (False, "the node ended before the last input")
 
 
 def test_the_ready_made_mistakes_are_explained_to_students() -> None:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from itertools import groupby, pairwise
 from typing import TYPE_CHECKING, Any
 
+from autograder.kit.evidence import Event, Part
 from autograder.kit.in_words import counted
 from autograder.kit.model import STEP, Finding
 from autograder.kit.recipes.declared import SILENCE, Declared, pick, variant
@@ -18,7 +19,6 @@ from autograder.kit.recipes.own_scenario import once_met
 from autograder.kit.rules import Given, in_words, reported_at, same, value
 
 if TYPE_CHECKING:
-    from autograder.kit.evidence import Event, Part
     from autograder.kit.model import Exercise
     from autograder.kit.recipes.own_scenario import Met
     from autograder.kit.rules import State
@@ -117,7 +117,8 @@ class Watch(Declared):
                 made = f"{state}, {missed[0].said - missed[0].begin:.1f} s after it was so"
             else:
                 made = f"{state}, {counted(sum(span.said is not None for span in due), 'time')}"
-            usual = sum(same(span.state, state) for span in spans)
+            # A subject that ended early was given less, so the solution's run shows how often the state is due.
+            usual = sum(same(span.state, state) for span in self._spans(expected, self._state))
             return Finding(passed, f"{state}, {counted(usual, 'time')}, at most {self._within} s late", made)
 
         self._draft.criterion(name, points, title)(judge)
@@ -128,11 +129,13 @@ class Watch(Declared):
 
         def judge(seen: Part, expected: Part) -> Finding:
             _, stray = self._matched(seen, self._state)
+            whole, told = self._got_through(seen, expected), seen.of("message")
             made = counted(len(stray), "message") + (
                 f", the first one {self._told(stray[0])}" if stray else ""
             )
-            passed = self._got_through(seen, expected) and bool(seen.of("message")) and not stray
-            return Finding(passed, "no message besides these", made)
+            if not stray and not (whole and told):
+                made = "no message at all" if not told else "the node ended before the last input"
+            return Finding(whole and bool(told) and not stray, "these messages, and no others", made)
 
         self._draft.criterion(name, points, title)(judge)
         self._judges(name, words)
@@ -151,7 +154,12 @@ class Watch(Declared):
         self._knows(key, found, says, next_step, certain=False)
 
     def exercise(self) -> Exercise:
-        """Return the finished exercise. The mistakes of this recipe follow those of the exercise."""
+        """Return the finished exercise. The mistakes of this recipe follow those of the exercise.
+
+        Raises:
+            ValueError: A wrong node would pass by chance with these messages. The text says what to change.
+        """
+        self._check_what_is_given()
         for key, found, says, next_step, certain in self._ready_made():
             self._knows(key, found, says, next_step, certain=certain)
         return super().exercise()
@@ -201,6 +209,35 @@ class Watch(Declared):
             "with a timer that each message resets.",
             False,
         )
+
+    def _check_what_is_given(self) -> None:
+        """Raise an error if a node may leave a state out, or may look only once a second, and still be in time."""
+        sent, at = [], 0.0
+        for given, seconds in self._gives:
+            fields = given if isinstance(given, Mapping) else {"data": given}
+            sent.append(Event(at, "sent", "", {"fields": fields}, at))
+            at += seconds
+        late = self._within + BUSY
+        spans = self._spans(Part("", {}, sent), self._state)
+        for span in spans:
+            if self._within < span.end - span.begin <= late:
+                raise ValueError(
+                    f"gives: the state {span.state} lasts {span.end - span.begin:.2f} s from {span.begin:.2f} s on. A "
+                    f"node may report it {self._within} s late, and a busy machine makes that {late:g} s. Let it last "
+                    f"longer than {late:g} s, or at most {self._within} s if nothing has to be reported."
+                )
+        inputs = [event.t for event in sent]
+        by_time = [
+            s.begin for s in spans if s.end - s.begin > late and min(abs(s.begin - t) for t in inputs) > GRAIN
+        ]
+        parts = sorted(begin % 1.0 for begin in by_time)
+        gap = max((b - a for a, b in pairwise([*parts, parts[0] + 1.0])), default=0.0) if parts else 0.0
+        if gap > 0 and 1.0 - gap <= late < 1.0:
+            shown = in_words([round(part, 2) for part in parts])
+            raise ValueError(
+                "gives: a node that looks only once a second would be in time each time. Let time change the state in "
+                f"different thirds of a second, at three changes or more. So far these parts of a second: {shown}"
+            )
 
     def _happens(self, met: Met) -> bool:
         # This wait is in real time, because the clock of the subject is not simulated yet. A time that the subject
