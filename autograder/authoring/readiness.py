@@ -94,7 +94,8 @@ def faults_of_text(exercise: Exercise, said: str) -> Iterator[str]:
         said: All texts of the lab, in one string.
     """
     whole = " ".join(said.split())
-    yield from (f"{course.LAB} does not say “{words}”" for words in exercise.text if words not in whole)
+    sentences = (" ".join(words.split()) for words in exercise.text)
+    yield from (f"{course.LAB} does not say “{words}”" for words in sentences if words not in whole)
     judged = {name for names in exercise.text.values() for name in names.split()}
     known = {criterion.name for criterion in exercise.criteria}
     yield from (
@@ -126,7 +127,9 @@ def _of_linters(lab: Path) -> Iterator[str]:
                 text=True,
                 check=False,
             )
-            said = (done.stdout + done.stderr).splitlines()
-            yield from (f"{name}: {line}" for line in said)
-            if done.returncode and not said:
-                yield f"{name}: {name} {words[0]} would change the files"
+            if (
+                words[0] == "format" and done.returncode == 1
+            ):  # its output is a long comparison, cut into lines
+                yield f"ruff: the format differs. Type: {programs[name]} format --config={_SETTINGS} {lab}"
+            else:
+                yield from (f"{name}: {line}" for line in (done.stdout + done.stderr).splitlines())

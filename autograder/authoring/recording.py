@@ -5,6 +5,7 @@ The grader expects of students what the recorded solution did. After a change of
 
 from __future__ import annotations
 
+import json
 import os
 import secrets
 import subprocess
@@ -86,9 +87,13 @@ def recording(exercise_id: str) -> str:
             f"{exercise.id}: {report.trouble or 'the solution never called check'}\n{output}".strip()
         )
     if not report.verdict.passed:
-        missed = "; ".join(f"{c.title} ({c.seen})" for c in report.verdict.criteria if not c.passed)
+        there = json.loads(report.reference)["interface"]
+        missing = " and no ".join(role for role in exercise.roles if role not in there)
+        has_none = f" It has no {missing}, and this recipe judges one." * bool(missing)
+        failed = (criterion for criterion in report.verdict.criteria if not criterion.passed)
+        missed = "".join(f"\n  {c.title}: expected {c.expected}; seen {c.seen}" for c in failed)
         raise CannotRecord(
-            f"{exercise.id}: the reference solution does not meet the criteria of its own exercise: {missed}"
+            f"{exercise.id}: the solution in {course.LAB} does not meet the criteria of its exercise.{has_none}{missed}"
         )
     return report.reference
 

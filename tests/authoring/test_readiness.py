@@ -119,6 +119,22 @@ def test_a_rule_that_is_broken_is_named(lab: Path, file: str, old: str, new: str
     assert any(line.startswith(rule) for line in told()), told()
 
 
+def test_a_sentence_may_go_on_in_the_next_line(lab: Path) -> None:
+    (lab / "battery.py").write_text(
+        (lab / "battery.py").read_text().replace('"every 0.5 s"', '"every\\n0.5 s"')
+    )
+    forget()
+    assert told() == []
+
+
+def test_a_difference_in_format_is_one_line(lab: Path) -> None:
+    (lab / "battery.py").write_text(
+        (lab / "battery.py").read_text().replace("heard = Hears", "heard =   Hears")
+    )
+    forget()
+    assert [line.partition(".")[0] for line in told()] == ["ruff: the format differs"]
+
+
 def test_what_is_not_installed_is_told(lab: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(python_child, "INTERPRETER", str(lab / "python3"))
     assert [line.partition(",")[0] for line in told()] == ["ruff: not installed", "mypy: not installed"]

@@ -6,10 +6,14 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from autograder import exercises
+from autograder.authoring import recording
+from autograder.kit.recipes.own_scenario import Met
+from autograder.verdict import CriterionResult
 from tests.measure import evidence
 from tests.tiers import due
 
@@ -90,3 +94,24 @@ def test_a_master_that_cannot_be_used_is_named(tmp_path: Path, monkeypatch: pyte
     monkeypatch.setenv("AUTOGRADER_COURSE", str(tmp_path))
     done = _autograder("record", "lab_1_2.talker")
     assert (done.returncode, "lab.md" in done.stderr, "Traceback" in done.stderr) == (2, True, False)
+
+
+def test_a_solution_without_an_endpoint_that_the_recipe_judges_is_named(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    criterion = CriterionResult("lost", "Says lost", 3, False, "lost, 4 times", "lost, 0 times")
+    failed = SimpleNamespace(passed=False, criteria=(criterion,))
+    report = SimpleNamespace(reference='{"interface": {"subscription": {}}}', verdict=failed, trouble="")
+    exercise = SimpleNamespace(id="lab_8_1.dog", roles=("subscription", "publisher"))
+    monkeypatch.setattr(exercises, "get", lambda _: exercise)
+    monkeypatch.setattr(recording, "program", lambda _: "")
+    monkeypatch.setattr(recording, "_judged", lambda *_, **__: (report, ""))
+    with pytest.raises(recording.CannotRecord) as raised:
+        recording.recording(exercise.id)
+    said = str(raised.value)
+    assert "It has no publisher, and this recipe judges one." in said
+    assert "Says lost: expected lost, 4 times; seen lost, 0 times" in said
+
+
+def test_a_subject_without_a_topic_was_heard_not_once() -> None:
+    assert Met(bench=object(), topics=(), speakers=(), callers=()).heard == 0  # type: ignore[arg-type]

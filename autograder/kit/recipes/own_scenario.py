@@ -46,7 +46,7 @@ class Met:
     @property
     def heard(self) -> int:
         """The number of messages that the judge has received so far on the first topic, which is often the only one."""
-        return self.bench.heard(self.topics[0])
+        return self.bench.heard(self.topics[0]) if self.topics else 0
 
 
 def once_met(happens: Callable[[Met], bool]) -> Callable[[Bench], None]:
