@@ -10,7 +10,7 @@ import pytest
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.recipes.machine import SOME_TEXT, Machine
-from autograder.kit.recipes.relay import NAN, NUMBER, SILENCE, WHOLE, Relay, _drawn
+from autograder.kit.recipes.relay import NAN, NUMBER, SILENCE, WHOLE, Hub, Relay, Reply, To, _drawn
 from autograder.kit.rules import same
 
 if TYPE_CHECKING:
@@ -108,6 +108,89 @@ def test_a_wrong_relay_may_be_the_right_one_with_another_argument() -> None:
     zeros = [event for sent in SENT[:2] for event in (sent, heard("message", 0.0, 1))]
     assert diagnoses(relay.exercise(), zeros) == {"summed"}
     assert diagnoses(relay.exercise(), RIGHT) == set()
+
+
+def test_a_relay_that_ended_early_is_not_told_of_a_mistake_that_would_have_shown_later() -> None:
+    def due(numbers: Sequence[float], most: float = 9.0) -> Any:
+        return min(numbers[-1], most)
+
+    relay = Relay("a.b", "A", "B", field="pose.x", due=due)
+    relay.wrong("summed", {"most": 1.0}, "It is never more than 1.", "Leave the limit out.")
+    first = [SENT[0], heard("message", 1.0, 1), SENT[1]]
+    assert diagnoses(relay.exercise(), first) == set()
+    assert diagnoses(relay.exercise(), [*first, heard("message", 1.0, 2)]) == {"summed"}
+
+
+def scales() -> Exercise:
+    """The sum of two topics, less what a service has set to nothing; the service refuses before there is a sum."""
+
+    def due(given: Sequence[To], start: float | None = None, *, always: bool = False) -> Any:
+        newest, tared, out = {"/a": start, "/b": start}, 0.0, SILENCE
+        for name, number in given:
+            newest |= {name: number} if name in newest else {}
+            there = [one for one in newest.values() if one is not None]
+            if name == "/tare":
+                tared = sum(there) if len(there) == 2 else tared
+                out = Reply({"success": always or len(there) == 2})
+            else:
+                out = sum(there) - tared if len(there) == 2 else SILENCE
+        return out
+
+    hub = Hub(
+        "a.b",
+        "A",
+        "B",
+        field="data",
+        due=due,
+        gives=[To("/a", 1)],
+        roles=("subscription", "publisher", "service"),
+    )
+    hub.answers("totals", 5, "Totals")
+    hub.replies("success", 5, "Success")
+    hub.wrong("summed", {"start": 0.0}, "It adds too early.", "Wait.")
+    hub.wrong("stays_so", {"always": True}, "It always says success.", "Refuse.")
+    return hub.exercise()
+
+
+def weighed(totals: Sequence[float], replies: Sequence[bool], *, early: bool = False) -> list[Event]:
+    """The run of a node on two scales that published these totals, and replied so to calls at the first and the end."""
+    a, b, c = (
+        Event(0.0, "sent", name, {"fields": {"data": n}})
+        for name, n in (("/a", 1.0), ("/b", 2.0), ("/a", 5.0))
+    )
+    call = Event(0.0, "asked", "/tare", {"fields": {}})
+    said = [event("message", {"data": total}) for total in totals]
+    told = [event("answered", {"success": one, "message": ""}) for one in replies]
+    return [call, *told[:1], a, *said[:early], b, *said[early:][:1], call, *told[1:], c, *said[early:][1:]]
+
+
+@pytest.mark.parametrize(
+    ("seen", "failed", "told"),
+    [
+        (weighed([3.0, 4.0], [False, True]), set(), set()),
+        (weighed([1.0, 3.0, 4.0], [False, True], early=True), {"totals"}, set()),
+        (weighed([1.0, 3.0, 4.0], [True, True], early=True), {"totals", "success"}, {"summed"}),
+        (weighed([3.0, 4.0], [True, True]), {"success"}, {"stays_so"}),
+        (weighed([3.0, 7.0], [False, True]), {"totals"}, set()),
+        (weighed([3.0], [False]), {"totals", "success"}, set()),
+        ([], {"totals", "success"}, set()),
+    ],
+    ids=[
+        "right",
+        "early",
+        "early with success",
+        "always success",
+        "other sum",
+        "hangs in the call",
+        "nothing",
+    ],
+)
+def test_a_hub_is_judged_by_its_messages_and_replies(
+    seen: Sequence[Event], failed: set[str], told: set[str]
+) -> None:
+    verdict = passed(scales(), seen, weighed([3.0, 4.0], [False, True]))
+    assert {name for name, holds in verdict.items() if not holds} == failed
+    assert diagnoses(scales(), seen) == told
 
 
 def test_numbers_are_drawn_where_they_are_asked_for_and_none_twice() -> None:

@@ -1,14 +1,19 @@
-"""A recipe for a node that listens on one topic and publishes on another; the author declares the right output."""
+"""Recipes for a node that publishes a value computed from its inputs. The author declares the right output.
+
+A ``Relay`` listens on one topic. A ``Hub`` listens on several, and may also serve.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from autograder.kit.model import Pace
-from autograder.kit.recipes.declared import SILENCE, Declared, picked, put, variant
+from autograder.kit.recipes.declared import SILENCE, Declared, fields, pick, picked, put, variant
 from autograder.kit.recipes.own_scenario import once_met
-from autograder.kit.rules import same
+from autograder.kit.rules import got_through, same, value
 
 if TYPE_CHECKING:
     from random import Random
@@ -16,7 +21,7 @@ if TYPE_CHECKING:
     from autograder.kit.evidence import Part
     from autograder.kit.recipes.own_scenario import Met
 
-__all__ = ["NAN", "NUMBER", "SILENCE", "WHOLE", "Relay"]
+__all__ = ["NAN", "NUMBER", "SILENCE", "WHOLE", "Hub", "Relay", "Reply", "To"]
 
 NAN = float("nan")
 NUMBER, WHOLE = object(), object()
@@ -24,9 +29,36 @@ NUMBER, WHOLE = object(), object()
 PATIENCE = {Pace.FAST: 2.0, Pace.REAL_TIME: 6.0}
 """Time limit in seconds of wall time until the last message must have arrived."""
 
+PAUSE = 0.5
+"""The maximum number of seconds of the subject's time that a hub has for the message that is due after an input."""
+QUIET = {Pace.FAST: 3.0, Pace.REAL_TIME: 6.0}
+"""If no event comes for this many seconds of wall time, the judge stops waiting for the answer of a service."""
+
 Due = Callable[..., Any]
 """A function that is given all inputs so far and returns the value to publish after the last one, or :data:`SILENCE`.
 """
+
+
+class To(NamedTuple):
+    """An input for one of several topics and services.
+
+    Attributes:
+        name: The name of the topic or service, such as ``"/left"``.
+        value: The value of the field ``data``; a dictionary is a whole message or request.
+    """
+
+    name: str
+    value: Any
+
+
+@dataclass(frozen=True)
+class Reply:
+    """The fields of a service's reply that ``due`` requires. The other fields may have any value."""
+
+    fields: Mapping[str, Any]
+
+    def __str__(self) -> str:
+        return ", ".join(f"{name}={field}" for name, field in self.fields.items())
 
 
 class Relay(Declared):
@@ -44,6 +76,7 @@ class Relay(Declared):
         copies: The path of a field that each output copies from its input, such as ``"header.stamp"``. A field not
             named ``stamp`` must be a text.
         tolerance: The absolute or relative tolerance for numbers.
+        roles: The roles of the subject's endpoints, the most telling first.
     """
 
     def __init__(
@@ -57,9 +90,9 @@ class Relay(Declared):
         gives: Sequence[Any] | Callable[[Random], Sequence[Any]] = (NUMBER,) * 12,
         copies: str = "",
         tolerance: float = 1e-6,
+        roles: Sequence[str] = ("subscription", "publisher"),
     ) -> None:
-        scenario = once_met(self._happens)
-        super().__init__(exercise_id, title, task, scenario, "subscription", "publisher", given="sent")
+        super().__init__(exercise_id, title, task, once_met(self._happens), *roles, given="sent")
         self._field, self._gives, self._due, self._copied = field, gives, due, copies
         self._tolerance = tolerance
 
@@ -89,8 +122,12 @@ class Relay(Declared):
 
         def found(seen: Part) -> bool:
             made = self._outputs(seen)
-            right, other = self._made(seen, self._due), self._made(seen, wrong)[: len(made)]
-            return bool(made) and not self._equal(right, made) and self._equal(other, made)
+            right, other = self._made(seen, self._due), self._made(seen, wrong)
+            if not made or self._equal(right, made):
+                return False
+            # A subject that ended early may have been right so far: then only its end is the mistake.
+            so_far = self._equal(other[: len(made)], made) and not self._equal(right[: len(made)], made)
+            return so_far or self._equal(other, made)
 
         self._knows(key, found, says, next_step)
 
@@ -159,6 +196,84 @@ class Relay(Declared):
         return picked(seen, "message", self._copied)[-len(self._copies_due(seen)) :]
 
 
+class Hub(Relay):
+    """A node that listens on several topics, and publishes a value computed from all inputs so far. It may also serve.
+
+    The arguments are those of :class:`Relay`, with these differences: each of ``gives`` is a :class:`To`, and ``due``
+    gets inputs with a ``name`` and a ``value``. After a call of a service, ``due`` returns a :class:`Reply`. A node
+    that serves has the role ``"service"``, too.
+    """
+
+    def answers(self, name: str, points: float, title: str, words: str = "") -> None:
+        """Add a criterion: exactly the right values come, in order. For the arguments see :meth:`asks`."""
+
+        def due(seen: Part) -> list[Any]:
+            return [one for one in self._made(seen, self._due) if not isinstance(one, Reply)]
+
+        self._compares(name, points, title, due, lambda seen: picked(seen, "message", self._field), words)
+
+    def replies(self, field: str, points: float, title: str, words: str = "") -> None:
+        """Add a criterion, named after a field of the replies: it is right in each reply for which ``due`` sets it."""
+
+        def due(seen: Part) -> list[Any]:
+            return [reply.fields[field] for reply in self._replies(seen) if field in reply.fields]
+
+        def came(seen: Part) -> list[Any]:
+            pairs = zip(self._replies(seen), fields(seen, "answered"), strict=False)
+            return [answer[field] for reply, answer in pairs if field in reply.fields]
+
+        self._compares(field, points, title, due, came, words)
+
+    def _happens(self, met: Met) -> bool:
+        draws, random, interface = self._gives, met.bench.random, met.bench.reference.interface
+        speakers = dict(zip(sorted(interface.get("subscription", {})), met.speakers, strict=True))
+        callers = dict(zip(sorted(interface.get("service", {})), met.callers, strict=True))
+        inputs = list(draws(random) if callable(draws) else _drawn_to(draws, random))
+        for number, (name, given) in enumerate(inputs, 1):
+            whole = given if isinstance(given, Mapping) else {"data": given}
+            if name in callers:
+                callers[name].ask(whole)
+                if not callers[name].await_answers(QUIET[met.bench.pace]):
+                    return False
+            elif name in speakers:
+                speakers[name].send(**whole)
+            else:
+                raise ValueError(f"gives: {name!r} is not one of {', '.join([*speakers, *callers])}")
+            met.bench.settle()
+            # Inputs on several topics may overtake each other, so the subject gets time for each. If a message is due,
+            # this ends when it comes.
+            due = [one for one in _outputs_due(inputs[:number], self._due) if not isinstance(one, Reply)]
+            speaks = name in speakers and self._due(inputs[:number]) is not SILENCE
+            met.bench.run_time(PAUSE, until=partial(_heard, met, len(due)) if speaks else None)
+        return met.heard > 0 or not met.topics
+
+    def _replies(self, seen: Part) -> list[Reply]:
+        return [one for one in self._made(seen, self._due) if isinstance(one, Reply)]
+
+    def _got_through(self, seen: Part, expected: Part) -> bool:
+        return got_through(seen, expected, self._given, "answered")
+
+    def _inputs(self, seen: Part) -> list[Any]:
+        return [To(event.name, value(event)) for event in seen.events if event.kind in ("sent", "asked")]
+
+    def _outputs(self, seen: Part) -> list[Any]:
+        return [
+            Reply(event.data["fields"])
+            if event.kind == "answered"
+            else pick(event.data["fields"], self._field)
+            for event in seen.events
+            if event.kind in ("message", "answered")
+        ]
+
+    def _equal(self, one: Sequence[Any], other: Sequence[Any]) -> bool:
+        return len(one) == len(other) and all(
+            all(same(field, came.fields.get(name)) for name, field in due.fields.items())
+            if isinstance(due, Reply) and isinstance(came, Reply)
+            else type(due) is not Reply and same(due, came, self._tolerance)
+            for due, came in zip(one, other, strict=True)
+        )
+
+
 def _outputs_due(inputs: Sequence[Any], due: Due) -> list[Any]:
     made = (due(inputs[:number]) for number in range(1, len(inputs) + 1))
     return [one for one in made if one is not SILENCE]
@@ -169,6 +284,15 @@ def _drawn(inputs: Sequence[Any], random: Random) -> Iterator[Any]:
     for given in inputs:
         drawn = given in (NUMBER, WHOLE) and next(numbers)
         yield drawn / 4 if given is NUMBER else drawn if given is WHOLE else given
+
+
+def _heard(met: Met, number: int) -> bool:
+    return met.heard >= number
+
+
+def _drawn_to(inputs: Sequence[To], random: Random) -> Iterator[To]:
+    values = _drawn([given.value for given in inputs], random)
+    return (To(given.name, drawn) for given, drawn in zip(inputs, values, strict=True))
 
 
 def _is_empty(copied: Any) -> bool:
