@@ -163,6 +163,33 @@ def test_a_node_that_died_is_not_blamed_for_what_it_was_not_given() -> None:
     assert (finding.passed, finding.seen) == (False, "the node ended before the last input")
 
 
+def test_what_a_right_node_may_do_while_the_judge_moves_the_clock_is_looked_at_again() -> None:
+    """A thread with a timer of its own may say the same twice if a heartbeat comes at the moment at which it fires."""
+    certain = {one.key for one in watchdog().mistakes if one.key in READY_MADE and one.certain}
+    assert certain == {"too_early"}
+
+
+def test_a_node_may_log_its_states() -> None:
+    watch = Watch(
+        "a.b",
+        "A",
+        "B",
+        state=lambda beats: "lost" if beats and beats[-1].age >= 1.0 else "back",
+        gives=[({}, 0.5), ({}, 1.5), ({}, 1.6)],
+        within=0.2,
+        words=("lost", "back"),
+    )
+    watch.says("lost", "lost", 1, "Lost")
+    watch.once("once", 1, "Once")
+    exercise = watch.exercise()
+    part = run([])
+    lines = [Event(at + 2, "log", "/dog", {"text": f"{text}!"}, at + 100) for at, text in USUAL]
+    part = Part("met", {}, sorted([*part.events, *lines], key=lambda event: event.t))
+    for seen, points in ((part, 2), (run([]), 0), (run(USUAL), 0)):
+        evidence = Evidence([seen], Reference("a.b", {"subscription": INTERFACE["subscription"]}, [run([])]))
+        assert sum(one.judge(evidence).passed for one in exercise.criteria) == points
+
+
 def test_the_ready_made_mistakes_are_explained_to_students() -> None:
     page = (Path(__file__).parents[2] / "docs/mistakes.md").read_text(encoding="utf-8")
     for key in READY_MADE:

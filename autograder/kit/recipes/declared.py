@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from autograder.kit.draft import Draft
 from autograder.kit.model import Finding
-from autograder.kit.recipes.own_scenario import OwnScenario
+from autograder.kit.recipes.own_scenario import OwnScenario, Spoken
 from autograder.kit.rules import got_through, in_words, same
 
 if TYPE_CHECKING:
@@ -47,8 +47,9 @@ class Declared:
         scenario: Callable[[Bench], None],
         *roles: str,
         given: str,
+        words: Sequence[str] = (),
     ) -> None:
-        self._subject = OwnScenario(scenario, *roles)
+        self._subject = Spoken(scenario, words, *roles) if words else OwnScenario(scenario, *roles)
         self._draft = Draft(exercise_id, title, task, self._subject)
         self._text: dict[str, str] = {}
         self._given = given

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from autograder.kit.draft import OWN, OWN_LATE, SeenAsItIs
-from autograder.kit.evidence import Event
+from autograder.kit.evidence import Event, spoken_by, without_tracebacks
 from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES
@@ -14,7 +14,7 @@ from autograder.kit.mistakes.hangs import HANGS
 from autograder.kit.model import Finding
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from autograder.kit.counterparts import Caller, Speaker
     from autograder.kit.evidence import Evidence, Part
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 _NOUN = {"publisher": "a publisher on", "subscription": "a subscription to", "client": "a client of"}
 _NOUN |= {"service": "a service", "action_client": "a client of the action", "action_server": "an action"}
+ECHO = 1.0
+"""The maximum number of seconds between a logged and a printed line with the same word that count as one report."""
 SERVED = 3.0
 """Time limit in seconds of wall time until the judge can call a service that is on the ROS graph."""
 
@@ -93,9 +95,13 @@ class OwnScenario:
         self.roles = roles
         self.scenario = scenario
 
+    def view(self, part: Part) -> Part:
+        """Return the record of a part as the exercise's criteria see it."""
+        return part
+
     def seen(self, evidence: Evidence) -> Part:
         """Return the record of the subject in its first part."""
-        return evidence.main
+        return self.view(evidence.main)
 
     def expected(self, evidence: Evidence) -> Part:
         """Return the record of the reference solution, including its endpoints.
@@ -103,7 +109,7 @@ class OwnScenario:
         While the reference is being recorded, return the record that is being made.
         """
         if not evidence.reference.parts:
-            return evidence.main
+            return self.view(evidence.main)
         recorded, interface = evidence.reference.parts[0], evidence.reference.interface
         return replace(recorded, events=[Event(0.0, "interface", "graph", interface), *recorded.events])
 
@@ -139,6 +145,58 @@ class OwnScenario:
             OWN_LATE,
             *unfinished.NOTHING_THERE,
         )
+
+
+class Spoken(OwnScenario):
+    """The recipe for a subject that logs or prints words instead of publishing them.
+
+    The view has a message event for each line with exactly one of the words; capitals do not matter.
+
+    Args:
+        words: The words, as the task names them.
+    """
+
+    def __init__(self, scenario: Callable[[Bench], None], words: Sequence[str], *roles: str) -> None:
+        super().__init__(scenario, *roles)
+        self._words = words
+
+    def view(self, part: Part) -> Part:
+        """Return the record with a message event in place of each such line."""
+        lines = [
+            (event, word) for _, event in without_tracebacks(part.events) if (word := self._word_in(event))
+        ]
+        if any(
+            event.kind == "log" for event, _ in lines
+        ):  # a logged line also reaches the terminal, perhaps late
+            lines = [(event, word) for event, word in lines if not _is_a_logged_one(event)]
+        told = {
+            id(event): replace(
+                event, kind="message", name="log", data={**event.data, "fields": {"data": word}}
+            )
+            for event, word in _without_echoes(lines)
+        }
+        heard = [event for event in part.events if event.kind != "message"]
+        return replace(part, events=[told.get(id(event), event) for event in heard])
+
+    def _word_in(self, event: Event) -> str:
+        """Return the only word in a logged or printed line; empty if the line has none of them or several."""
+        line = (spoken_by(event) or "").casefold() if event.kind in ("log", "output") else ""
+        found = [word for word in self._words if word.casefold() in line]
+        return found[0] if len(found) == 1 else ""
+
+
+def _is_a_logged_one(event: Event) -> bool:
+    """True if a line of the terminal has the prefix of a logger."""
+    return event.kind == "output" and spoken_by(event) != event.data["text"]
+
+
+def _without_echoes(lines: Sequence[tuple[Event, str]]) -> Iterator[tuple[Event, str]]:
+    """Yield the lines, but not one that is printed right after the same word was logged, or the other way round."""
+    said, kind, at = "", "", 0.0
+    for event, word in lines:
+        if word != said or event.kind == kind or event.moment - at > ECHO:
+            said, kind, at = word, event.kind, event.moment
+            yield event, word
 
 
 def _in_words(role: str, endpoints: Mapping[str, str]) -> str:

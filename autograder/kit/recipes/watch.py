@@ -55,6 +55,8 @@ class Span:
 class Watch(Declared):
     """An exercise about a node that listens on one topic and reports each change of a state on another, in time.
 
+    With ``words`` it logs or prints the state instead.
+
     Args:
         exercise_id: The exercise's id, such as ``"lab_8_1.watchdog"``.
         title: The title of the card: the lab and the subject.
@@ -70,6 +72,7 @@ class Watch(Declared):
         within: The time limit in seconds for reporting a change, as in the task.
         waits: Seconds of wall time before the first message, in which the node must not report anything.
         field: The path of the message field that contains the state.
+        words: The states, if the node logs or prints them instead of publishing.
     """
 
     def __init__(
@@ -83,9 +86,10 @@ class Watch(Declared):
         within: float,
         waits: float = 0.0,
         field: str = "data",
+        words: Sequence[str] = (),
     ) -> None:
-        scenario = once_met(self._happens)
-        super().__init__(exercise_id, title, task, scenario, "subscription", "publisher", given="sent")
+        roles = ("subscription",) if words else ("subscription", "publisher")
+        super().__init__(exercise_id, title, task, once_met(self._happens), *roles, given="sent", words=words)
         self._state, self._gives, self._within, self._waits = state, gives, within, waits
         self._field = field
 
@@ -184,8 +188,8 @@ class Watch(Declared):
             "told_too_often",
             self._repeated,
             "Your node reports {} twice in a row.",
-            "Store the state that you published last, and publish a state only if it differs from that one.",
-            True,
+            "Store the state that you reported last, and report a state only if it differs from that one.",
+            False,  # a thread of a right node may do so in the first look, whose clock it does not follow
         )
         yield (
             "only_in_answer",
@@ -242,13 +246,13 @@ class Watch(Declared):
     def _happens(self, met: Met) -> bool:
         # This wait is in real time, because the clock of the subject is not simulated yet. A time that the subject
         # stored now would be useless later.
-        met.bench.wait_until(lambda evidence: bool(evidence.main.of("message")), self._waits)
+        met.bench.wait_until(lambda evidence: bool(self._subject.seen(evidence).of("message")), self._waits)
         met.bench.run_time(STEP)
         for given, seconds in self._gives:
             met.speakers[0].send(**(given if isinstance(given, Mapping) else {"data": given}))
             met.bench.settle()
             met.bench.run_time(seconds)
-        return met.heard > 0
+        return bool(self._subject.view(met.bench.seen()).of("message"))
 
     def _spans(self, seen: Part, rule: State) -> list[Span]:
         """Return the intervals of the states that the subject must report according to a rule, in order."""
