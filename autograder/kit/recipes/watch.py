@@ -181,7 +181,7 @@ class Watch(Declared):
             "never_told",
             self._never_told,
             "Your node never reports {}.",
-            "Publish this state, with exactly this spelling, when it begins.",
+            "Report this state, with exactly this spelling, when it begins.",
             False,
         )
         yield (
