@@ -89,7 +89,7 @@ def recording(exercise_id: str) -> str:
     if not report.verdict.passed:
         there = json.loads(report.reference)["interface"]
         missing = " and no ".join(role for role in exercise.roles if role not in there)
-        has_none = f" It has no {missing}, and this recipe judges one." * bool(missing)
+        has_none = f" The solution has no {missing}, which this recipe judges." * bool(missing)
         failed = (criterion for criterion in report.verdict.criteria if not criterion.passed)
         missed = "".join(f"\n  {c.title}: expected {c.expected}; seen {c.seen}" for c in failed)
         raise CannotRecord(

@@ -109,7 +109,7 @@ def test_a_solution_without_an_endpoint_that_the_recipe_judges_is_named(
     with pytest.raises(recording.CannotRecord) as raised:
         recording.recording(exercise.id)
     said = str(raised.value)
-    assert "It has no publisher, and this recipe judges one." in said
+    assert "The solution has no publisher, which this recipe judges." in said
     assert "Says lost: expected lost, 4 times; seen lost, 0 times" in said
 
 
