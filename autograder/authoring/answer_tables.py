@@ -23,8 +23,8 @@ a table is named after the file of its answer::
     -        self.get_logger().info("Hello, ROS 2! From SimpleNode.")
     '''
 
-``shows`` is the first line of the resulting program. By default, this line is ``Wrong: `` followed by ``why``. The
-module ``autograder.authoring.edits`` describes the format of ``change``.
+``shows`` is the first line of the resulting program; by default ``Wrong: `` followed by ``why``. For the format of
+``change`` see ``autograder.authoring.edits``.
 """
 
 from __future__ import annotations
@@ -62,10 +62,10 @@ class AnswerEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         also: Other diagnoses that are accepted, as keys.
         says: Words that the answer's card must contain, if the key alone does not identify the mistake.
         command: The command that runs the answer; empty for the usual command of the folder.
-        base: For a program that is stored as an edit, the file in the folder ``right`` that the edit changes. Empty
-            for a program in a file of its own, and for a workspace: its base is the workspace in ``settings.toml``.
-        shows: The first line of the program, without the characters that make it a docstring or comment. If empty,
-            this line is ``Wrong: `` or ``Right: ``, followed by ``why``.
+        base: The file in the folder ``right`` that the edit changes. Empty for a program in a file of its own, and for
+            a workspace, which is an edit of the workspace in ``settings.toml``.
+        shows: The first line of the program, without the characters that make it a docstring or comment; if empty,
+            ``Wrong: `` or ``Right: `` followed by ``why``.
         change: The edit of the base; empty for a program in a file of its own.
     """
 

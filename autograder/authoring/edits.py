@@ -9,12 +9,11 @@ An edit looks like a diff without line numbers::
     -        self.i += 1
     +        self.i += 2
 
-A line that begins with ``-`` is removed from the base. A line that begins with ``+`` is added. A line that begins with
-a space stays unchanged. Such a line shows which place is meant if the removed lines occur several times. An empty line
-stands for an unchanged empty line. ``...`` separates two places of the base.
+Lines with ``-`` are removed from the base, and lines with ``+`` are added. A line with a space, or an empty line, stays
+unchanged; it identifies the place if the removed lines occur several times. ``...`` separates two places of the base.
 
-The edit of a workspace begins with a line that says what the answer shows. Sections follow, each for a file or
-folder:
+The edit of a workspace begins with a line that says what the answer shows. Then follows a section for each changed file
+or folder:
 
     === src/my_robot_pkg/setup.py              the whole file, up to the next section
     === src/my_robot_pkg/setup.py (changed)    the edit of the file, as above

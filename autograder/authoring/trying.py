@@ -93,13 +93,13 @@ def try_exercise(
 ) -> bool:
     """Try an exercise: check its recording, judge the answers, and print surprises and what is left to do.
 
-    Edits that do not fit are reported before anything runs. If the exercise has no reference output yet, it is
-    recorded. If the stored reference output differs from a new recording, the author has to decide: it stays
-    unchanged, and no answer is judged. The notebook as students get it must earn no points.
+    Edits that do not fit are reported before anything runs. A missing reference output is recorded. If the stored
+    reference output differs from a new recording, it stays unchanged, and no answer is judged until the author has
+    decided. The notebook as students get it must earn no points.
 
     Args:
         exercise_id: The exercise's id, such as ``"lab_1_2.talker"``.
-        only: Parts of names. Only answers whose name contains one of these parts are judged; all answers if empty.
+        only: Only answers whose name contains one of these texts are judged; all answers if empty.
         jobs: The number of answers to judge at the same time.
         repeat: The number of times to judge each answer, each time with different random inputs.
         transcript: The folder for the evidence of each answer from its last run; None to write none.

@@ -30,12 +30,11 @@ _ITS_TIME = 1e6
 class ForkedProcess:
     """A process that a fork server has forked on request.
 
-    The forked process is killed as soon as this object's connection is closed, even if the reason is that this process
-    has crashed.
+    The forked process is killed as soon as the connection to it is closed, for example because the grader has crashed.
 
     Args:
         address: The socket address of the fork server.
-        entrance: The settings with which the process begins in its box.
+        entrance: The settings with which the process starts.
         descriptors: File descriptors for the process. The caller keeps its own copies.
         box: The box that the process enters, and that ends with the process; None if it runs outside any box.
 

@@ -30,7 +30,7 @@ _ALL_NAMESPACES = (
 
 @dataclass(frozen=True)
 class Entrance:
-    """The settings with which a child starts.
+    """The settings with which a child of a fork server starts.
 
     Attributes:
         cwd: The working folder, as a path inside the box.
@@ -42,10 +42,10 @@ class Entrance:
         hidden_memory: True to allow memory that belongs to no process; see
             :func:`autograder.boxes.seccomp_filter.filter_for_boxes`.
         call: The argument for the function ``run``.
-        reader_seconds: The limit in seconds of processor time for a process that may only read from and write to its
-            descriptors (:func:`autograder.boxes.seccomp_filter.filter_for_readers`); 0 for any other process.
-        filters_itself: True if this process installs its filter of system calls itself: a desk must connect to its
-            kernel first (:mod:`autograder.execution.kernel_desk`).
+        reader_seconds: The limit of processor time in seconds for a process that only reads and writes its descriptors
+            (:func:`autograder.boxes.seccomp_filter.filter_for_readers`); 0 for any other process.
+        filters_itself: True if the child installs its filter of system calls itself, as a kernel's desk does after it
+            has connected to the kernel (:mod:`autograder.execution.kernel_desk`).
     """
 
     cwd: str

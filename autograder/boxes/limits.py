@@ -36,39 +36,34 @@ class Limits:
     """The limits of one notebook. If a limit is reached, the feedback names it.
 
     Attributes:
-        cell_seconds: Time limit in seconds for one cell on an idle machine; on a busy machine it stretches. A check
-            cell gets its exercise's limit plus ``check_margin`` instead.
-        terminal_factor: A ``%%bash`` cell gets this many times the limit of another cell, because it may build a
-            workspace.
-        check_margin: Seconds beyond the judge's own limit, so that the verdict arrives before the cell is stopped.
+        cell_seconds: Time limit in seconds for one cell; on a busy machine it gets longer. A check cell has the limit
+            of its exercise plus ``check_margin`` instead.
+        terminal_factor: The factor by which the limit of a ``%%bash`` cell is longer: it may build a workspace.
+        check_margin: Seconds beyond the limit of the exercise, so that the verdict arrives before the cell is stopped.
         notebook_seconds: Wall time in seconds for all cells together, including checks.
         interrupt_grace: Seconds for an interrupted cell to end before its kernel is killed.
         start_seconds: Wall time in seconds within which a kernel must have answered.
         cell_output_bytes: The maximum number of bytes kept of one cell's output. The rest is dropped, and a line in
             the output says so.
         notebook_output_bytes: The maximum number of bytes kept of all cells' output together.
-        message_bytes: The maximum size of an output; a larger one is dropped unread.
-        flood_bytes: The number of bytes that a cell may output, kept or not, before it is stopped.
-        desk_bytes: Memory in bytes that the process that reads a kernel's messages may write to.
-        cpu_seconds: Processor time in seconds for all processes of a box together, each time that a submission is
-            executed.
-        memory_bytes: Memory in bytes for all processes of a box together, including the files that they write, which
-            are in memory.
+        message_bytes: The maximum size of one output message; a larger one is dropped unread.
+        flood_bytes: The number of bytes after which a cell is stopped for its output, kept or not.
+        desk_bytes: Memory in bytes for the desk that reads a kernel's messages.
+        cpu_seconds: Processor time in seconds for all processes of a box, in each execution of a submission.
+        memory_bytes: Memory in bytes for all processes of a box, including the files that they write into memory.
         beside_bytes: The memory limit in bytes while other submissions run. A submission that needs more is executed
             again, alone, so this limit never decides a result.
         beside: True while other submissions run.
-        judge_bytes: Memory in bytes that the judge's process, and each of its checks, may write to. It limits what a
-            subject can send to the judge.
-        processes: The maximum number of processes and threads of a box together.
+        judge_bytes: Memory in bytes for the judge's process and for each of its checks. A subject that sends too much
+            reaches it.
+        processes: The maximum number of processes and threads of a box.
         open_files: The maximum number of open files, sockets and pipes of one process.
-        all_open_files: The maximum number of open files, sockets and pipes of all processes of a box together; also
-            that of sockets in the box's network.
-        file_locks: The maximum number of file parts that all processes of a box may lock together; a database locks
-            five.
+        all_open_files: The same for all processes of a box; also the maximum number of sockets in the box's network.
+        file_locks: The maximum number of file parts that all processes of a box may lock; a database locks five.
         socket_bytes: The maximum number of bytes that may wait in the sockets of a box's network. The machine has one
-            limit for all boxes together; if that is used up, no box receives messages any more.
-        scratch_bytes: The maximum size of all files of a box together, in bytes.
-        scratch_files: The maximum number of files, folders and links in a box.
+            limit for all boxes; if it is used up, no box receives messages any more.
+        scratch_bytes: The maximum size in bytes of all files that the boxes write.
+        scratch_files: The maximum number of these files, with folders and links.
     """
 
     # docs/decisions.md says how much notebooks need, and why these limits are several times as high.

@@ -49,8 +49,7 @@ class Enclosure:
 
     Args:
         supervisors: The socket address of the fork server that starts supervisors.
-        folder: A short-lived folder that nothing else uses; it is created if it does not exist. A box sees only those
-            parts of it that are bound.
+        folder: A temporary folder that nothing else uses; it is created if it does not exist.
         files: Files to put into the notebook's folder, by relative path.
         scratch_bytes: The maximum size in bytes of all files that the boxes write into the scratch together.
         scratch_inodes: The maximum number of files, folders and links in the scratch.
@@ -121,7 +120,7 @@ class Enclosure:
         call: Mapping[str, Any] | None = None,
         rlimits: Mapping[str, int] | None = None,
     ) -> ForkedProcess:
-        """Start a process: a child of a fork server enters a box.
+        """Let a fork server fork a process that enters a box, and return the process.
 
         Args:
             box: A box of this enclosure.
@@ -153,9 +152,9 @@ class Enclosure:
         cwd: Path = WORK,
         output_bytes: int = OUTPUT_BYTES,
     ) -> Finished:
-        """Run a command in a new box with the scratch until the command ends. Otherwise like :meth:`start`.
+        """Run a command in a new box that has the scratch, and wait for its end. Otherwise like :meth:`start`.
 
-        When this returns, no process of that box is alive, not even a daemon.
+        When this returns, no process of the box is alive, not even a daemon.
 
         Args:
             command: The program and its arguments; see :meth:`start`.
@@ -192,7 +191,7 @@ class Enclosure:
                 :func:`autograder.boxes.environment.box_environment`.
             cwd: The working folder.
             output_bytes: The maximum number of bytes of output to keep.
-            scratch: True if the box gets the enclosure's scratch; see :meth:`box`. Commands that have it see each
+            scratch: True if the box gets the enclosure's scratch; see :meth:`box`. Commands with the scratch see each
                 other's files.
 
         Raises:

@@ -2,18 +2,17 @@
 
 The namespaces decide what a box can reach. In addition, the filter refuses:
 
-* calls that no exercise needs and in which kernels had security holes: tracing other processes, mounting, namespaces in
-  namespaces, keys, BPF, io_uring;
-* watching files (inotify), because a user has only 128 watches for all boxes and programs together; programs that
-  cannot watch files check them from time to time instead;
+* calls that no exercise needs and that have had security holes: tracing other processes, mounting, nested namespaces,
+  keys, BPF, io_uring;
+* watching files (inotify), because all boxes and programs of a user share 128 watches; programs then poll files;
 * semaphores and messages of System V, because a few thousand calls take gigabytes that belong to no process;
 * asynchronous input and output (``io_setup``), because all programs of the machine share one number of requests;
-* leases (``fcntl``), because a lease delays every other process that opens the file for up to 45 seconds, even if the
-  file is read-only here; Python's own modules are the same files in every box;
-* calls for which the kernel keeps memory that no cgroup and no guard counts: attributes of files (access control
-  lists), memory policies (``mbind``), names of areas of memory (``prctl``), filters of sockets and of system calls;
-* locks that ``/proc/locks`` does not show for a box: those of an open file description, and those of a process that
-  shares its table of open files and has ended; the guard counts all other locks (:mod:`autograder.boxes.guards`);
+* leases (``fcntl``), because a lease delays other processes that open the file, such as a Python module, by up to 45
+  seconds;
+* calls that take kernel memory that neither cgroups nor the guard count: attributes of files (access control lists),
+  memory policies (``mbind``), names of memory areas (``prctl``), filters of sockets and of system calls;
+* locks that ``/proc/locks`` does not show for a box, so that the guard (:mod:`autograder.boxes.guards`) cannot count
+  them: those of open file descriptions, and of ended processes whose table of open files is shared;
 * network protocols whose waiting data the guard does not count: all except UDP, TCP, and netlink to list interfaces.
 
 A refused call fails with EPERM, as for any user without the right to make it. Calls for attributes of files fail with

@@ -87,11 +87,9 @@ class Execution:
         seconds: The duration in seconds of wall time, including the start of the kernel.
         start_seconds: The part of ``seconds`` until kernel and judge were ready.
         as_typed: The indexes of the cells whose text takes too long to render on a page.
-        crowded_out: True if the notebook failed or reached a limit, perhaps only because other work ran at the same
-            time.
+        crowded_out: True if the notebook may have failed only because other work ran at the same time.
         cpu_seconds: The processor time in seconds that was used in the student's boxes; 0 if it is not counted.
-        evidence: The evidence for the judge's verdicts, by exercise, as the judge packed it. It is not unpacked while
-            a class is graded.
+        evidence: The evidence for the judge's verdicts, by exercise, packed. Grading does not unpack it.
     """
 
     cells: tuple[CellRun, ...]

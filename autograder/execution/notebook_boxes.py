@@ -54,9 +54,8 @@ class JudgeSetting:
 class BoxedPlace:
     """The boxes of one submission, in one network or in two.
 
-    The student's box and the judge's box share the notebook's network. Programs that the grader builds from submitted
-    sources and starts for a check run on a second network, with another judge. No process in the student's box can
-    send anything to that network.
+    The student's box and the judge's box share the notebook's network. Programs that the grader builds and starts for
+    a check run on a second network, with another judge. The student's box cannot reach that network.
 
     Args:
         addresses: The addresses of the fork servers.

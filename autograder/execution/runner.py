@@ -69,8 +69,7 @@ def run_notebook(
 
     Args:
         cells: The cells of the rebuilt notebook.
-        judge: The judge, as a context manager. It is started while the kernel starts, and ended at the end of this
-            function.
+        judge: The judge, a context manager. It starts while the kernel starts, and ends before this function returns.
         place: Starts the processes of the kernel and its desk.
         folder: The folder for the kernel's sockets. Its path must be short.
         limits: The limits of the notebook.
@@ -78,8 +77,8 @@ def run_notebook(
         patient: Turns a cell's time limit into a deadline, which may stretch while the machine is busy.
 
     Returns:
-        The execution. Nothing in the notebook can make this function raise. A failure of the grader itself (no
-        kernel, no judge) is in ``trouble``, and the checks that it affects are "not checked".
+        The execution. Nothing in the notebook can make this function raise an error. If the grader itself fails,
+        ``trouble`` says why, and the checks that this affects are "not checked".
     """
     began = time.monotonic()
     run = _Run(cells, limits, patient)

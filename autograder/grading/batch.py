@@ -91,15 +91,15 @@ def grade(
         judge: The Python class that makes a judge, as ``module:class``; by default the real judge. For tests.
         scheduler: The address of a Dask scheduler whose workers execute the notebooks; by default this machine
             executes them.
-        dry_run: True to leave the gradebook unchanged. New submissions are executed, and the report lists the students
-            whose points would change. The results are stored, so that the next run only has to enter them.
+        dry_run: True to leave the gradebook unchanged, and report the students whose points would change. The results
+            are stored, so that the next run only has to enter them.
 
     Returns:
         The report. If a submission could not be graded, the report contains it with zero points and the reason.
 
     Raises:
-        GradingError: The class cannot be graded: for example, it is not a class, another run is grading it, the disk
-            is full, or no worker can execute its notebooks.
+        GradingError: The class cannot be graded, for example because another run is grading it, the disk is full, or
+            no worker can execute notebooks.
     """
     began = time.monotonic()
     console = console or Console(stderr=True)

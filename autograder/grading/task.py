@@ -23,8 +23,6 @@ class Task:
 
     Attributes:
         student: The student's id, for messages.
-        assignment: The assignment's name.
-        notebook: The notebook's name.
         cells: The cells of the rebuilt notebook.
         seed: The seed of the judge's random inputs.
         course: The version of the course, a hash of all files that may influence a grade.
@@ -34,8 +32,7 @@ class Task:
         remarks: Sentences about repairs of the notebook.
         pictures: A hash of the pictures that the student attached, so that changed pictures change the task's hash.
         boxed: True to execute the notebook in a sandbox. False for the course's own notebooks, and if the instructor
-            allowed running submissions without a sandbox. A result without a sandbox is not reused for a task with
-            one.
+            allowed grading without a sandbox. A result without a sandbox is not reused for a boxed task.
     """
 
     student: str

@@ -137,8 +137,8 @@ class Draft(Generic[View]):
                 subject's view that decides this.
             late: True if a node that hangs or is not spun would show this mistake, too. Then the mistakes of such nodes
                 are checked first.
-            before: The key of one of the recipe's mistakes. The new mistake is checked just before it, instead of at
-                one of the two placeholders.
+            before: The key of a mistake of the recipe, just before which the new mistake is checked; by default at one
+                of the two placeholders.
         """
 
         def told(seen: View, expected: View) -> Advice | None:

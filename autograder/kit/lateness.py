@@ -207,9 +207,10 @@ def _missed(request: str) -> Callable[[Part], bool]:
 def meets_late(
     bench: Bench, meet: Callable[[float], bool], role: str, request: str, lateness: float = LATENESS
 ) -> bool:
-    """Run the subject with a late server. If a patient subject just misses it, run again with shorter delays.
+    """Run the subject with a late server. If no request of a patient subject arrives, run it again.
 
-    A request may also be lost if the client sends it at the very moment it ends.
+    The server is then less late. Either the subject ended just before the server started, or its request was lost
+    because it ended right after sending the request.
 
     Args:
         bench: The bench of the scenario.
@@ -240,7 +241,7 @@ def meets_late_action(
     lateness: float = LATENESS,
     held: float | None = None,
 ) -> bool:
-    """Run the subject with a late action server. If a patient subject just misses it, run again with shorter delays.
+    """Run the subject with a late action server. If a patient subject misses it or an answer, run it with less delay.
 
     Args:
         bench: The bench of the scenario.
@@ -267,9 +268,8 @@ def meets_present(
 ) -> bool:
     """Run the subject with an available server. Repeat if a client that can call the server ended without calling.
 
-    A request that a client sends at the very moment it ends is sometimes lost, so the client is started once more. On
-    a very busy machine, discovering the server may take longer than the client waits; a patient client is started
-    several times.
+    A request that a client sends just before it ends is sometimes lost, so the client is started once more. On a very
+    busy machine, a client may stop waiting before it discovers the server; a patient client is started several times.
 
     Args:
         bench: The bench of the scenario.

@@ -349,12 +349,11 @@ class Exercise:
             sentence that no criterion judges is listed below the task as not graded.
         remarks: Functions that return a sentence for the card that costs no points, or an empty text.
         roles: The roles of the subject's endpoints, such as ``("publisher",)``. `record` waits for one of them.
-        limit: The time limit of a check in seconds of wall time, for the fast look and the one in real time together.
-            The limit for a command is longer, because a command may build first
-            (`autograder/judge/subjects/command.py`).
+        limit: The time limit of a check in seconds of wall time, for both looks together. A command gets more time,
+            because it may build first (`autograder/judge/subjects/command.py`).
         arguments: A description of the arguments that a command takes; empty if it takes none.
         sample_arguments: Example arguments with which ``record`` starts the reference solution to see its endpoints.
-        second_look: True if a subject that fails at the fast pace is watched again in real time.
+        second_look: True if a subject that fails in simulated time gets a second look in real time.
         runner: How `autograder.workspaces` runs a path that is given instead of a command; None if the subject cannot
             be a path.
         wraps_commands: True if ``runner`` also runs commands.

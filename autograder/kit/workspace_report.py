@@ -56,15 +56,15 @@ class PackageReport:
     Attributes:
         name: The package's name in its package.xml.
         build_type: ``"ament_python"`` or ``"ament_cmake"``.
-        programs: The package's console scripts, as ``name = module:function``. Before the build, these are the ones in
-            the text of setup.py; after the build, the installed ones.
+        programs: The package's console scripts, as ``name = module:function``: before the build those in setup.py,
+            after the build the installed ones.
         interfaces: The interface files of the package.
         dependencies: All dependencies in package.xml, including ``member_of_group``.
         modules: The package's Python files, as paths inside the package.
-        commented: The dependencies that stand in comments of package.xml, so that they do not count.
+        commented: The dependencies inside comments of package.xml, which do not count.
         installed: The names of the package's programs that `ros2 run` finds; empty before the build.
-        launch_files: The package's launch files, as paths inside the package. After the build, these are the installed
-            files, as paths inside the package's folder in ``install``.
+        launch_files: The package's launch files, as paths inside the package; after the build, the installed files, as
+            paths inside the package's folder in ``install``.
     """
 
     name: str

@@ -10,12 +10,12 @@ An author writes one block after the other::
     With the timer.
     :::
 
-JupyterLab does not have such blocks, but it supports ``<details>``. Each hint is put inside the one before it, so
-that a student cannot see the second before opening the first.
+In the notebook, hints become ``<details>``. Each hint is put inside the hint before it, so that a student cannot see
+the second before opening the first.
 
-A notebook must show its figures in any folder, so they are embedded in it, as PNGs, because JupyterLab does not show
-an attached SVG. Each PNG is drawn from its SVG by :mod:`autograder.masters.drawing` and committed next to it. It
-contains a digest of the SVG, so that an SVG that was changed and not drawn again is noticed.
+Figures are embedded in a notebook, so that it can be moved to any folder. They are embedded as PNGs, because JupyterLab
+does not show an attached SVG. :mod:`autograder.masters.drawing` draws each PNG from its SVG, and stores a digest of the
+SVG in it, so that a PNG that is older than its SVG is noticed. Both files are committed.
 """
 
 from __future__ import annotations

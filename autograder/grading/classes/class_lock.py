@@ -51,8 +51,8 @@ def held(path: Path, of: Path) -> Iterator[bool]:
     """Hold the lock of a class during the block. Yield True if the previous holder was killed.
 
     The lock is a POSIX record lock: the system releases it when the process ends, and child processes do not inherit
-    it. The holder writes its name into the file, and removes the name at the end. So a name in a file that is not
-    locked shows that the holder was killed.
+    it. The holder writes its name into the file, and removes it at the end. If a file is not locked but contains a
+    name, its holder was killed.
 
     Args:
         path: The lock file, which is created if it does not exist.

@@ -234,8 +234,8 @@ def write_source(
 ) -> None:
     """Write a source notebook into a class, and adapt its links to other notebooks.
 
-    In the course, all notebooks of a chapter are in one folder. In a class, each notebook has a folder of its own. A
-    link to a notebook that the class does not have becomes plain text.
+    In a class, unlike in the course, each notebook has a folder of its own. A link to a notebook that the class does
+    not have becomes plain text.
 
     Args:
         directory: The class. The assignment's folder must exist.
@@ -296,9 +296,9 @@ def renew(path: Path, course_root: Path, assignments: Sequence[str] = ()) -> lis
         A line for each renewed assignment, and one about the copies of the earlier notebooks.
 
     Raises:
-        GradingError: The course or the class does not have an assignment, they have none in common, or nbgrader
-            rejects a notebook.
-        OSError: The notebooks could not be written. After any error, those in ``source`` are unchanged.
+        GradingError: The course or the class does not have an assignment, they have no assignment in common, or
+            nbgrader rejects a notebook.
+        OSError: The notebooks could not be written. After any error, the notebooks in ``source`` are unchanged.
     """
     directory = ClassDirectory(path)
     there = directory.assignments()

@@ -51,8 +51,7 @@ def export(
         assignments: The assignments to export; by default all that at least one student has handed in.
         into: A list that the LMS has exported, to be filled in with points.
         folder: The folder to write into; by default ``export`` in the class.
-        absent_zero: True to write zero for students who have handed in nothing; otherwise nothing is written for
-            them.
+        absent_zero: True to write zero for students who have handed in nothing; False to write nothing for them.
         columns: For assignments whose column in ``into`` has another name, that name.
         sections: The sections whose students are exported; all students if empty.
 

@@ -60,7 +60,6 @@ class ItemFigures:
     Attributes:
         exercise: The exercise's id. If several assignments have a cell with this name, the id follows the assignment's
             name, such as ``lab_1.talker``.
-        max_score: The maximum points for the exercise.
         handed_in: The number of students who have handed it in.
         mean: The mean of these students' points.
         full: The number of these students with full points.

@@ -31,10 +31,10 @@ class GradeReport:
     """The result of a grading run.
 
     Attributes:
-        path: The class.
+        path: The class directory.
         rows: The rows, sorted by student and then in the order of the course.
         refused: Files and folders in ``submitted`` that cannot be graded, each with the reason.
-        problems: Sentences about other failures. No student has points because of a failure.
+        problems: Sentences about other failures, for which no student has points.
         notices: Sentences for the instructor that are not about a failure.
         would_change: After a dry run, the points that would change; None if points were entered.
         executed: The number of notebooks that were executed.

@@ -66,7 +66,6 @@ class Row:
 
     Attributes:
         student: The student's id.
-        assignment: The assignment's name.
         exercise: The exercise's id; the name of a cell that a person grades; or ``late`` or ``dropped``.
         score: The points in the gradebook, including those that a person gave.
         max_score: The maximum points for the exercise.
@@ -79,7 +78,7 @@ class Row:
         extra: Extra credit: points that a person added.
         waits: True if a person still has to grade the exercise.
         name: The student's name; empty if unknown.
-        remarks: Sentences about repairs of the notebook, for example missing cells.
+        remarks: Sentences about repairs of the notebook, such as missing cells that were put back.
     """
 
     student: str

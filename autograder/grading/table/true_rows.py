@@ -30,9 +30,9 @@ def true_rows(
     what_counts: WhatCounts = WhatCounts(),  # noqa: B008 (it is frozen)
     zone: tzinfo = UTC,
 ) -> list[Row]:
-    """Return a class's rows: those of each student in the order of the course, sorted by student.
+    """Return the rows of a class, sorted by student and then in the order of the course.
 
-    An assignment without any submission is left out. Every student has rows for all other assignments.
+    Every student has rows for each assignment that at least one student has handed in.
 
     Args:
         students: The names of the students, by id.

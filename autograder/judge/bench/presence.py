@@ -74,8 +74,7 @@ class Presence:
         node: The judge's node.
         recorder: The record of the part.
         subject: The subject.
-        settled: If the graph has not changed for this many seconds, a command is assumed to have made all its
-            endpoints.
+        settled: A command is assumed to have made all its endpoints if the graph has not changed for this many seconds.
         announced: Returns True if a process of the subject is known to have made a node.
     """
 

@@ -57,7 +57,7 @@ def check_and_keep(
         command: The program and its arguments. If the exercise has inputs, they are appended as further arguments.
         seed: The seed of the random inputs; the default is a new one.
         cwd: The folder in which to run the command.
-        box: The sandbox to run it in; None to run it with all rights of the user.
+        box: The sandbox in which to run the command; None to run it with all rights of the user.
 
     Returns:
         The verdict, and the evidence as :mod:`autograder.judge.verdicts.keeping` packs it. If the judge itself

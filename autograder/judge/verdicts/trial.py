@@ -75,10 +75,11 @@ def check(
     domain_id: int,
     marks_crowded: bool = False,
 ) -> Checked:
-    """Judge a subject in one look or, if the first look does not decide, in two.
+    """Judge a subject in one look, or in two looks if the first does not decide.
 
-    If the subject passes the fast look, it has passed. If it fails, a look in real time decides, unless the evidence
-    proves the mistake whatever the load is. A check whose verdict takes longer than :data:`.deciding.LIMIT` has failed.
+    A subject that passes the first look, in simulated time, has passed. If it fails, a second look in real time
+    decides, unless the evidence proves the mistake whatever the load is. A check whose verdict takes longer than
+    :data:`.deciding.LIMIT` has failed.
 
     Args:
         exercise: The exercise that the subject has to fulfill.
@@ -86,7 +87,7 @@ def check(
         reference: The recorded behavior of the reference solution.
         seed: The seed of all random inputs.
         domain_id: The ROS domain.
-        marks_crowded: True to return a verdict with ``crowded`` set instead of raising TooBusy. A grader does this.
+        marks_crowded: True to return a verdict with ``crowded`` set instead of raising TooBusy, as the grader does.
 
     Raises:
         ExerciseFailed: The exercise's own code raised an exception.

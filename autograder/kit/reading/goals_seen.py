@@ -34,19 +34,15 @@ class Goal:
     Attributes:
         request: The fields of the goal; None if the goal was not sent.
         accepted: True if the server accepted the goal, False if it refused; None if it did not answer.
-        feedback: The fields of each feedback message, in order. Messages sent after the result was received are left
-            out.
-        sent: For each message in ``feedback``, the time at which it was sent, by the publisher's clock, in seconds
-            since the epoch.
-        answered_at: The time at which the server's answer to the goal arrived, by the judge's clock; None if unknown.
-        cancel_answered_at: The time at which the answer to the cancel request arrived, by the judge's clock; None if
-            unknown.
+        feedback: The fields of each feedback message that was sent before the judge had the result, in order.
+        sent: For each message in ``feedback``, when it was sent, in seconds since the epoch by the publisher's clock.
+        answered_at: When the server's answer to the goal arrived, by the judge's clock; None if unknown.
+        cancel_answered_at: When the answer to the cancel request arrived, by the judge's clock; None if unknown.
         cancel_accepted: True if the server accepted the cancel request; None if it did not answer or none was sent.
         cancelled_too_late: True if the server answered the cancel request by saying that the goal had already ended.
         before_cancel: The number of feedback messages that arrived before the cancel request was sent.
         unread: The number of feedback messages that arrived between the cancel request and its answer.
-        seconds: Wall time in seconds from the acceptance to the result; None if the goal has no acceptance or no
-            result.
+        seconds: Wall time in seconds from the acceptance to the result; None if one of them is missing.
         status: The status that came with the result; None if no result came.
         result: The fields of the result; empty if no result came.
     """

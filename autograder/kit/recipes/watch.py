@@ -65,10 +65,9 @@ class Watch(Declared):
             ``value`` and ``name``. Given no messages, it returns the initial state. The node must report neither the
             initial state nor :data:`SILENCE`.
         gives: The messages, each with the seconds until the next message or the end. A dictionary is a whole message;
-            anything else is the value of its field ``data``. On a busy machine these seconds may get longer in real
-            time, so choose seconds that differ from each limit by at least a quarter of a second. Choose them so that
-            changes fall into different thirds of a second: then a node that checks the time only once a second is late
-            for one of the changes.
+            anything else is the value of its field ``data``. Choose seconds that differ from each limit by at least a
+            quarter of a second, because they get longer on a busy machine. Let the changes fall into different thirds
+            of a second, so that a node that checks the time only once a second is late for one of them.
         within: The time limit in seconds for reporting a change, as in the task.
         waits: Seconds of wall time before the first message, in which the node must not report anything.
         field: The path of the message field that contains the state.

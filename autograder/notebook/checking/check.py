@@ -72,8 +72,7 @@ def check(exercise: str, subject: Any) -> float:
             an exercise about files, the path of the workspace or of the launch file.
 
     Returns:
-        The points earned. In the sandbox of a submission always 0, because there the judge reports the verdict only to
-        the grader.
+        The points earned. In the sandbox of a submission always 0, because the judge tells only the grader the points.
 
     Raises:
         TypeError: The subject is neither a class nor a function nor a path. The message says what to write instead.

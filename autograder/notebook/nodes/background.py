@@ -65,8 +65,8 @@ def spinning(*nodes: Node, threads: int = 1) -> Spinning:
 def spin_in_background(node: Node, *more: Node, name: str | None = None, threads: int = 1) -> Background:
     """Spin nodes in the background until ``.stop()``, or until this cell is run again.
 
-    When the cell is run again, the nodes of its previous run are stopped and destroyed first. If ``name`` is given, the
-    nodes keep spinning then, until ``spin_in_background`` is called with the same name again.
+    When the cell is run again, the nodes of its previous run are stopped and destroyed first. Nodes with a ``name``
+    keep spinning instead, until ``spin_in_background`` is called again with the same name.
 
     Args:
         node: A node.

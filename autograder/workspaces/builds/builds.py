@@ -92,8 +92,8 @@ class Builds:
         """Build the packages of a workspace that an exercise needs.
 
         If only a dependency fails, the needed packages are built again without their dependencies. For example,
-        ``my_robot_pkg`` depends on ``my_robot_interfaces`` from Lab 1.3 on, but its programs of earlier labs import
-        nothing from there. A program that does need a missing import reports that when it runs.
+        ``my_robot_pkg`` depends on ``my_robot_interfaces`` from Lab 1.3 on, but its programs of earlier labs do not
+        import it. A program that does import it fails when it runs.
 
         Args:
             found: The workspace, as :func:`autograder.workspaces.builds.colcon.look` returns it.
