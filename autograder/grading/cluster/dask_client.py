@@ -6,8 +6,8 @@ There are four reasons for a separate process. Dask's client unpickles messages 
 here they cannot (inert_pickle.py). A memory limit stops an answer that is too large. The grader stays free of Dask's
 threads and event loop. If this process is killed, the scheduler cancels all tasks that this process gave it.
 
-The process has no data of the class. It passes orders to the workers that the grader names. It reports the answers, and
-which workers have joined or left.
+The process reads no files of the class. It passes orders to the workers that the grader names. It reports the answers,
+and which workers have joined or left.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ async def _serve(address: str, grader: Lines) -> None:
         client = await Client(
             address,
             asynchronous=True,
-            deserializers=["msgpack"],  # lets workers send plain bytes instead of pickles
+            deserializers=["msgpack"],  # makes workers send plain bytes instead of pickles
             timeout=_CONNECT_SECONDS,
             name="autograder",
         )
@@ -111,7 +111,7 @@ class _Carrier:
                 self._drop(command.number)
 
     async def watch_workers(self) -> None:
-        """Report to the grader which workers join and leave. An event of the scheduler triggers a look at its list."""
+        """Report to the grader which workers join and leave. Read the scheduler's list after each of its events."""
         self._client.subscribe_topic("all", self._on_event)
         try:
             await asyncio.gather(*(self._introduce(*who) for who in await self._look()))

@@ -39,7 +39,7 @@ class DeskFailed(GradingError):
 
 
 def read_notebook(data: bytes) -> tuple[Sequence[SubmittedCell], int]:
-    """Return the cells of a submitted file, and the number of cells that were left out because they are not valid.
+    """Return the valid cells of a submitted file, and the number of invalid cells that were left out.
 
     Raises:
         UnreadableSubmission: The file is not a notebook. The message is a sentence for the student.
@@ -69,7 +69,7 @@ def document_of(desk: Desk | KeptDesk, data: bytes) -> bytes:
 
 
 def checked(document: bytes) -> tuple[Sequence[SubmittedCell], int]:
-    """Check a desk's document. Return its cells, and the number of cells that the desk left out as not valid.
+    """Check a desk's document. Return its cells, and the number of invalid cells that the desk left out.
 
     Raises:
         UnreadableSubmission: The file is not a notebook, or the document is impossible.

@@ -18,7 +18,7 @@ class Timings:
     """Wall time of each step of a batch, in seconds. The times of notebooks that run in parallel are added up.
 
     Attributes:
-        boxes: Starting and ending boxes, kernels and judges.
+        boxes: Starting and ending the boxes, kernels and judges.
         students: Executing the cells that contain no check by the judge.
         judge: Executing the cells that contain a check by the judge. This includes the time of the subject.
         rebuild: Reading submissions, and building the notebooks that are executed.

@@ -69,7 +69,7 @@ class _Worker:
     name: str
     slots: int
     troubles: int = 0
-    """The number of notebooks in a row on which the grader itself failed at this worker."""
+    """The number of consecutive notebooks that this worker could not execute because the grader itself failed."""
     flights: set[int] = field(default_factory=set)
 
 
@@ -81,9 +81,9 @@ class _Job:
     attempts: int = 0
     tried: set[str] = field(default_factory=set)
     alone: bool = False
-    """True if a first result was not reliable. The task then runs on a worker that executes nothing else meanwhile."""
+    """True if the previous result was not reliable, so that no other task may run on the worker at the same time."""
     cpu_seconds: float = 0.0
-    """The processor time of the unreliable execution, in seconds."""
+    """The processor time of the execution whose result was not reliable, in seconds; 0 if there was none."""
 
 
 @dataclass(frozen=True)

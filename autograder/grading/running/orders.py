@@ -9,9 +9,9 @@ from __future__ import annotations
 import msgspec
 
 ADDRESS = "this machine"
-"""The address of this machine as a worker. Its version is not compared, because the grader runs from the same files."""
+"""The address of the worker that is this machine. The grader uses the same course, so no versions are compared."""
 JUDGE = "autograder.judge.serving.process:JudgeProcess"
-"""The class of the real judge, as ``module:class``. It is a text, because only workers import the judge."""
+"""The name of the real judge's class, as ``module:class``. Only workers import the class itself."""
 
 
 class Offer(msgspec.Struct, frozen=True):
@@ -70,7 +70,7 @@ class Joined(msgspec.Struct, frozen=True, tag=True):
 
 
 class Unfit(msgspec.Struct, frozen=True, tag=True):
-    """A message: a worker has joined, but has sent no offer for the given reason."""
+    """A message: a worker has joined, but has sent no offer. ``reason`` says why."""
 
     worker: str
     name: str

@@ -104,7 +104,7 @@ class ProcessLink:
         self._lines = Lines(own, sys.maxsize)
 
     def _end(self, *, at_once: bool) -> None:
-        """Ask the process to end, and wait for its end. Kill it if it takes too long, or first if ``at_once``."""
+        """Ask the process to end, and wait for its end. Kill it if it takes too long, or at once."""
         if at_once:
             self._process.kill()
         self._lines.finish()
@@ -112,7 +112,7 @@ class ProcessLink:
         self._lines.close()
 
     def _listen(self) -> None:
-        """Read the messages of the process all the time. If nothing read them, it would stop and read no commands."""
+        """Read the process's messages all the time: a process that cannot write does not read commands either."""
         said_nothing = 0
         while True:
             said_nothing += 1
@@ -130,7 +130,7 @@ class ProcessLink:
                     return
 
     def _starts_again(self, reason: str) -> bool:
-        """Start the process again after its end, and return True; False if such a process is not started again."""
+        """Start the process again and return True, or return False if this kind of process is never started again."""
         del reason
         return False
 

@@ -129,7 +129,7 @@ def a_check_was_stopped(cells: Sequence[Cell], execution: Execution) -> bool:
 
 
 def patiently(seconds: float) -> Left:
-    """Return a function that returns the seconds left until a deadline, which moves while the machine is overloaded."""
+    """Return a function that returns the seconds left. On an overloaded machine, more than ``seconds`` may pass."""
     patience = Patience(seconds)
     return lambda: patience.left
 
@@ -142,7 +142,7 @@ class _Judges:
     Args:
         made: Makes a judge that is not started yet: with True for programs, with False for the notebook's own nodes.
         runners: The exercises whose subjects are programs.
-        first: The exercise of the first check. Its judge is started before the check is requested.
+        first: The exercise of the notebook's first check. A judge for this check is started in advance.
 
     Attributes:
         evidence: The evidence of the verdicts, by exercise.
@@ -188,7 +188,7 @@ class _Judges:
 
 
 def _ros_variables(stack: contextlib.ExitStack, *, boxed: bool) -> Mapping[str, str]:
-    """Return environment variables for ROS: loopback only, plain logs on stdout, and the notebook's ROS domain."""
+    """Return environment variables that make ROS use loopback, the notebook's own domain, and plain logs on stdout."""
     if boxed:
         # No other nodes are on this network, so any domain is free.
         return {**boxed_ros_environment(), "ROS_DOMAIN_ID": "0"}

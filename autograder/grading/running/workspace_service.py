@@ -62,7 +62,9 @@ class Arrangement:
 
 
 def arrange(task: Task, folder: Path) -> Arrangement:
-    """Make the folder of the judge's socket, and find the exercises of programs. Call this before boxes are made.
+    """Make the folder for the judge's socket, and find the exercises whose subjects are programs.
+
+    Call this before the boxes of the notebook are made.
 
     Args:
         task: The notebook.

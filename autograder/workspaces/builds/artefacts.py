@@ -1,8 +1,8 @@
-"""The result of a build, accepted only as data: regular files and folders, nothing else.
+"""Takes the result of a build out of a box, as regular files and folders and nothing else.
 
 The code of a student can put anything into the install folder of a build. So the folder is packed in the box as a list
 of typed entries, and outside the box every entry is checked before it is written. Links are replaced by copies of their
-targets, so that no program follows a link out of the folder. (A library, for example, has a link to its file.)
+targets, so that no program follows a link out of the folder.
 
 In a box, this module is a program that prints the packed folder: ``python -m autograder.workspaces.builds.artefacts
 FOLDER``.
