@@ -85,8 +85,8 @@ class WorkspaceReport:
     Attributes:
         phase: ``"found"`` before the build, ``"built"`` after it.
         built: True if every package was built.
-        trouble: The kind of trouble: ``"no_workspace"``, ``"no_package"``, ``"bad_package"``, ``"entry_point"``,
-            ``"build"`` or empty.
+        trouble: The kind of failure: ``"no_workspace"``, ``"no_package"``, ``"bad_package"``, ``"entry_point"`` or
+            ``"build"``; empty if there is none.
         package: The name of the package that failed; empty if none did.
         line: The line of the log that explains the failure best.
         log: The end of the log of the failed build.

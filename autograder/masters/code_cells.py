@@ -9,11 +9,11 @@ A solution cell of a master looks like this::
         return 2 * number
         ### END SOLUTION
 
-The comment at the top of the region is the stub: the part of the region that remains in the chapter notebook. The two
-markers are nbgrader's own, so that a stock nbgrader also finds and clears the region. In a file of XML, each of the
-three lines is a comment by itself: ``<!-- ### BEGIN SOLUTION -->``.
+The comment at the top of the region is the stub: only the stub remains in the chapter notebook. The two markers are
+nbgrader's own, so that nbgrader also finds and clears the region. In XML, each of these lines is a comment:
+``<!-- ### BEGIN SOLUTION -->``.
 
-A ROS workspace consists of files, so instead of a definition a student may write a file::
+In a cell that begins with ``%%writefile``, a student writes a file of a ROS workspace::
 
     %%writefile ros2_ws/src/my_robot_pkg/my_robot_pkg/simple_node.py
     import rclpy

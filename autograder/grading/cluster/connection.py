@@ -55,7 +55,7 @@ def connected(
 
     Args:
         address: The scheduler's address, such as ``tcp://host:8786`` or ``tls://host:8786``.
-        judge: The class that makes a judge, as ``module:class``.
+        judge: The Python class that makes a judge, as ``module:class``.
         boxed: True to execute tasks in boxes. Workers that cannot make boxes are then rejected.
         tell: Called with a sentence for the instructor.
 

@@ -40,8 +40,7 @@ class Line:
         label: The name of the file in messages.
         content: The hash of the file's bytes.
         students: The ids of the students to whom the file belongs; empty if they are unknown.
-        assignment: The name of the assignment; empty if it is unknown. For a file that is not a notebook, the
-            assignment that its name means.
+        assignment: The name of the assignment; empty if it is unknown.
         notebook: The name of the notebook; empty if it is unknown, or if the file is not a notebook.
         when: The time of handing in, in UTC; in a report, in the time zone of the class.
         order: A number that increases with later files of one student, if the system numbers files.
@@ -49,15 +48,14 @@ class Line:
         use: ``yes`` or ``no``, as a person wrote it; empty if no person did.
         state: The decision about the file.
         reason: Why the file does not count, and what to do.
-        is_soft: True if the file needs no attention once a notebook of its student was collected, as for a picture next
-            to it.
-        lms, number, name, file: The system, and its names for the student and the file. Feedback is returned under
-            them.
+        is_soft: True if the file, such as a picture, needs no attention once a notebook of its student was collected.
+        lms, number, name, file: The system, and the student and the file as the system calls them. Feedback for the
+            system uses these names.
         is_named: True if the file has the name of the notebook.
         is_sure: True if a number of the system identifies the student, not just a name that students may choose.
         came_in: The downloads that contained the file.
-        rank: Lower if the command named the system, and higher if it named the assignment. If a file came several
-            times, the line with the lowest rank is preferred.
+        rank: If a file came several times, the line with the lowest rank is preferred. It is lower if the command named
+            the system, and higher if the command named the assignment.
     """
 
     key: str

@@ -36,7 +36,7 @@ def local(directory: ClassDirectory, jobs: int | None, judge: str) -> Iterator[E
     Args:
         directory: The class.
         jobs: The number of notebooks to execute at the same time; None for as many as processors and memory allow.
-        judge: The class that makes a judge, as ``module:class``; empty for the real judge.
+        judge: The Python class that makes a judge, as ``module:class``; empty for the real judge.
 
     Raises:
         SandboxMissing: Submissions cannot be boxed on this machine. The message says what to do.
@@ -64,7 +64,7 @@ def cluster(
     Args:
         directory: The class.
         scheduler: The scheduler's address.
-        judge: The class that makes a judge, as ``module:class``; empty for the real judge.
+        judge: The Python class that makes a judge, as ``module:class``; empty for the real judge.
         tell: Called with a sentence for the instructor.
 
     Raises:

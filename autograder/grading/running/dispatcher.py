@@ -117,7 +117,7 @@ class Dispatcher:
     Args:
         link: The connection to the workers.
         address: The address of the cluster's scheduler, for messages; empty for this machine.
-        judge: The class of the judge, as ``module:class``.
+        judge: The Python class of the judge, as ``module:class``.
         boxed: True if tasks run in sandboxes. Workers that cannot make sandboxes are then rejected.
         tell: Called with sentences for the instructor, for example that a worker was rejected and why.
         return_seconds: Seconds to wait for a worker if none is left.

@@ -63,7 +63,7 @@ def execute_all(
         workers: The number of notebooks to execute at the same time; None for the number that :func:`at_once`
             returns.
         on_start: Called in another thread when a task begins.
-        judge: The class of the judge, as ``module:class``.
+        judge: The Python class of the judge, as ``module:class``.
         boxed: True if the tasks are executed in boxes.
     """
     slots = workers or at_once(cores(), psutil.virtual_memory().available)

@@ -11,7 +11,7 @@ import msgspec
 ADDRESS = "this machine"
 """The address of the worker that is this machine. The grader uses the same course, so no versions are compared."""
 JUDGE = "autograder.judge.serving.process:JudgeProcess"
-"""The name of the real judge's class, as ``module:class``. Only workers import the class itself."""
+"""The name of the real judge's Python class, as ``module:class``. Only workers import the class itself."""
 
 
 class Offer(msgspec.Struct, frozen=True):
@@ -34,7 +34,7 @@ class Order(msgspec.Struct, frozen=True):
 
     Attributes:
         task: The task, as JSON.
-        judge: The class of the judge, as ``module:class``.
+        judge: The Python class of the judge, as ``module:class``.
     """
 
     task: msgspec.Raw

@@ -49,7 +49,7 @@ def execute(
     Args:
         task: The task.
         scratch: The folder in which the task gets its own folder.
-        judge: The class of the judge, as ``module:class``. It is called with the path of a socket, a seed, and a
+        judge: The Python class of the judge, as ``module:class``. It is called with the path of a socket, a seed, and a
             function that starts the judge's process.
         addresses: The addresses of the fork servers. A boxed task needs the one for supervisors.
         began: Called with the boxes of the task before anything runs in them.
