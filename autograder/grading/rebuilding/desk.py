@@ -49,7 +49,7 @@ def read_notebook(data: bytes) -> tuple[Sequence[SubmittedCell], int]:
         return checked(document_of(_desk, data))
     except ChannelClosed as error:
         raise DeskFailed(
-            f"No submitted file can be read on this machine: {error}. The usual cause is too little free memory: end "
+            f"No submitted file can be read on this machine: {error}. Usually the machine is short of memory: end "
             "other programs, and type the command again."
         ) from error
 
