@@ -1,6 +1,6 @@
 """A process that communicates with a Dask cluster for the grader.
 
-It exchanges lines of JSON with the grader on its standard input, which is a socket.
+The standard input is a socket, over which the process exchanges lines of JSON with the grader.
 
 There are four reasons for a separate process. Dask's client unpickles messages from workers, and pickles can run code;
 here they cannot (inert_pickle.py). A memory limit stops an answer that is too large. The grader stays free of Dask's

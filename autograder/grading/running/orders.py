@@ -100,7 +100,7 @@ class Failed(msgspec.Struct, frozen=True, tag=True):
 
     Attributes:
         number: The number of the order.
-        reason: Why there is no answer.
+        reason: Why no answer will come.
         forged: True if the worker sent an answer that an unmodified worker would never send.
     """
 

@@ -24,8 +24,8 @@ LOOK_EVERY = 0.5
 class OwnSession:
     """A program in a new session, so that Ctrl-C in the terminal or an interrupt of the kernel does not reach it.
 
-    Its stdout and stderr are one stream. A keeper process (:func:`autograder.process_trees.keep`) is the parent of the
-    program, and ends all processes of the program as soon as this process ends, for whatever reason.
+    The stdout and stderr of the program are one stream. A keeper process (:func:`autograder.process_trees.keep`) is the
+    parent of the program, and ends all processes of the program as soon as this process ends, for whatever reason.
 
     Args:
         command: The program and its arguments.
