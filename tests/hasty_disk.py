@@ -23,12 +23,12 @@ _FULL = "PRAGMA synchronous = FULL"
 class _Connection(sqlite3.Connection):
     """A connection whose transactions are done as soon as they are written."""
 
-    def __init__(self, *args: Any, **options: Any) -> None:
-        super().__init__(*args, **options)
-        with contextlib.suppress(
-            sqlite3.Error
-        ):  # a damaged or locked file: the test is told at its first query
+    def __init__(self, database: Any, timeout: float = 5.0, *args: Any, **options: Any) -> None:
+        super().__init__(database, 0.0, *args, **options)
+        # The test hears of a damaged or locked file at its first query.
+        with contextlib.suppress(sqlite3.Error):
             super().execute("PRAGMA synchronous = OFF")
+        super().execute(f"PRAGMA busy_timeout = {round(timeout * 1000)}")
 
     def execute(self, sql: str, *parameters: Any) -> sqlite3.Cursor:
         return super().execute("PRAGMA synchronous = OFF" if sql == _FULL else sql, *parameters)
