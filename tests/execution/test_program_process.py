@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from autograder.boxes import boxed_processes
 from autograder.boxes.environment import box_environment
 from autograder.boxes.mounts import HOME, Bind
 from autograder.boxes.sandbox import Enclosure
@@ -242,9 +243,10 @@ def test_it_is_told_where_its_libraries_are(
 
 
 def test_it_cannot_close_its_output_and_stay(
-    start: Callable[..., Running | WarmCommand], tmp_path: Path
+    start: Callable[..., Running | WarmCommand], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A `ros2` on the path is a real one, and so is a student's: then the first process is theirs as well."""
+    monkeypatch.setattr(boxed_processes, "_CLOSING_SECONDS", 0.5)
     theirs = tmp_path / "install" / "bin" / "ros2"
     theirs.parent.mkdir()
     theirs.write_text(f"#!{sys.executable}\nimport os, time\nos.closerange(0, 9)\ntime.sleep(600)\n")
