@@ -84,7 +84,7 @@ class Executor:
             answer = msgspec.json.encode(task.in_trouble(f"{type(error).__name__}: {error}"))
         finally:
             with self._changing:
-                del self._running[key]
+                self._running.pop(key, None)
                 self._changing.notify_all()
         if len(answer) > LARGEST_ANSWER:
             return msgspec.json.encode(task.in_trouble(f"its result has {len(answer)} bytes"))
