@@ -103,6 +103,20 @@ def drawn_patience(bench: Bench, between: tuple[float, float] = PATIENCES) -> fl
     return round(bench.random.uniform(*between), 2)
 
 
+def patience_without_a_server(bench: Bench, name: str) -> float:
+    """Draw the number of seconds that a function is told to wait in the run without a server.
+
+    In the second look this is long only if the function did not keep to a short patience in the first one.
+
+    Args:
+        bench: The bench of the scenario.
+        name: The name of the run.
+    """
+    known = bench.before.part(name) if bench.before else None
+    kept = known is not None and known.ending is not None and not broken_patience(known)
+    return drawn_patience(bench, PATIENCES_WITHOUT_A_SERVER[Pace.FAST if kept else bench.pace])
+
+
 def await_it(bench: Bench) -> None:
     """Wait until a subject without a server has given up, or has had enough time to do so."""
     bench.await_end(GIVE_UP_LIMIT)

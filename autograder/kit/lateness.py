@@ -38,13 +38,15 @@ an answer, because feedback takes longer on a busy machine. It lies between the 
 wait.
 """
 TRIES = 3
-"""The maximum number of times that a patient client which missed its answer is started again: a slow machine may miss
-even an early answer.
+"""The maximum number of times that a patient client which missed its server or its answer is started again in real
+time: a slow machine may miss even an early answer. After a run of the fast look, the look in real time is the next try.
 """
 PATIENT = 1.2
 """Seconds: a client that waited this long for its server before giving up was patient. It may have missed the server
 by a moment.
 """
+LONG = 4.0
+"""Seconds: a client that waited this long for its server has not missed it by a moment, so one more run is enough."""
 
 
 def answers_late(bench: Bench) -> float:
@@ -108,9 +110,9 @@ def called_too_early(called: str, wait: str) -> Mistake:
     )
 
 
-def was_patient(part: Part) -> bool:
-    """Return True if a client that ended had waited :data:`PATIENT` seconds or longer for its server."""
-    return not called_before_server(part) and _waited_since(part, part.first("interface"), PATIENT)
+def was_patient(part: Part, seconds: float = PATIENT) -> bool:
+    """Return True if a client that ended had waited this many seconds or longer for its server."""
+    return not called_before_server(part) and _waited_since(part, part.first("interface"), seconds)
 
 
 def was_patient_with_an_answer(part: Part, requests: Sequence[str]) -> bool:
@@ -177,7 +179,11 @@ def hold_back(bench: Bench, kind: str, number: int = 1, seconds: float | None = 
 
 
 def again_while(
-    bench: Bench, missed: Callable[[Part], bool], meet: Callable[[], bool], done: bool, times: int = TRIES
+    bench: Bench,
+    missed: Callable[[Part], bool],
+    meet: Callable[[], bool],
+    done: bool,
+    times: int | None = None,
 ) -> bool:
     """Start a subject again while it keeps missing something that it waited for.
 
@@ -186,12 +192,12 @@ def again_while(
         missed: Tells, from the record of the last run, whether the subject missed something.
         meet: Makes one more run. Returns True if the subject finished its work.
         done: True if the subject finished its work in the run before.
-        times: The maximum number of runs to make.
+        times: The maximum number of runs to make; by default :data:`TRIES` in real time, and none in the fast look.
 
     Returns:
         True if the subject finished its work in the last run.
     """
-    for _ in range(times):
+    for _ in range(_tries(bench) if times is None else times):
         if not done or not missed(bench.seen()):
             break
         bench.again()
@@ -199,9 +205,28 @@ def again_while(
     return done
 
 
+def _tries(bench: Bench) -> int:
+    """Return how many times a patient client is started again in this look."""
+    return TRIES if bench.pace is Pace.REAL_TIME else 0
+
+
 def _missed(request: str) -> Callable[[Part], bool]:
     """Return a function that decides whether a client sent no request of this kind, although it waited long enough."""
     return lambda seen: not seen.of(request) and was_patient(seen)
+
+
+def _missed_by_a_moment(request: str) -> Callable[[Part], bool]:
+    """Return a function that decides the same, for a client that did not wait :data:`LONG`."""
+    return lambda seen: _missed(request)(seen) and not was_patient(seen, LONG)
+
+
+def looks_for_it(bench: Bench, part: Part, role: str) -> bool | None:
+    """Return whether a client was seen to look for the exercise's server, or for another one; None if none was seen."""
+    found = part.endpoints(role)
+    if not found:
+        return None
+    name, type_name = bench.reference.only(role)
+    return found.get(part.real_name(name)) == type_name
 
 
 def meets_late(
@@ -227,11 +252,13 @@ def meets_late(
     def sooner() -> bool:
         return meet(SOON)
 
-    done = again_while(bench, _missed(request), sooner, meet(lateness), 1)
-    name, _ = bench.reference.only(role)
-    # A client that waits for a different server would only wait once more, in vain.
-    times = TRIES - 1 if name in bench.seen().endpoints(role) else 0
-    return again_while(bench, _missed(request), sooner, done, times)
+    def missed(seen: Part) -> bool:
+        # A client that waits for a different server would only wait once more, in vain.
+        return looks_for_it(bench, seen, role) is not False and _missed(request)(seen)
+
+    done = again_while(bench, missed, sooner, meet(lateness), 1)
+    times = _tries(bench) - 1 if looks_for_it(bench, bench.seen(), role) else 0
+    return again_while(bench, _missed_by_a_moment(request), sooner, done, times)
 
 
 def meets_late_action(
@@ -283,7 +310,10 @@ def meets_present(
     """
 
     def asked_too_little(seen: Part) -> bool:
-        return seen.ending is not None and len(seen.of(request)) < wanted
+        # No request of a client that waited for the answer to its last one was lost when the client ended.
+        waited = was_patient_with_an_answer(seen, [request])
+        return seen.ending is not None and len(seen.of(request)) < wanted and not waited
 
     done = again_while(bench, asked_too_little, meet, meet(), 1 if known else 0)
-    return again_while(bench, _missed(request), meet, done, TRIES - 1 if known else 0)
+    times = _tries(bench) - 1 if known else 0
+    return again_while(bench, _missed_by_a_moment(request), meet, done, times)

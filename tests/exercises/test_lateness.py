@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from random import Random
 from typing import TYPE_CHECKING, cast
 from unittest.mock import MagicMock
 
 import pytest
 
-from autograder.kit.evidence import Event, Part, Reference
-from autograder.kit.giving_up import CLOSELY, LATE_AT_FIRST, LATENESS, PATIENCES_WITHOUT_A_SERVER
+from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.giving_up import (
+    CLOSELY,
+    LATE_AT_FIRST,
+    LATENESS,
+    PATIENCE,
+    PATIENCES_WITHOUT_A_SERVER,
+    patience_without_a_server,
+)
 from autograder.kit.lateness import (
     ANSWERS_LATE,
     ANSWERS_SOON,
+    LONG,
     PATIENT,
     PATIENT_WITH_AN_ANSWER,
     SOON,
@@ -121,7 +130,8 @@ class FakeBench:
     in_a_cell = False
     reference = Reference("lab_1_4.client", {"action_client": {"/fibonacci": "Fibonacci"}})
 
-    def __init__(self, *runs: list[Event]) -> None:
+    def __init__(self, *runs: list[Event], pace: Pace = Pace.REAL_TIME) -> None:
+        self.pace = pace
         self._runs = list(runs)
         self.met: list[tuple[float, float]] = []
 
@@ -140,6 +150,11 @@ LATE, SOONER, BOTH_SOON = (LATENESS, ANSWERS_LATE), (SOON, ANSWERS_LATE), (SOON,
 MISSED_SERVER = [SEEN, ended(0.4 + PATIENT)]
 CLIENT_OF_IT = Event(0.4, "interface", "graph", {"action_client": {"/fibonacci": "Fibonacci"}})
 MISSED_BY_A_CLIENT_OF_IT = [CLIENT_OF_IT, ended(0.4 + PATIENT)]
+WAITED_LONG = [CLIENT_OF_IT, ended(0.4 + LONG)]
+CLIENT_OF_ANOTHER_TYPE = [
+    Event(0.4, "interface", "graph", {"action_client": {"/fibonacci": "Factorial"}}),
+    ended(0.4 + PATIENT),
+]
 MISSED_ANSWER = [GOAL, said(1.1 + PATIENT_WITH_AN_ANSWER), ended(2.2)]
 DONE = [GOAL, Event(1.2, "result_request", "/fibonacci"), ended(9.0)]
 
@@ -156,12 +171,30 @@ DONE = [GOAL, Event(1.2, "result_request", "/fibonacci"), ended(9.0)]
         ([MISSED_BY_A_CLIENT_OF_IT] * 2 + [DONE], [LATE, SOONER, SOONER]),
         ([MISSED_SERVER, MISSED_ANSWER, DONE], [LATE, SOONER, BOTH_SOON]),
         ([MISSED_ANSWER] * (TRIES + 1), [LATE] + [BOTH_SOON] * TRIES),
+        ([WAITED_LONG] * 2, [LATE, SOONER]),
+        ([CLIENT_OF_ANOTHER_TYPE], [LATE]),
     ],
 )
 def test_a_patient_client_of_an_action_is_started_again_with_less_to_wait_for(
     runs: list[list[Event]], met: list[tuple[float, float]]
 ) -> None:
     bench = FakeBench(*runs)
+    meets_late_action(cast("Bench", bench), bench.meet, ["goal"])
+    assert bench.met == met
+
+
+@pytest.mark.parametrize(
+    ("runs", "met"),
+    [
+        ([DONE], [LATE]),
+        ([MISSED_BY_A_CLIENT_OF_IT] * 2, [LATE, SOONER]),
+        ([MISSED_ANSWER], [LATE]),
+    ],
+)
+def test_what_a_client_missed_in_the_fast_look_is_tried_again_in_real_time(
+    runs: list[list[Event]], met: list[tuple[float, float]]
+) -> None:
+    bench = FakeBench(*runs, pace=Pace.FAST)
     meets_late_action(cast("Bench", bench), bench.meet, ["goal"])
     assert bench.met == met
 
@@ -206,3 +239,31 @@ def test_who_knows_how_to_ask_and_misses_a_server_that_is_there_is_started_again
     bench = FakeBench(*runs)
     meets_present(cast("Bench", bench), lambda: bench.meet(0.0, 0.0), "goal", known=known)
     assert len(bench.met) == count
+
+
+CALL = Event(0.5, "request", "/add_two_ints", {"fields": {"a": 1, "b": 2}})
+
+
+@pytest.mark.parametrize(("last_word", "count"), [(0.6, 2), (1.6, 1)])
+def test_no_request_of_a_client_that_waited_for_its_last_answer_was_lost_as_it_ended(
+    last_word: float, count: int
+) -> None:
+    bench = FakeBench(*[[CALL, said(last_word), ended(2.0)]] * 2)
+    meets_present(cast("Bench", bench), lambda: bench.meet(0.0, 0.0), "request", known=True, wanted=2)
+    assert len(bench.met) == count
+
+
+@pytest.mark.parametrize(
+    ("before", "long"),
+    [(None, True), ([TOLD, ended(0.26)], False), ([TOLD, ended(5.0)], True), ([TOLD], True)],
+    ids=["not known", "kept", "a constant", "for ever"],
+)
+def test_a_function_that_kept_a_short_patience_is_not_given_a_long_one_in_the_second_look(
+    before: list[Event] | None, long: bool
+) -> None:
+    parts = [Part("no server", {PATIENCE: 0.22}, before or [])]
+    known = Evidence(parts, FakeBench.reference) if before else None
+    bench = MagicMock(pace=Pace.REAL_TIME, random=Random(0), before=known)
+    assert (patience_without_a_server(bench, "no server") > 1.0) == long
+    bench.pace = Pace.FAST
+    assert patience_without_a_server(bench, "no server") < 1.0

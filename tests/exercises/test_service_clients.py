@@ -19,6 +19,7 @@ from autograder.kit.reading.service_calls import (
     ABSENT,
     BIASED,
     CALLED,
+    EXTREME,
     LATE,
     Client,
     braces_left,
@@ -278,31 +279,50 @@ def test_only_a_function_that_has_reported_an_answer_finds_its_service_there(
 ) -> None:
     found: list[bool] = []
 
-    def meets_service(*_: Any, prepared: bool) -> bool:
+    def meets_service(*_: Any, prepared: bool, says_more: float) -> bool:
         found.append(prepared)
         return True
 
     monkeypatch.setattr(service_client, "meets_service", meets_service)
     bench = MagicMock(pace=Pace.FAST, in_a_cell=in_a_cell, seen=lambda: Part(BIASED))
-    service_client.called(bench, Run(BIASED, (1, 2)), 1, _reported(RETURNED) if waits else Part(LATE))
+    service_client.called(bench, Run(BIASED, (1, 2)), 1, [_reported(RETURNED) if waits else Part(LATE)])
     assert found == [in_a_cell and waits]
 
 
-@pytest.mark.parametrize(("missed", "runs"), [(0, 1), (1, 2), (2, 3), (99, 4)])
-def test_who_waited_long_and_missed_an_answer_is_started_again_and_not_for_ever(
-    missed: int, runs: int, monkeypatch: pytest.MonkeyPatch
+IN_VAIN = Event(0.2, "request", "/add_two_ints", {"fields": {"a": 1, "b": 2}})
+
+
+@pytest.mark.parametrize(
+    ("missed", "pace", "earlier", "runs"),
+    [
+        (0, Pace.REAL_TIME, [], 1),
+        (1, Pace.REAL_TIME, [], 2),
+        (2, Pace.REAL_TIME, [], 3),
+        (99, Pace.REAL_TIME, [], 4),
+        (99, Pace.FAST, [], 1),
+        # The points for the sum are lost in any case,
+        (99, Pace.REAL_TIME, [Part(BIASED, {}, [IN_VAIN])], 2),
+        # and here those for the calls, too.
+        (99, Pace.REAL_TIME, [Part(BIASED)], 1),
+    ],
+)
+def test_who_waited_long_and_missed_an_answer_is_started_again_while_that_can_save_points(
+    missed: int, pace: Pace, earlier: list[Part], runs: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     held: list[int] = []
+    first = Part(LATE)
 
     def meets_service(_: Any, run: Run, *__: Any, **___: Any) -> bool:
         held.append(run.held)
         return True
 
     monkeypatch.setattr(service_client, "meets_service", meets_service)
-    monkeypatch.setattr(service_client, "reports", lambda _: len(held) > missed)
+    monkeypatch.setattr(
+        service_client, "reports", lambda part: part is first or (part not in earlier and len(held) > missed)
+    )
     monkeypatch.setattr(service_client, "was_patient_with_an_answer", lambda *_: True)
-    bench = MagicMock(pace=Pace.FAST, random=Random(0))
-    assert service_client.called(bench, Run(BIASED, (1, 2), held=1), 1, Part(LATE))
+    bench = MagicMock(pace=pace, random=Random(0))
+    assert service_client.called(bench, Run(EXTREME, (1, 2), held=1), 1, [first, *earlier])
     assert held == [1, *[0] * (runs - 1)]
     assert bench.again.call_count == runs - 1
 
@@ -324,3 +344,44 @@ def test_a_client_that_hangs_after_its_call_is_not_said_to_have_made_none() -> N
     assert cut_short(Client(hung)) == words
     ended = Evidence([Part(LATE, {}, [asked, RETURNED])], Reference("lab_1_3.client", {}))
     assert cut_short(Client(ended)) == ""
+
+
+@pytest.mark.parametrize(
+    ("kind", "made"),
+    [(TYPE, [LATE, BIASED, ABSENT]), ("example_interfaces/srv/AddTwoInts", [LATE, ABSENT])],
+)
+def test_a_client_of_another_type_is_given_the_service_once(
+    kind: str, made: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    names: list[str] = []
+
+    def called(_: Any, run: Run, *__: Any) -> bool:
+        names.append(run.name)
+        return True
+
+    monkeypatch.setattr(service_client, "called_late", lambda *_: True)
+    monkeypatch.setattr(service_client, "called", called)
+    monkeypatch.setattr(service_client, "unserved", lambda *_: names.append(ABSENT))
+    seen = Part(LATE, {}, [Event(0.1, "interface", "graph", {"client": {"/add_two_ints": kind}})])
+    bench = MagicMock(pace=Pace.REAL_TIME, random=Random(0), seen=lambda: seen)
+    bench.reference.only.return_value = ("/add_two_ints", TYPE)
+    service_client.scenario(bench, [Run(LATE, (1, 2)), Run(BIASED, (1, 2))], (3, 4), calls=1)
+    assert sorted([LATE, *names]) == sorted(made)
+
+
+@pytest.mark.parametrize("silent", [True, False])
+def test_nobody_waits_for_a_sum_of_a_client_that_has_kept_one_to_itself(
+    silent: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    waited: list[float] = []
+
+    def meets_service(*_: Any, says_more: float, **__: Any) -> bool:
+        waited.append(says_more)
+        return True
+
+    monkeypatch.setattr(service_client, "meets_service", meets_service)
+    bench = MagicMock(pace=Pace.REAL_TIME, in_a_cell=False, seen=lambda: Part(BIASED))
+    first = Part(LATE, {}, [IN_VAIN]) if silent else _reported(RETURNED)
+    service_client.called(bench, Run(BIASED, (1, 2)), 1, [first])
+    more = service_client.SAYS_MORE[Pace.REAL_TIME]
+    assert waited == [service_client.AFTERMATH if silent else more]

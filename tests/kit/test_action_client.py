@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import random
 from typing import TYPE_CHECKING, Any, cast
+from unittest.mock import MagicMock
+
+import pytest
 
 from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.model import Bench, Pace
-from autograder.kit.recipes.action_client import AT_PACE, works_on_a_goal
+from autograder.kit.reading.goal_reports import ABORTED, LATE, REFUSED
+from autograder.kit.recipes import action_client
+from autograder.kit.recipes.action_client import AFTERMATH, AT_PACE, aborted, refuse, refused, works_on_a_goal
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -80,3 +85,58 @@ def test_a_result_has_one_number_more_than_its_order_says() -> None:
     assert works_on_a_goal(cast("Bench", client), cast("ActionCounterpart", client), "succeeded", 1, 0.5)
     (result,) = (event for event in client.events if event.kind == "result")
     assert len(result.data["fields"]["sequence"]) == 42
+
+
+GOAL = Event(1.0, "goal", "/fibonacci", {"fields": {"order": 41}})
+ANSWERED = Event(1.1, "goal_answered", "/fibonacci")
+ENDED = Event(9.0, "subject", "exited", {"code": 0})
+ORDERED = {"order": 41}
+
+
+def _said(text: str) -> Event:
+    return Event(6.0, "output", "stdout", {"text": text})
+
+
+def _looked(name: str, *events: Event) -> Part:
+    return Part(name, ORDERED, [GOAL, ANSWERED, Event(5.0, "result", "/fibonacci"), *events])
+
+
+FIRST = _looked(LATE, _said("succeeded"), ENDED)
+
+
+@pytest.mark.parametrize(
+    ("run", "name", "word"), [(aborted, ABORTED, "aborted"), (refused, REFUSED, "rejected")]
+)
+@pytest.mark.parametrize(
+    ("says", "kept", "made"), [("right", True, False), ("right", False, True), ("wrong", True, True)]
+)
+def test_the_second_look_does_not_repeat_a_run_in_which_nothing_was_wrong(
+    run: Callable[[Bench, Part], None],
+    name: str,
+    word: str,
+    says: str,
+    kept: bool,
+    made: bool,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(action_client, "meets_present", lambda *_, **__: True)
+    line = _said(word if says == "right" else "it is over")
+    before = Evidence([FIRST, _looked(name, line, ENDED)], PatientClient.reference)
+    bench = MagicMock(pace=Pace.REAL_TIME, before=before, random=random.Random(0), keep=lambda _: kept)
+    run(bench, FIRST)
+    assert bench.part.called == made
+
+
+@pytest.mark.parametrize(("may_stay", "waits"), [(True, [AFTERMATH, 0.0]), (False, [0.0])])
+def test_a_client_that_may_stay_is_not_waited_for_once_it_has_said_rejected(
+    may_stay: bool, waits: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    waited: list[float] = []
+    monkeypatch.setattr(action_client, "meets_present", lambda _, meet, *__, **___: meet())
+    seen = Evidence([Part(REFUSED, ORDERED, [GOAL, _said("rejected")])], PatientClient.reference)
+    bench = MagicMock(pace=Pace.FAST)
+    bench.reference.only.return_value = ("/fibonacci", "a_package/action/Fibonacci")
+    bench.wait_until = lambda condition, _: condition(seen)
+    bench.await_end = lambda within: waited.append(within)
+    refuse(bench, lambda: None, known=True, may_stay=may_stay)
+    assert waited == waits

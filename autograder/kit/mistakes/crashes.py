@@ -17,7 +17,7 @@ from autograder.kit.model import Advice, Mistake
 
 if TYPE_CHECKING:
     from autograder.code_of_elsewhere import Elsewhere
-    from autograder.kit.evidence import Evidence, Part
+    from autograder.kit.evidence import Event, Evidence, Part
     from autograder.kit.mistakes.known_crashes import Crash
 
 
@@ -145,9 +145,10 @@ def _answer_not_taken(evidence: Evidence) -> Advice | None:
     """Return advice if the client goes on in each run without an answer that was available.
 
     An example is a call that has timed out. If this happens in only one run, a busy machine may have delayed the
-    answer. A client whose code contains ``result()`` does not count, because it may never have waited for its future.
+    answer. An answer that was sent after the exception shows nothing. A client whose code contains ``result()`` does
+    not count, because it may never have waited for its future.
     """
-    answered = [part for part in evidence if part.first("response") is not None]
+    answered = [part for part in evidence if _got_an_answer(part)]
     if not answered or not all(map(_went_on_without_it, answered)):
         return None
     return Advice(
@@ -158,14 +159,24 @@ def _answer_not_taken(evidence: Evidence) -> Advice | None:
     )
 
 
+def _got_an_answer(part: Part) -> bool:
+    given = part.first("response")
+    return given is not None and (part.ending is None or given.t <= _stopped_at(part, part.ending))
+
+
+def _stopped_at(part: Part, ending: Event) -> float:
+    """Return when the client's traceback ended; if it has none, when the client ended."""
+    outputs = (event for event in part.of("output") if raised_line(part.traceback) in event.data["text"])
+    return (next(outputs, ending) if part.traceback else ending).t
+
+
 def _went_on_without_it(part: Part) -> bool:
     given, found = part.first("response"), _NONE_FOR_AN_ANSWER.search(part.traceback)
     if given is None or found is None or "result()" in found[0] or part.ending is None:
         return False
     if "rclpy/executors.py" in part.traceback:
         return False  # The client waited in a callback, so the node was spun.
-    outputs = (e for e in part.of("output") if raised_line(part.traceback) in e.data["text"])
-    return next(outputs, part.ending).t > given.t + LEFT_LYING
+    return _stopped_at(part, part.ending) > given.t + LEFT_LYING
 
 
 _COROUTINE = re2.compile(

@@ -8,6 +8,9 @@ while.
 The service is first only a little late. If the run without a service does not show that the client would have waited
 for longer, the first run is made again with a service that comes as late as the task allows.
 
+The judge repeats a run only while that can still save points, and serves a client of another type of service in one
+run only.
+
 The subject cannot tell in advance which run has no service: after the run with the late service, the others come in
 random order, with the same kinds of numbers and the same time limits.
 """
@@ -22,14 +25,16 @@ import re2
 
 from autograder.kit import giving_up
 from autograder.kit.draft import OWN, OWN_LATE
-from autograder.kit.giving_up import LATENESS, PATIENCE, drawn_patience
+from autograder.kit.giving_up import LATENESS, PATIENCE, drawn_patience, patience_without_a_server
 from autograder.kit.lateness import (
     ANSWERS_LATE,
+    TRIES,
     again_while,
     called_before_server,
     called_too_early,
     hold_back,
     late_at_first,
+    looks_for_it,
     may_be_impatient,
     meets_late,
     meets_present,
@@ -105,14 +110,17 @@ def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls:
     first = bench.seen()
     order: list[Run | None] = [*others, None]
     bench.random.shuffle(order)
-    hangs = impatient = False
+    # A client of another type of service meets no service of the judge's.
+    hangs = looks_for_it(bench, first, "client") is False
+    served, impatient = [first], False
     for run in order:
         if run is None:
             unserved(bench, nobody)
             impatient = may_be_impatient(bench)
         elif not hangs:
             begin(bench, run)
-            hangs = not called(bench, run, calls, first)
+            hangs = not called(bench, run, calls, served)
+            served.append(bench.seen())
     if impatient and requests(first):
         bench.again(LATE)
         called_late(bench, late, calls, LATENESS)
@@ -131,33 +139,60 @@ def called_late(bench: Bench, run: Run, calls: int, lateness: float) -> bool:
     return _with_quick_answers(bench, run, calls, done)
 
 
-def called(bench: Bench, run: Run, calls: int, first: Part) -> bool:
-    """Make a run with a service that exists from the start; ``first`` is the run with the late service.
+def called(bench: Bench, run: Run, calls: int, earlier: Sequence[Part]) -> bool:
+    """Make a run with a service that exists from the start.
+
+    Args:
+        bench: The bench of the scenario.
+        run: The requests and answers.
+        calls: The number of calls of a subject that has finished its work.
+        earlier: The runs of this look, the one with the late service first.
 
     Returns:
         True if the subject finished its work.
     """
+    first = earlier[0]
     # A client in the kernel that has reported an answer waits for answers, so its calls reach a service that existed
     # before it, too, and it need not look for the service a second time.
-    meet = partial(meets_service, bench, run, calls, prepared=bench.in_a_cell and reports(first))
+    prepared = bench.in_a_cell and reports(first)
+    # A client that kept an answer to itself has lost the points for the sum: nothing waits for a sum any more.
+    silent = [part for part in earlier if is_silent(part, calls)]
+    says_more = AFTERMATH if silent else SAYS_MORE[bench.pace]
+    meet = partial(meets_service, bench, run, calls, prepared=prepared, says_more=says_more)
     done = meets_present(bench, meet, "request", known=bool(requests(first)), wanted=calls)
-    return _with_quick_answers(bench, run, calls, done)
+    # If it also called too seldom, it has lost the points for its calls as well.
+    lost = any(len(requests(part)) < calls for part in silent)
+    return _with_quick_answers(bench, run, calls, done, 0 if lost else 1 if silent else TRIES)
 
 
-def _with_quick_answers(bench: Bench, run: Run, calls: int, done: bool) -> bool:
-    """End a run. If a patient client has missed an answer that was held back, first make the run again."""
+def is_silent(part: Part, calls: int) -> bool:
+    """Return True if a client reported neither its last answer nor that to its call number ``calls`` (from 1)."""
+    return not reports(part) and not has_reported(part, calls)
+
+
+def _with_quick_answers(bench: Bench, run: Run, calls: int, done: bool, tries: int = TRIES) -> bool:
+    """End a run. If a patient client has missed an answer that was held back, first make the run again.
+
+    In the fast look it is not made again, because the look in real time follows.
+    """
 
     def missed_an_answer(seen: Part) -> bool:
         return bool(run.held) and not reports(seen) and was_patient_with_an_answer(seen, ["request"])
 
     sooner = partial(meets_service, bench, replace(run, held=0), calls)
-    done = again_while(bench, missed_an_answer, sooner, done)
+    done = again_while(bench, missed_an_answer, sooner, done, tries if bench.pace is Pace.REAL_TIME else 0)
     bench.stop()
     return done
 
 
 def meets_service(
-    bench: Bench, run: Run, calls: int, *, lateness: float = 0.0, prepared: bool = False
+    bench: Bench,
+    run: Run,
+    calls: int,
+    *,
+    lateness: float = 0.0,
+    prepared: bool = False,
+    says_more: float | None = None,
 ) -> bool:
     """Start the subject and serve it. Return True if the subject finished its work.
 
@@ -167,6 +202,8 @@ def meets_service(
         calls: The number of calls of a subject that has finished its work.
         lateness: Seconds by which the service comes after its client.
         prepared: True if the service comes before its client.
+        says_more: Time limit in seconds for the sum, once the client has said something else about its last answer; by
+            default :data:`SAYS_MORE`.
     """
     service, type_name = bench.reference.only("client")
     answer = answering(run.answers)
@@ -192,7 +229,8 @@ def meets_service(
         hold_back(bench, "request", run.held, ANSWERS_LATE if run.held == 1 else None)
         server.release()
     done = bench.wait_until(lambda seen: has_spoken(seen, calls), CALL_LIMIT, quiet=HANGS_AFTER)
-    if done and bench.wait_until(lambda seen: is_done(seen, calls), SAYS_MORE[bench.pace]):
+    more = SAYS_MORE[bench.pace] if says_more is None else says_more
+    if done and bench.wait_until(lambda seen: is_done(seen, calls), more):
         bench.await_end(AFTERMATH)
     else:
         bench.note_where_it_hangs()
@@ -217,7 +255,7 @@ def unserved(bench: Bench, numbers: Sequence[int]) -> None:
     """Make one run without the service."""
     if bench.keep(ABSENT):
         return
-    patience = drawn_patience(bench, giving_up.PATIENCES_WITHOUT_A_SERVER[bench.pace])
+    patience = patience_without_a_server(bench, ABSENT)
     bench.part(ABSENT, numbers=list(numbers), patience_sec=patience)
     bench.start(*numbers, patience_sec=patience)
     service, _ = bench.reference.only("client")

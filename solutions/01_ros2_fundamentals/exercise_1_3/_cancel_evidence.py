@@ -65,6 +65,19 @@ def feedbacks_before_cancel(part: Part) -> int | None:
     return sum(event.kind == "feedback" for event in before)
 
 
+def in_the_window(part: Part) -> bool:
+    """True if the first request to cancel came after as many feedback messages as the task asks for."""
+    count = feedbacks_before_cancel(part)
+    return count is not None and FIRST_FEEDBACK <= count <= LAST_FEEDBACK
+
+
+def was_asked_at_once(part: Part, seconds: float) -> bool:
+    """True if the first request to cancel came at most so many seconds after the last feedback before it."""
+    cancel = part.first("cancel")
+    before = part.of("feedback")[: feedbacks_before_cancel(part)]
+    return cancel is not None and bool(before) and cancel.t - before[-1].t <= seconds
+
+
 def request_of(part: Part) -> Request | None:
     """The first request to cancel; None where none came."""
     answered, cancel, count = part.first("goal_answered"), part.first("cancel"), feedbacks_before_cancel(part)

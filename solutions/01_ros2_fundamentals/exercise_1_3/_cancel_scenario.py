@@ -5,6 +5,11 @@ succeeds all the same, so that a client that only claims "canceled" is told from
 the judge refuses to cancel. Of a client that never asked for the result it accepts the request, since only the status
 on its topic tells then. In a third part the judge agrees to cancel, and the goal is aborted: that the server agreed
 does not say how the goal ended. In a fourth one the goal itself is refused.
+
+The judge waits for nothing that cannot change the verdict any more. The look in real time repeats only those runs in
+which time may have played a part, and its server comes sooner if the client has already waited for a late one. Once the
+moment for the request is over, the remaining feedback comes quickly. A client that does not say how its first goal
+ended has lost the points for the ends of all goals.
 """
 
 from __future__ import annotations
@@ -18,13 +23,17 @@ from exercise_1_3._cancel_evidence import (
     FIRST_FEEDBACK,
     HONOURED,
     LAST_FEEDBACK,
+    OUTCOMES,
     Request,
     after_result,
     feedbacks_before_cancel,
     goals,
+    in_the_window,
     request_of,
+    was_asked_at_once,
 )
 
+from autograder.kit.giving_up import LATENESS
 from autograder.kit.lateness import (
     ANSWERS_SOON,
     SOON,
@@ -35,15 +44,22 @@ from autograder.kit.lateness import (
     meets_present,
 )
 from autograder.kit.model import Bench, Pace
-from autograder.kit.reading.goal_reports import REFUSED
-from autograder.kit.recipes.action_client import refuse
+from autograder.kit.reading.goal_reports import REFUSED, refused_as_seen
+from autograder.kit.recipes.action_client import needs_no_search, refuse
 
 if TYPE_CHECKING:
     from autograder.kit.counterparts import ActionCounterpart
-    from autograder.kit.evidence import Part
+    from autograder.kit.evidence import Evidence, Part
 
-WITHOUT_CANCEL = 19
-"""Feedback messages that are sent to a client that does not cancel: all that a goal of order 20 has."""
+A_MOMENT = 2
+"""Feedback messages that may come before a crowded machine lets a client go on whose sleep is over."""
+LATEST = LAST_FEEDBACK + A_MOMENT
+"""Feedback messages after which a request is too late for certain."""
+WITHOUT_CANCEL = {Pace.FAST: LATEST + 1, Pace.REAL_TIME: 19}
+"""Feedback messages that are sent to a client that does not cancel. In real time: all that a goal of order 20 has."""
+CLOCKS = 5.5
+"""Seconds from the answer to the goal in which a client that goes by a clock may still ask, far too late: the card then
+says so."""
 WITH_LATE = 14
 """Feedback messages that are sent in all to one that does, to see that those after its request are not acted on."""
 FEW_LATE = 3
@@ -52,8 +68,6 @@ AT_A_TIME = 3
 """Late feedback messages that are sent before the client has to have taken them; its queue holds ten."""
 ENDS = {HONOURED: "canceled", CANCEL_REFUSED: "succeeded", AGREED: "aborted"}
 """The end of a goal after a cancel request, by the name of the part; any other goal succeeds."""
-A_MOMENT = 2
-"""Feedback messages that may come before a crowded machine lets a client go on whose sleep is over."""
 LAB_TIME = 1.5
 """Seconds of its own time in which a client must not ask once more; the lab's server takes less to end the goal."""
 
@@ -78,11 +92,11 @@ AT_ONCE = 0.01
 """The same, if a request is too early in any case, and only the advice counts the messages before it."""
 PAUSE = 0.15
 """Seconds after the first feedback message that the second run of a fast look is longer than the first."""
-GOAL_LIMIT = 15.0
+GOAL_LIMIT = 8.0
 """Seconds in which a goal must arrive once the client is on the graph."""
 END_LIMIT = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
 """Seconds in which the client must ask for the result."""
-HANGS_AFTER = 5.0
+HANGS_AFTER = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
 """Seconds after the result within which the client must have said how the goal ended; otherwise it hangs."""
 AFTERMATH = 1.0
 """Seconds in which a client that has reported may end, or say more."""
@@ -90,14 +104,21 @@ AFTERMATH = 1.0
 
 def scenario(bench: Bench) -> None:
     """One run in which the cancel is honoured, one each in which it is refused or in vain, one in which the goal is."""
-    honoured = run(bench, HONOURED, accept=True)
-    sends_a_goal = bool(goals(bench.seen()))
-    if honoured is not None:
-        cancel_is_refused(bench, honoured)
-        run(bench, AGREED, accept=True)
-    if sends_a_goal:
+    first = run(bench, HONOURED, accept=True)
+    request, tells = request_of(first), tells_of_cancel(first)
+    if request is not None:
+        cancel_is_refused(bench, first, request)
+        if tells:
+            run(bench, AGREED, first, accept=True)
+    if goals(first) and not (bench.before and not refused_as_seen(bench.before) and bench.keep(REFUSED)):
         bench.part(REFUSED)
-        refuse(bench, lambda: start(bench), known=True)
+        prepared = needs_no_search(bench, first)
+        refuse(bench, lambda: start(bench), known=True, prepared=prepared, may_stay=first.ending is None)
+
+
+def tells_of_cancel(first: Part) -> bool:
+    """Return True if a client says how its first goal ended. If not, it has lost the points for all ends."""
+    return bool(OUTCOMES["canceled"].lines(first))
 
 
 def start(bench: Bench) -> None:
@@ -106,9 +127,10 @@ def start(bench: Bench) -> None:
     bench.release()
 
 
-def cancel_is_refused(bench: Bench, honoured: Request) -> None:
+def cancel_is_refused(bench: Bench, first: Part, honoured: Request) -> None:
     """The run in which the goal succeeds in spite of the request to cancel it."""
-    refused = run(bench, CANCEL_REFUSED, accept=not honoured.asked_for_result, pause=PAUSE)
+    made = run(bench, CANCEL_REFUSED, first, accept=not honoured.asked_for_result, pause=PAUSE)
+    refused = request_of(made)
     if bench.pace is Pace.FAST and refused is not None and not caused_by_feedback(honoured, refused):
         bench.doubt()
 
@@ -122,30 +144,66 @@ def caused_by_feedback(honoured: Request, refused: Request) -> bool:
     return honoured.count == refused.count and refused.after - honoured.after >= PAUSE / 2
 
 
-def run(bench: Bench, name: str, *, accept: bool, pause: float = 0.0) -> Request | None:
-    """Serve one goal; the first request to cancel it, or None.
+def run(bench: Bench, name: str, first: Part | None = None, *, accept: bool, pause: float = 0.0) -> Part:
+    """Serve one goal; what was seen of that.
 
     Args:
         bench: The bench.
         name: Of the part.
+        first: The first run of this look; None if this is it.
         accept: Whether a request to cancel is accepted.
         pause: Seconds to let pass after the first feedback message of a fast look.
     """
+    before = bench.before
+    if before is not None and needs_no_time(before, name, first) and bench.keep(name):
+        return before.part(name)
 
     def serve(late: float = 0.0, held: float = 0.0) -> bool:
-        serve_goal(bench, name, accept=accept, pause=pause, late=late, held=held)
+        serve_goal(bench, name, first, accept=accept, pause=pause, late=late, held=held)
         return True
 
+    def may_be_late(seen: Part) -> bool:
+        return asked_a_moment_late(seen) and not (before and counts_messages(before, seen))
+
     bench.part(name)
-    if name == HONOURED:
-        meets_late_action(bench, serve, ["goal", "cancel"])
+    if first is None:
+        waited = before is not None and bool(goals(before.part(name)))
+        meets_late_action(bench, serve, ["goal", "cancel"], SOON if waited else LATENESS)
     else:
         meets_present(bench, serve, "goal", known=True)
     if bench.pace is Pace.REAL_TIME:
-        again_while(bench, asked_a_moment_late, lambda: serve(SOON, ANSWERS_SOON), done=True)
-    request = request_of(bench.seen())
+        again_while(bench, may_be_late, lambda: serve(SOON, ANSWERS_SOON), done=True)
     bench.stop()
-    return request
+    return bench.seen()
+
+
+def needs_no_time(before: Evidence, name: str, first: Part | None) -> bool:
+    """Return True if time cannot have played a part in a run of the fast look, so that it need not be made again.
+
+    The client asked once, in answer to a message, and ended after its result. Its moment does not matter if the first
+    run of this look has shown that this client asks at a wrong one.
+    """
+    part = before.part(name)
+    result, ending = part.first("result"), part.ending
+    if result is None or ending is None or ending.t < result.t or len(goals(part)) != 1:
+        return False
+    if len(part.of("cancel")) != 1:
+        return False
+    if first is not None and not in_the_window(first):
+        return True
+    return in_the_window(part) and was_asked_at_once(part, PROMPT) and asks_at_a_message(before)
+
+
+def asks_at_a_message(before: Evidence) -> bool:
+    """Return True if feedback caused the requests of the fast look."""
+    honoured, refused = request_of(before.part(HONOURED)), request_of(before.part(CANCEL_REFUSED))
+    return honoured is not None and refused is not None and caused_by_feedback(honoured, refused)
+
+
+def counts_messages(before: Evidence, seen: Part) -> bool:
+    """Return True if a client asked after as many messages as in both runs of the fast look, which came much faster."""
+    parts = (before.part(HONOURED), before.part(CANCEL_REFUSED), seen)
+    return len({feedbacks_before_cancel(part) for part in parts}) == 1
 
 
 def asked_a_moment_late(seen: Part) -> bool:
@@ -154,43 +212,54 @@ def asked_a_moment_late(seen: Part) -> bool:
     A crowded machine lets it wake up late, and never early. One that is late by itself is late again.
     """
     count = feedbacks_before_cancel(seen)
-    return count is not None and LAST_FEEDBACK < count <= LAST_FEEDBACK + A_MOMENT
+    return count is not None and LAST_FEEDBACK < count <= LATEST
 
 
-def serve_goal(bench: Bench, name: str, *, accept: bool, pause: float, late: float, held: float) -> None:
+def serve_goal(
+    bench: Bench, name: str, first: Part | None, *, accept: bool, pause: float, late: float, held: float
+) -> None:
     """Start the subject and serve its goal to its end.
 
     Args:
         bench: The bench of the scenario.
         name: The name of the part.
+        first: The first run of this look; None if this is it.
         accept: Whether a request to cancel is accepted.
         pause: Seconds to let pass after the first feedback message of a fast look.
         late: Seconds after its client at which the server comes.
         held: Seconds that the answers to goal and cancel are held back.
     """
     action, type_name = bench.reference.only("action_client")
+
+    def served() -> ActionCounterpart:
+        return bench.serve_action(
+            action, type_name, accept_cancel=accept, goal_answer_takes=held, cancel_answer_takes=held
+        )
+
+    prepared = served() if first is not None and needs_no_search(bench, first) else None
     bench.start()
     there = bench.await_endpoint("action_client", action)
     bench.release()
     if there and late:
         bench.let_wait(late)
     # Not before the judge has met its client: the goal of one that ends at once would reach the judge or not.
-    server = bench.serve_action(
-        action, type_name, accept_cancel=accept, goal_answer_takes=held, cancel_answer_takes=held
-    )
+    server = prepared or served()
     if not await_goal(bench, server, GOAL_LIMIT):
         return
     sequence = [0, 1]
     cancelled = send_feedback_until_cancelled(bench, server, sequence, pause)
     if cancelled:
         send_late_feedback(bench, server, sequence, name)
-    server.await_result_request(END_LIMIT[bench.pace] if cancelled else FEEDBACK_GAP[Pace.REAL_TIME])
+    never_asks = first is not None and first.first("result_request") is None
+    in_vain = not cancelled or never_asks
+    server.await_result_request(FEEDBACK_GAP[Pace.REAL_TIME] if in_vain else END_LIMIT[bench.pace])
     if cancelled:
         hold_back(bench, "result_request")
     else:
         bench.note_whether_it_spins()
     server.finish(ENDS[name] if cancelled else "succeeded", sequence=sequence)
-    if bench.wait_until(lambda evidence: bool(after_result(evidence.main)), HANGS_AFTER):
+    lost = first is not None and not tells_of_cancel(first)
+    if lost or bench.wait_until(lambda evidence: bool(after_result(evidence.main)), HANGS_AFTER[bench.pace]):
         bench.await_end(AFTERMATH)
     else:
         bench.note_where_it_hangs()
@@ -201,7 +270,7 @@ def send_feedback_until_cancelled(
 ) -> bool:
     """Send feedback until a cancel is requested, or until none is left. Return True if a cancel was requested."""
     began = time.monotonic()
-    for count in range(WITHOUT_CANCEL + 1):
+    for count in range(WITHOUT_CANCEL[bench.pace] + 1):
         if count == FIRST_STATUS:
             say_that_it_runs(bench, server)
         if count:
@@ -216,6 +285,11 @@ def send_feedback_until_cancelled(
                 return True
             if early:
                 continue
+        elif count > LATEST:
+            bench.settle()
+            if server.await_cancel(AT_ONCE):
+                return True
+            continue
         wait = (
             wait_after(count) if bench.pace is Pace.FAST else wait_for_next(count, time.monotonic() - began)
         )
@@ -223,7 +297,7 @@ def send_feedback_until_cancelled(
             # Nothing that was sent just now has caused it: perhaps a clock did, and it needs the real pace.
             bench.doubt()
             return True
-    return False
+    return bench.pace is Pace.REAL_TIME and server.await_cancel(max(0.0, CLOCKS - (time.monotonic() - began)))
 
 
 def wait_after(count: int) -> float:

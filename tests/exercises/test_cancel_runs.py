@@ -1,0 +1,195 @@
+"""Which runs Exercise 1.3 makes, and what it does not wait for: no ROS is started."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+from unittest.mock import MagicMock
+
+import pytest
+from exercise_1_3 import _cancel_scenario as cancel
+from exercise_1_3._cancel_evidence import AGREED, CANCEL_REFUSED, HONOURED
+
+from autograder.judge.verdicts import reference
+from autograder.kit.evidence import Event, Evidence, Part
+from autograder.kit.giving_up import LATENESS
+from autograder.kit.lateness import SOON
+from autograder.kit.model import Pace
+from autograder.kit.reading.goal_reports import REFUSED
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from autograder.kit.counterparts import ActionCounterpart
+
+REFERENCE = reference.load("exercise_1_3.cancel")
+ACTION = "/fibonacci"
+FEEDBACK_EVERY = 0.2
+
+
+def run(
+    name: str,
+    *,
+    count: int = 3,
+    later: float = 0.01,
+    pause: float = 0.0,
+    cancels: int = 1,
+    says: str = "canceled",
+    ends: bool = True,
+) -> Part:
+    """A run in which a client asks to cancel after some messages."""
+    beginning = [Event(1.0, "goal", ACTION, {"fields": {"order": 20}}), Event(1.0, "goal_answered", ACTION)]
+    sent = [
+        Event(1.0 + pause + FEEDBACK_EVERY * number, "feedback", ACTION) for number in range(1, count + 1)
+    ]
+    asked = [Event(sent[-1].t + later, "cancel", ACTION, {"accepted": True})] * cancels
+    asked += [Event(4.0, "result_request", ACTION)]
+    result = [Event(5.0, "result", ACTION, {"status": "canceled", "fields": {"sequence": [0, 1]}})]
+    said = [Event(5.1, "output", "stdout", {"text": says})] if says else []
+    ending = [Event(5.2, "subject", "exited", {"code": 0})] if ends else []
+    return Part(name, {}, [*beginning, *sent, *asked, *result, *said, *ending])
+
+
+def fast_look(*parts: Part) -> Evidence:
+    """The evidence of a fast look, with right runs where no other is given."""
+    usual = (run(HONOURED), run(CANCEL_REFUSED, pause=cancel.PAUSE), run(AGREED))
+    given = {part.name: part for part in parts}
+    return Evidence([given.get(part.name, part) for part in usual], REFERENCE)
+
+
+def runs_made(first: Part, *, before: Evidence | None = None, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The runs that a look makes of a client whose first run is given."""
+    made: list[str] = []
+
+    def serve(_: Any, name: str, *__: Any, **___: Any) -> None:
+        made.append(name)
+
+    monkeypatch.setattr(cancel, "serve_goal", serve)
+    monkeypatch.setattr(cancel, "refuse", lambda *_, **__: made.append(REFUSED))
+    bench = MagicMock(pace=Pace.REAL_TIME if before else Pace.FAST, before=before, seen=lambda: first)
+    bench.reference = REFERENCE
+    cancel.scenario(bench)
+    return list(dict.fromkeys(made))
+
+
+ALL = [HONOURED, CANCEL_REFUSED, AGREED, REFUSED]
+REJECTED = Part(
+    REFUSED,
+    {},
+    [
+        Event(1.0, "goal", ACTION, {"fields": {"order": 20}}),
+        Event(1.0, "goal_answered", ACTION),
+        Event(1.1, "output", "stdout", {"text": "rejected"}),
+        Event(1.2, "subject", "exited", {"code": 1}),
+    ],
+)
+
+
+@pytest.mark.parametrize(
+    ("first", "made"),
+    [
+        (run(HONOURED), ALL),
+        # It has lost the points for all ends of goals.
+        (run(HONOURED, says="it is over"), [HONOURED, CANCEL_REFUSED, REFUSED]),
+        (run(HONOURED, cancels=0), [HONOURED, REFUSED]),
+    ],
+    ids=["right", "says no end", "never asks"],
+)
+def test_the_fast_look_leaves_out_runs_that_can_change_no_points(
+    first: Part, made: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert runs_made(first, monkeypatch=monkeypatch) == made
+
+
+@pytest.mark.parametrize(
+    ("parts", "first", "made"),
+    [
+        ([REJECTED], run(HONOURED), []),
+        ([], run(HONOURED), [REFUSED]),
+        ([run(HONOURED, says="it is over", ends=False)], run(HONOURED), [HONOURED, REFUSED]),
+        # A clock may have made it ask.
+        ([run(HONOURED, later=0.15)], run(HONOURED), ALL),
+        # After a pause it asks at the moment at which it asked without one.
+        ([run(CANCEL_REFUSED)], run(HONOURED), ALL),
+        ([run(CANCEL_REFUSED, pause=cancel.PAUSE, cancels=2)], run(HONOURED), [CANCEL_REFUSED, REFUSED]),
+        # It is too late again, whatever the other runs show.
+        ([run(HONOURED, count=6), REJECTED], run(HONOURED, count=6), [HONOURED]),
+        ([run(HONOURED, count=6), REJECTED], run(HONOURED), [HONOURED, CANCEL_REFUSED, AGREED]),
+    ],
+    ids=["right", "rejected", "hangs", "clock", "not by feedback", "twice", "too late", "too late once"],
+)
+def test_the_look_in_real_time_repeats_what_time_may_have_decided(
+    parts: Sequence[Part], first: Part, made: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looked = fast_look(*parts)
+    before = Evidence([*looked.parts, *(part for part in parts if part.name == REFUSED)], REFERENCE)
+    assert runs_made(first, before=before, monkeypatch=monkeypatch) == made
+
+
+@pytest.mark.parametrize(
+    ("before", "late"),
+    [(None, LATENESS), (fast_look(run(HONOURED, later=0.15)), SOON), (fast_look(Part(HONOURED)), LATENESS)],
+    ids=["first look", "waited", "never sent a goal"],
+)
+def test_a_client_that_has_waited_for_a_late_server_is_not_kept_waiting_again(
+    before: Evidence | None, late: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    came: list[float] = []
+    monkeypatch.setattr(cancel, "serve_goal", lambda *_, late, **__: came.append(late))
+    bench = MagicMock(pace=Pace.REAL_TIME if before else Pace.FAST, before=before, reference=REFERENCE)
+    bench.seen = lambda: run(HONOURED)
+    cancel.run(bench, HONOURED, accept=True)
+    assert came == [late]
+
+
+@pytest.mark.parametrize("count", [6, 7])
+def test_one_that_counts_messages_is_not_late_by_chance(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    served: list[str] = []
+    monkeypatch.setattr(cancel, "serve_goal", lambda _, name, *__, **___: served.append(name))
+    seen = run(HONOURED, count=count)
+    counts = fast_look(run(HONOURED, count=count), run(CANCEL_REFUSED, count=count))
+    for before, runs in ((counts, 1), (fast_look(), 4)):
+        served.clear()
+        bench = MagicMock(pace=Pace.REAL_TIME, before=before, reference=REFERENCE, seen=lambda: seen)
+        monkeypatch.setattr(cancel, "needs_no_time", lambda *_: False)
+        cancel.run(bench, HONOURED, accept=True)
+        assert len(served) == runs
+
+
+class Server:
+    """A server whose client never asks to cancel; it keeps how long it waited for that."""
+
+    def __init__(self) -> None:
+        self.waits: list[float] = []
+        self.sent = 0
+
+    def await_cancel(self, within: float) -> bool:
+        self.waits.append(within)
+        return False
+
+    def send_feedback(self, **_: Any) -> None:
+        self.sent += 1
+
+    def say_status(self) -> None:
+        pass
+
+
+def test_once_the_moment_is_over_the_rest_of_the_feedback_comes_quickly() -> None:
+    server = Server()
+    _send_feedback(server, Pace.REAL_TIME)
+    quick, last = server.waits[cancel.LATEST + 1 : -1], server.waits[-1]
+    assert server.sent == cancel.WITHOUT_CANCEL[Pace.REAL_TIME] == cancel.LATEST + len(quick)
+    assert set(quick) == {cancel.AT_ONCE}
+    assert cancel.CLOCKS - 1.0 < last <= cancel.CLOCKS
+
+
+def test_a_fast_look_ends_when_the_moment_is_over() -> None:
+    server = Server()
+    _send_feedback(server, Pace.FAST)
+    assert server.sent == cancel.LATEST + 1
+
+
+def _send_feedback(server: Server, pace: Pace) -> None:
+    asked = cancel.send_feedback_until_cancelled(
+        MagicMock(pace=pace), cast("ActionCounterpart", server), [0, 1], 0.0
+    )
+    assert not asked
