@@ -141,6 +141,18 @@ def test_a_client_that_has_waited_for_a_late_server_is_not_kept_waiting_again(
     assert came == [late]
 
 
+@pytest.mark.parametrize("count", [3, 6])
+def test_a_client_that_has_asked_too_late_once_is_not_started_again_in_the_other_runs(
+    count: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    served: list[str] = []
+    monkeypatch.setattr(cancel, "serve_goal", lambda _, name, *__, **___: served.append(name))
+    bench = MagicMock(pace=Pace.REAL_TIME, before=fast_look(Part(AGREED)), reference=REFERENCE)
+    bench.seen = lambda: run(AGREED, count=6)
+    cancel.run(bench, AGREED, run(HONOURED, count=count), accept=True)
+    assert len(served) == (4 if count == 3 else 1)
+
+
 @pytest.mark.parametrize("count", [6, 7])
 def test_one_that_counts_messages_is_not_late_by_chance(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
     served: list[str] = []
@@ -175,21 +187,11 @@ class Server:
 
 def test_once_the_moment_is_over_the_rest_of_the_feedback_comes_quickly() -> None:
     server = Server()
-    _send_feedback(server, Pace.REAL_TIME)
-    quick, last = server.waits[cancel.LATEST + 1 : -1], server.waits[-1]
-    assert server.sent == cancel.WITHOUT_CANCEL[Pace.REAL_TIME] == cancel.LATEST + len(quick)
-    assert set(quick) == {cancel.AT_ONCE}
-    assert cancel.CLOCKS - 1.0 < last <= cancel.CLOCKS
-
-
-def test_a_fast_look_ends_when_the_moment_is_over() -> None:
-    server = Server()
-    _send_feedback(server, Pace.FAST)
-    assert server.sent == cancel.LATEST + 1
-
-
-def _send_feedback(server: Server, pace: Pace) -> None:
     asked = cancel.send_feedback_until_cancelled(
-        MagicMock(pace=pace), cast("ActionCounterpart", server), [0, 1], 0.0
+        MagicMock(pace=Pace.REAL_TIME), cast("ActionCounterpart", server), [0, 1], 0.0
     )
     assert not asked
+    quick, last = server.waits[cancel.LATEST + 1 : -1], server.waits[-1]
+    assert server.sent == cancel.WITHOUT_CANCEL == cancel.LATEST + len(quick)
+    assert set(quick) == {cancel.AT_ONCE}
+    assert cancel.CLOCKS - 1.0 < last <= cancel.CLOCKS
