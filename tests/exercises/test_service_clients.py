@@ -13,6 +13,7 @@ from lab_1_3 import client as lab_1_3_client
 
 from autograder.judge.verdicts import reference, trial
 from autograder.kit.evidence import Event, Evidence, Part, Reference
+from autograder.kit.lateness import ANSWERS_SOON
 from autograder.kit.mistakes.service_client_mistakes import NOT_RETURNED
 from autograder.kit.model import Pace
 from autograder.kit.reading.service_calls import (
@@ -309,11 +310,11 @@ IN_VAIN = Event(0.2, "request", "/add_two_ints", {"fields": {"a": 1, "b": 2}})
 def test_who_waited_long_and_missed_an_answer_is_started_again_while_that_can_save_points(
     missed: int, pace: Pace, earlier: list[Part], runs: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    held: list[int] = []
+    held: list[float | None] = []
     first = Part(LATE)
 
-    def meets_service(_: Any, run: Run, *__: Any, **___: Any) -> bool:
-        held.append(run.held)
+    def meets_service(*_: Any, held_for: float | None = None, **__: Any) -> bool:
+        held.append(held_for)
         return True
 
     monkeypatch.setattr(service_client, "meets_service", meets_service)
@@ -323,7 +324,7 @@ def test_who_waited_long_and_missed_an_answer_is_started_again_while_that_can_sa
     monkeypatch.setattr(service_client, "was_patient_with_an_answer", lambda *_: True)
     bench = MagicMock(pace=pace, random=Random(0))
     assert service_client.called(bench, Run(EXTREME, (1, 2), held=1), 1, [first, *earlier])
-    assert held == [1, *[0] * (runs - 1)]
+    assert held == [None, *[ANSWERS_SOON] * (runs - 1)]
     assert bench.again.call_count == runs - 1
 
 

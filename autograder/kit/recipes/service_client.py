@@ -28,6 +28,7 @@ from autograder.kit.draft import OWN, OWN_LATE
 from autograder.kit.giving_up import LATENESS, PATIENCE, drawn_patience, patience_without_a_server
 from autograder.kit.lateness import (
     ANSWERS_LATE,
+    ANSWERS_SOON,
     TRIES,
     again_while,
     called_before_server,
@@ -179,7 +180,7 @@ def _with_quick_answers(bench: Bench, run: Run, calls: int, done: bool, tries: i
     def missed_an_answer(seen: Part) -> bool:
         return bool(run.held) and not reports(seen) and was_patient_with_an_answer(seen, ["request"])
 
-    sooner = partial(meets_service, bench, replace(run, held=0), calls)
+    sooner = partial(meets_service, bench, run, calls, held_for=ANSWERS_SOON)
     done = again_while(bench, missed_an_answer, sooner, done, tries if bench.pace is Pace.REAL_TIME else 0)
     bench.stop()
     return done
@@ -193,6 +194,7 @@ def meets_service(
     lateness: float = 0.0,
     prepared: bool = False,
     says_more: float | None = None,
+    held_for: float | None = None,
 ) -> bool:
     """Start the subject and serve it. Return True if the subject finished its work.
 
@@ -204,6 +206,8 @@ def meets_service(
         prepared: True if the service comes before its client.
         says_more: Time limit in seconds for the sum, once the client has said something else about its last answer; by
             default :data:`SAYS_MORE`.
+        held_for: Seconds for which the answer is held back, from its request on. By default, a first answer is held
+            back as long as allowed even if a student waits, because only a long wait shows a client's limit.
     """
     service, type_name = bench.reference.only("client")
     answer = answering(run.answers)
@@ -225,8 +229,9 @@ def meets_service(
         # Meanwhile any node on the graph may send requests to the client's node, so an event is not necessarily the
         # answer.
         bench.settle()
-        # Even if a person waits, one answer is as late as allowed, because only a long wait shows a client's limit.
-        hold_back(bench, "request", run.held, ANSWERS_LATE if run.held == 1 else None)
+        hold_back(
+            bench, "request", run.held, ANSWERS_LATE if run.held == 1 and held_for is None else held_for
+        )
         server.release()
     done = bench.wait_until(lambda seen: has_spoken(seen, calls), CALL_LIMIT, quiet=HANGS_AFTER)
     more = SAYS_MORE[bench.pace] if says_more is None else says_more
