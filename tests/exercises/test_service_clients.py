@@ -29,8 +29,8 @@ from autograder.kit.reading.service_calls import (
     reports,
 )
 from autograder.kit.reading.texts_said import mentions
-from autograder.kit.recipes import service_client
-from autograder.kit.recipes.service_client import Run, answering, has_spoken, is_done
+from autograder.kit.recipes import service_runs
+from autograder.kit.recipes.service_runs import Run, answering, has_spoken, is_done
 
 SEEDS = range(60)
 REFERENCE = reference.load("lab_1_3.client")
@@ -61,9 +61,9 @@ def runs_of(scenario: Any, seed: int, monkeypatch: pytest.MonkeyPatch) -> list[t
         order.append((run.name, run))
         return True
 
-    monkeypatch.setattr(service_client, "called", called)
-    monkeypatch.setattr(service_client, "called_late", called)
-    monkeypatch.setattr(service_client, "unserved", lambda _, numbers: order.append((ABSENT, numbers)))
+    monkeypatch.setattr(service_runs, "called", called)
+    monkeypatch.setattr(service_runs, "called_late", called)
+    monkeypatch.setattr(service_runs, "unserved", lambda _, numbers: order.append((ABSENT, numbers)))
     scenario(MagicMock(pace=Pace.FAST, random=Random(seed), seen=lambda: Part(LATE)))
     return order
 
@@ -78,13 +78,13 @@ def test_a_service_comes_late_once_more_if_nothing_shows_that_its_client_would_h
         came.append(seconds)
         return True
 
-    monkeypatch.setattr(service_client, "called_late", called_late)
-    monkeypatch.setattr(service_client, "called", lambda *_: True)
-    monkeypatch.setattr(service_client, "unserved", lambda *_: None)
-    monkeypatch.setattr(service_client, "may_be_impatient", lambda _: impatient)
+    monkeypatch.setattr(service_runs, "called_late", called_late)
+    monkeypatch.setattr(service_runs, "called", lambda *_: True)
+    monkeypatch.setattr(service_runs, "unserved", lambda *_: None)
+    monkeypatch.setattr(service_runs, "may_be_impatient", lambda _: impatient)
     asked = Part(LATE, {}, [Event(0.0, "request", "/add_two_ints", {})])
     bench = MagicMock(pace=Pace.FAST, random=Random(0), seen=lambda: asked)
-    service_client.scenario(bench, [Run(LATE, (1, 2)), Run(BIASED, (1, 2))], (3, 4), calls=1)
+    service_runs.scenario(bench, [Run(LATE, (1, 2)), Run(BIASED, (1, 2))], (3, 4), calls=1)
     assert came == lateness
     assert [call.args for call in bench.again.mock_calls] == [(LATE,)] * impatient
 
@@ -269,7 +269,7 @@ def test_the_service_is_there_before_a_client_that_is_known_to_wait_for_its_answ
 def _meets(**how: Any) -> list[str]:
     bench = MagicMock(pace=Pace.FAST)
     bench.reference.only.return_value = ("/add_two_ints", "my_robot_interfaces/srv/AddTwoInts")
-    service_client.meets_service(bench, Run(BIASED, (1, 2)), 1, **how)
+    service_runs.meets_service(bench, Run(BIASED, (1, 2)), 1, **how)
     return [name for name, *_ in bench.mock_calls if name in ("start", "await_endpoint", "let_wait", "serve")]
 
 
@@ -284,9 +284,9 @@ def test_only_a_function_that_has_reported_an_answer_finds_its_service_there(
         found.append(prepared)
         return True
 
-    monkeypatch.setattr(service_client, "meets_service", meets_service)
+    monkeypatch.setattr(service_runs, "meets_service", meets_service)
     bench = MagicMock(pace=Pace.FAST, in_a_cell=in_a_cell, seen=lambda: Part(BIASED))
-    service_client.called(bench, Run(BIASED, (1, 2)), 1, [_reported(RETURNED) if waits else Part(LATE)])
+    service_runs.called(bench, Run(BIASED, (1, 2)), 1, [_reported(RETURNED) if waits else Part(LATE)])
     assert found == [in_a_cell and waits]
 
 
@@ -317,13 +317,13 @@ def test_who_waited_long_and_missed_an_answer_is_started_again_while_that_can_sa
         held.append(held_for)
         return True
 
-    monkeypatch.setattr(service_client, "meets_service", meets_service)
+    monkeypatch.setattr(service_runs, "meets_service", meets_service)
     monkeypatch.setattr(
-        service_client, "reports", lambda part: part is first or (part not in earlier and len(held) > missed)
+        service_runs, "reports", lambda part: part is first or (part not in earlier and len(held) > missed)
     )
-    monkeypatch.setattr(service_client, "was_patient_with_an_answer", lambda *_: True)
+    monkeypatch.setattr(service_runs, "was_patient_with_an_answer", lambda *_: True)
     bench = MagicMock(pace=pace, random=Random(0))
-    assert service_client.called(bench, Run(EXTREME, (1, 2), held=1), 1, [first, *earlier])
+    assert service_runs.called(bench, Run(EXTREME, (1, 2), held=1), 1, [first, *earlier])
     assert held == [None, *[ANSWERS_SOON] * (runs - 1)]
     assert bench.again.call_count == runs - 1
 
@@ -360,13 +360,13 @@ def test_a_client_of_another_type_is_given_the_service_once(
         names.append(run.name)
         return True
 
-    monkeypatch.setattr(service_client, "called_late", lambda *_: True)
-    monkeypatch.setattr(service_client, "called", called)
-    monkeypatch.setattr(service_client, "unserved", lambda *_: names.append(ABSENT))
+    monkeypatch.setattr(service_runs, "called_late", lambda *_: True)
+    monkeypatch.setattr(service_runs, "called", called)
+    monkeypatch.setattr(service_runs, "unserved", lambda *_: names.append(ABSENT))
     seen = Part(LATE, {}, [Event(0.1, "interface", "graph", {"client": {"/add_two_ints": kind}})])
     bench = MagicMock(pace=Pace.REAL_TIME, random=Random(0), seen=lambda: seen)
     bench.reference.only.return_value = ("/add_two_ints", TYPE)
-    service_client.scenario(bench, [Run(LATE, (1, 2)), Run(BIASED, (1, 2))], (3, 4), calls=1)
+    service_runs.scenario(bench, [Run(LATE, (1, 2)), Run(BIASED, (1, 2))], (3, 4), calls=1)
     assert sorted([LATE, *names]) == sorted(made)
 
 
@@ -380,9 +380,9 @@ def test_nobody_waits_for_a_sum_of_a_client_that_has_kept_one_to_itself(
         waited.append(says_more)
         return True
 
-    monkeypatch.setattr(service_client, "meets_service", meets_service)
+    monkeypatch.setattr(service_runs, "meets_service", meets_service)
     bench = MagicMock(pace=Pace.REAL_TIME, in_a_cell=False, seen=lambda: Part(BIASED))
     first = Part(LATE, {}, [IN_VAIN]) if silent else _reported(RETURNED)
-    service_client.called(bench, Run(BIASED, (1, 2)), 1, [first])
-    more = service_client.SAYS_MORE[Pace.REAL_TIME]
-    assert waited == [service_client.AFTERMATH if silent else more]
+    service_runs.called(bench, Run(BIASED, (1, 2)), 1, [first])
+    more = service_runs.SAYS_MORE[Pace.REAL_TIME]
+    assert waited == [service_runs.AFTERMATH if silent else more]

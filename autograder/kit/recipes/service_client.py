@@ -1,289 +1,39 @@
-"""A service client: the judge is the server, and behaves differently in each run.
-
-In one run the service comes late; in one it adds a hidden number to each sum, so that the client's report shows
-whether it used the answer; in one the numbers fill 64 bits; and in one there is no service. The answers always
-include a 0, which is easily mistaken for no answer, and negative numbers. In two runs one answer is held back for a
-while.
-
-The service is first only a little late. If the run without a service does not show that the client would have waited
-for longer, the first run is made again with a service that comes as late as the task allows.
-
-The judge repeats a run only while that can still save points, and serves a client of another type of service in one
-run only.
-
-The subject cannot tell in advance which run has no service: after the run with the late service, the others come in
-random order, with the same kinds of numbers and the same time limits.
-"""
+"""A recipe for a client that has a service add numbers. For its runs see :mod:`.service_runs`."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from functools import partial
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import re2
 
-from autograder.kit import giving_up
 from autograder.kit.draft import OWN, OWN_LATE
-from autograder.kit.giving_up import LATENESS, PATIENCE, drawn_patience, patience_without_a_server
-from autograder.kit.lateness import (
-    ANSWERS_LATE,
-    ANSWERS_SOON,
-    TRIES,
-    again_while,
-    called_before_server,
-    called_too_early,
-    hold_back,
-    late_at_first,
-    looks_for_it,
-    may_be_impatient,
-    meets_late,
-    meets_present,
-    was_patient_with_an_answer,
-)
+from autograder.kit.lateness import called_too_early
 from autograder.kit.mistakes import common_mistakes as common
 from autograder.kit.mistakes import service_client_mistakes, unfinished
 from autograder.kit.mistakes.crashes import CRASHES, OTHER_CRASHES, OTHER_SLIPS
 from autograder.kit.mistakes.hangs import HANGS
-from autograder.kit.model import Advice, Bench, Finding, Mistake, Pace, mistake
+from autograder.kit.model import Advice, Bench, Finding, Mistake, mistake
 from autograder.kit.reading.service_calls import (
-    ABSENT,
-    HANGS_AFTER,
-    LATE,
     WAIT,
     Client,
     answers,
     braces_left,
     cut_short,
-    has_reported,
     how_it_went,
-    new_words,
     pair,
     reports,
     requests,
 )
 from autograder.kit.reading.texts_said import mentions
+from autograder.kit.recipes.service_runs import scenario
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Sequence
     from random import Random
 
     from autograder.kit.evidence import Evidence, Part
-
-CALL_LIMIT = 15.0
-"""Time limit in seconds of wall time for a client to finish once its service exists."""
-AFTERMATH = 1.0
-"""Seconds for which a client that has reported its sum may continue, so that the judge sees what else it does."""
-SAYS_MORE = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
-"""Time limit in seconds for the sum, once a client has said something else about its last answer."""
-
-
-@dataclass(frozen=True)
-class Run:
-    """One run with a service.
-
-    Attributes:
-        name: The part's name.
-        numbers: The numbers that the subject must add.
-        answers: The service's answers to successive calls; to any further call it answers the sum.
-        held: The number, from 1, of the answer that is held back; 0 for none.
-    """
-
-    name: str
-    numbers: Sequence[int]
-    answers: Sequence[int] = ()
-    held: int = 0
-
-
-def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls: int) -> None:
-    """All runs with a service, and one without.
-
-    Args:
-        bench: The bench of the scenario.
-        runs: The runs with a service; the one with the late service comes first.
-        nobody: The numbers in the run without a service.
-        calls: The number of calls of a subject that has finished its work.
-    """
-    late, *others = runs
-    begin(bench, late)
-    if not called_late(bench, late, calls, late_at_first(bench)) or called_before_server(bench.seen()):
-        return
-    first = bench.seen()
-    order: list[Run | None] = [*others, None]
-    bench.random.shuffle(order)
-    # A client of another type of service meets no service of the judge's.
-    hangs = looks_for_it(bench, first, "client") is False
-    served, impatient = [first], False
-    for run in order:
-        if run is None:
-            unserved(bench, nobody)
-            impatient = may_be_impatient(bench)
-        elif not hangs:
-            begin(bench, run)
-            hangs = not called(bench, run, calls, served)
-            served.append(bench.seen())
-    if impatient and requests(first):
-        bench.again(LATE)
-        called_late(bench, late, calls, LATENESS)
-
-
-def begin(bench: Bench, run: Run) -> None:
-    """Begin the part of a run with a service."""
-    bench.part(run.name, numbers=list(run.numbers), patience_sec=drawn_patience(bench))
-
-
-def called_late(bench: Bench, run: Run, calls: int, lateness: float) -> bool:
-    """Make the run in which the service comes late. Return True if the subject finished its work."""
-    done = meets_late(
-        bench, lambda late: meets_service(bench, run, calls, lateness=late), "client", "request", lateness
-    )
-    return _with_quick_answers(bench, run, calls, done)
-
-
-def called(bench: Bench, run: Run, calls: int, earlier: Sequence[Part]) -> bool:
-    """Make a run with a service that exists from the start.
-
-    Args:
-        bench: The bench of the scenario.
-        run: The requests and answers.
-        calls: The number of calls of a subject that has finished its work.
-        earlier: The runs of this look, the one with the late service first.
-
-    Returns:
-        True if the subject finished its work.
-    """
-    first = earlier[0]
-    # A client in the kernel that has reported an answer waits for answers, so its calls reach a service that existed
-    # before it, too, and it need not look for the service a second time.
-    prepared = bench.in_a_cell and reports(first)
-    # A client that kept an answer to itself has lost the points for the sum: nothing waits for a sum any more.
-    silent = [part for part in earlier if is_silent(part, calls)]
-    says_more = AFTERMATH if silent else SAYS_MORE[bench.pace]
-    meet = partial(meets_service, bench, run, calls, prepared=prepared, says_more=says_more)
-    done = meets_present(bench, meet, "request", known=bool(requests(first)), wanted=calls)
-    # If it also called too seldom, it has lost the points for its calls as well.
-    lost = any(len(requests(part)) < calls for part in silent)
-    return _with_quick_answers(bench, run, calls, done, 0 if lost else 1 if silent else TRIES)
-
-
-def is_silent(part: Part, calls: int) -> bool:
-    """Return True if a client reported neither its last answer nor that to its call number ``calls`` (from 1)."""
-    return not reports(part) and not has_reported(part, calls)
-
-
-def _with_quick_answers(bench: Bench, run: Run, calls: int, done: bool, tries: int = TRIES) -> bool:
-    """End a run. If a patient client has missed an answer that was held back, first make the run again.
-
-    In the fast look it is not made again, because the look in real time follows.
-    """
-
-    def missed_an_answer(seen: Part) -> bool:
-        return bool(run.held) and not reports(seen) and was_patient_with_an_answer(seen, ["request"])
-
-    sooner = partial(meets_service, bench, run, calls, held_for=ANSWERS_SOON)
-    done = again_while(bench, missed_an_answer, sooner, done, tries if bench.pace is Pace.REAL_TIME else 0)
-    bench.stop()
-    return done
-
-
-def meets_service(
-    bench: Bench,
-    run: Run,
-    calls: int,
-    *,
-    lateness: float = 0.0,
-    prepared: bool = False,
-    says_more: float | None = None,
-    held_for: float | None = None,
-) -> bool:
-    """Start the subject and serve it. Return True if the subject finished its work.
-
-    Args:
-        bench: The bench of the scenario.
-        run: The requests and answers.
-        calls: The number of calls of a subject that has finished its work.
-        lateness: Seconds by which the service comes after its client.
-        prepared: True if the service comes before its client.
-        says_more: Time limit in seconds for the sum, once the client has said something else about its last answer; by
-            default :data:`SAYS_MORE`.
-        held_for: Seconds for which the answer is held back, from its request on. By default, a first answer is held
-            back as long as allowed even if a student waits, because only a long wait shows a client's limit.
-    """
-    service, type_name = bench.reference.only("client")
-    answer = answering(run.answers)
-    server = bench.serve(service, type_name, answer, hold=run.held) if prepared else None
-    bench.start(*run.numbers, patience_sec=bench.seen().inputs[PATIENCE])
-    # The service starts when the judge has discovered the client. If it existed before, the client might discover it
-    # first, and chance would decide whether the call of a client that ends at once reaches the judge.
-    # A subject with another client waits for something else. One without a client may only be slow to show it.
-    if not bench.await_endpoint("client", service) and (
-        bench.await_end(0.0) or bench.seen().endpoints("client")
-    ):
-        return bench.await_end(0.0)
-    if lateness:
-        bench.let_wait(lateness)
-    server = server or bench.serve(service, type_name, answer, hold=run.held)
-    if run.held and bench.wait_until(
-        lambda seen: len(requests(seen.main)) >= run.held, CALL_LIMIT, quiet=HANGS_AFTER
-    ):
-        # Meanwhile any node on the graph may send requests to the client's node, so an event is not necessarily the
-        # answer.
-        bench.settle()
-        hold_back(
-            bench, "request", run.held, ANSWERS_LATE if run.held == 1 and held_for is None else held_for
-        )
-        server.release()
-    done = bench.wait_until(lambda seen: has_spoken(seen, calls), CALL_LIMIT, quiet=HANGS_AFTER)
-    more = SAYS_MORE[bench.pace] if says_more is None else says_more
-    if done and bench.wait_until(lambda seen: is_done(seen, calls), more):
-        bench.await_end(AFTERMATH)
-    else:
-        bench.note_where_it_hangs()
-    return done
-
-
-def is_done(evidence: Evidence, calls: int) -> bool:
-    """True if the subject has ended or, as a program may, has reported the sum and keeps spinning.
-
-    A subject that has finished stays finished, even if one more call is on its way.
-    """
-    return evidence.main.ending is not None or has_reported(evidence.main, calls)
-
-
-def has_spoken(evidence: Evidence, calls: int) -> bool:
-    """True if the subject has finished, or has at least said something about its last answer."""
-    enough = evidence.main.of("response")[calls - 1 :]
-    return is_done(evidence, calls) or (bool(enough) and bool(new_words(evidence.main, enough[0])))
-
-
-def unserved(bench: Bench, numbers: Sequence[int]) -> None:
-    """Make one run without the service."""
-    if bench.keep(ABSENT):
-        return
-    patience = patience_without_a_server(bench, ABSENT)
-    bench.part(ABSENT, numbers=list(numbers), patience_sec=patience)
-    bench.start(*numbers, patience_sec=patience)
-    service, _ = bench.reference.only("client")
-    bench.await_endpoint("client", service)
-    giving_up.await_it(bench)
-    bench.stop()
-
-
-def hidden(random: Random) -> int:
-    """Return a number from a range that is so large that a program cannot print all of its numbers."""
-    return random.randint(10**9, 10**12)
-
-
-def answering(scripted: Sequence[int]) -> Callable[[Mapping[str, Any]], Mapping[str, Any]]:
-    """Return a service that gives these answers in order, and after them the sum of the two numbers."""
-    left = list(scripted)
-    return lambda request: {"sum": left.pop(0) if left else _as_int64(request["a"] + request["b"])}
-
-
-def _as_int64(number: int) -> int:
-    # A client that adds in another order may exceed the range; C++ servers wrap around, rclpy's would crash.
-    return (number + 2**63) % 2**64 - 2**63
-
+    from autograder.kit.recipes.service_runs import Run
 
 _SUM_NOT_SAID = Advice(
     "The calls are right, but the sum is never said.",

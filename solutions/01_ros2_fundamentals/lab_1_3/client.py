@@ -14,7 +14,8 @@ from autograder.kit.reading.service_calls import (
     EXTREME,
     LATE,
 )
-from autograder.kit.recipes.service_client import Calls, Run, hidden
+from autograder.kit.recipes.service_client import Calls
+from autograder.kit.recipes.service_runs import Run, hidden
 
 if TYPE_CHECKING:
     from random import Random

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from autograder.kit.draft import Draft
 from autograder.kit.reading import service_calls
 from autograder.kit.reading.service_calls import BIASED, EXTREME, LATE
-from autograder.kit.recipes.service_client import Calls, Run, hidden
+from autograder.kit.recipes.service_client import Calls
+from autograder.kit.recipes.service_runs import Run, hidden
 
 if TYPE_CHECKING:
     from random import Random
