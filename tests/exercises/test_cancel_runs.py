@@ -108,6 +108,11 @@ def test_the_fast_look_leaves_out_runs_that_can_change_no_points(
         ([run(HONOURED, says="it is over", ends=False)], run(HONOURED), [HONOURED, REFUSED]),
         # A clock may have made it ask.
         ([run(HONOURED, later=0.15)], run(HONOURED), ALL),
+        (
+            [run(HONOURED, later=0.15), run(CANCEL_REFUSED, pause=cancel.PAUSE, later=0.15)],
+            run(HONOURED),
+            [HONOURED, CANCEL_REFUSED, REFUSED],
+        ),
         # After a pause it asks at the moment at which it asked without one.
         ([run(CANCEL_REFUSED)], run(HONOURED), ALL),
         ([run(CANCEL_REFUSED, pause=cancel.PAUSE, cancels=2)], run(HONOURED), [CANCEL_REFUSED, REFUSED]),
@@ -115,7 +120,17 @@ def test_the_fast_look_leaves_out_runs_that_can_change_no_points(
         ([run(HONOURED, count=6), REJECTED], run(HONOURED, count=6), [HONOURED]),
         ([run(HONOURED, count=6), REJECTED], run(HONOURED), [HONOURED, CANCEL_REFUSED, AGREED]),
     ],
-    ids=["right", "rejected", "hangs", "clock", "not by feedback", "twice", "too late", "too late once"],
+    ids=[
+        "right",
+        "rejected",
+        "hangs",
+        "clock",
+        "clocks",
+        "not by feedback",
+        "twice",
+        "too late",
+        "too late once",
+    ],
 )
 def test_the_look_in_real_time_repeats_what_time_may_have_decided(
     parts: Sequence[Part], first: Part, made: list[str], monkeypatch: pytest.MonkeyPatch
@@ -165,6 +180,43 @@ def test_one_that_counts_messages_is_not_late_by_chance(count: int, monkeypatch:
         monkeypatch.setattr(cancel, "needs_no_time", lambda *_: False)
         cancel.run(bench, HONOURED, accept=True)
         assert len(served) == runs
+
+
+@pytest.mark.parametrize(
+    ("in_a_cell", "asks", "prepared"), [(True, True, True), (True, False, False), (False, True, False)]
+)
+def test_the_server_is_there_before_a_function_that_is_known_to_ask_for_its_result(
+    in_a_cell: bool, asks: bool, prepared: bool
+) -> None:
+    calls = [name for name, *_ in _served(run(HONOURED) if asks else _never_asks(), in_a_cell).mock_calls]
+    assert (calls.index("serve_action") < calls.index("start")) == prepared
+
+
+@pytest.mark.parametrize("asks", [True, False])
+def test_a_client_that_never_asked_for_its_result_is_not_waited_for_in_the_later_runs(asks: bool) -> None:
+    bench = _served(run(HONOURED) if asks else _never_asks())
+    usual = cancel.END_LIMIT[Pace.FAST]
+    (waited,) = bench.serve_action.return_value.await_result_request.call_args.args
+    assert (waited == usual) if asks else (waited < usual)
+
+
+@pytest.mark.parametrize("says", ["canceled", "it is over"])
+def test_a_client_that_did_not_say_how_its_first_goal_ended_need_not_say_so_again(says: str) -> None:
+    bench = _served(run(HONOURED, says=says))
+    hangs = [call.args[1] for call in bench.wait_until.mock_calls if len(call.args) > 1]
+    assert (cancel.HANGS_AFTER[Pace.FAST] in hangs) == (says == "canceled")
+
+
+def _never_asks() -> Part:
+    usual = run(HONOURED)
+    return Part(HONOURED, {}, [event for event in usual.events if event.kind != "result_request"])
+
+
+def _served(first: Part, in_a_cell: bool = False) -> MagicMock:
+    """A bench on which a later run was served to a client that asks to cancel at once."""
+    bench = MagicMock(pace=Pace.FAST, in_a_cell=in_a_cell, reference=REFERENCE, seen=lambda: run(AGREED))
+    cancel.serve_goal(bench, AGREED, first, accept=True, pause=0.0, late=0.0, held=0.0)
+    return bench
 
 
 class Server:

@@ -12,7 +12,15 @@ from autograder.kit.evidence import Event, Evidence, Part, Reference
 from autograder.kit.model import Bench, Pace
 from autograder.kit.reading.goal_reports import ABORTED, LATE, REFUSED
 from autograder.kit.recipes import action_client
-from autograder.kit.recipes.action_client import AFTERMATH, AT_PACE, aborted, refuse, refused, works_on_a_goal
+from autograder.kit.recipes.action_client import (
+    AFTERMATH,
+    AT_PACE,
+    aborted,
+    refuse,
+    refused,
+    unserved,
+    works_on_a_goal,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -140,3 +148,11 @@ def test_a_client_that_may_stay_is_not_waited_for_once_it_has_said_rejected(
     bench.await_end = lambda within: waited.append(within)
     refuse(bench, lambda: None, known=True, may_stay=may_stay)
     assert waited == waits
+
+
+@pytest.mark.parametrize("kept", [True, False])
+def test_a_program_that_ended_without_a_server_is_not_run_without_one_again(kept: bool) -> None:
+    bench = MagicMock(pace=Pace.REAL_TIME, before=None, random=random.Random(0), keep=lambda _: kept)
+    bench.reference.only.return_value = ("/fibonacci", "a_package/action/Fibonacci")
+    unserved(bench, FIRST)
+    assert bench.part.called == (not kept)
