@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from autograder.kit.giving_up import CLOSELY, LATE_AT_FIRST, LATENESS, TOO_SHORT, patience, waited
 from autograder.kit.model import Pace, mistake
+from autograder.kit.reading.service_calls import HANGS_AFTER
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -150,12 +151,12 @@ def await_goal(bench: Bench, server: ActionCounterpart, within: float) -> bool:
     Args:
         bench: The bench of the scenario.
         server: The judge's server.
-        within: The time limit for the goal, in seconds.
+        within: The time limit for the goal, in seconds; a client that falls silent gets less.
 
     Returns:
         True if the goal came and was answered.
     """
-    came = bench.wait_until(lambda evidence: bool(evidence.main.of("goal")), within)
+    came = bench.wait_until(lambda evidence: bool(evidence.main.of("goal")), within, quiet=HANGS_AFTER)
     if came:
         bench.settle()
     return server.await_goal(within if came else 0.0)

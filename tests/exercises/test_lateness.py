@@ -26,6 +26,7 @@ from autograder.kit.lateness import (
     PATIENT_WITH_AN_ANSWER,
     SOON,
     TRIES,
+    await_goal,
     may_be_impatient,
     meets_late_action,
     meets_present,
@@ -34,6 +35,7 @@ from autograder.kit.lateness import (
     was_patient_with_an_answer,
 )
 from autograder.kit.model import Pace
+from autograder.kit.reading.service_calls import HANGS_AFTER
 
 if TYPE_CHECKING:
     from autograder.kit.model import Bench
@@ -267,3 +269,11 @@ def test_a_function_that_kept_a_short_patience_is_not_given_a_long_one_in_the_se
     assert (patience_without_a_server(bench, "no server") > 1.0) == long
     bench.pace = Pace.FAST
     assert patience_without_a_server(bench, "no server") < 1.0
+
+
+def test_a_client_that_falls_silent_without_a_goal_is_taken_to_hang() -> None:
+    bench, server = MagicMock(), MagicMock()
+    bench.wait_until.return_value = False
+    await_goal(bench, server, 15.0)
+    assert bench.wait_until.call_args.kwargs == {"quiet": HANGS_AFTER}
+    server.await_goal.assert_called_once_with(0.0)

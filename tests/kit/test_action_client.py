@@ -43,7 +43,9 @@ class PatientClient:
         self.events.append(Event(float(len(self.events)), kind, "/fibonacci", data))
         return True
 
-    def wait_until(self, condition: Callable[[Evidence], bool], within: float) -> bool:
+    def wait_until(
+        self, condition: Callable[[Evidence], bool], within: float, *, quiet: float | None = None
+    ) -> bool:
         return condition(Evidence([self.seen()], Reference("lab_9_1.client", {})))
 
     def seen(self) -> Part:

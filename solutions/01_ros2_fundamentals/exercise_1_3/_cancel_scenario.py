@@ -92,7 +92,7 @@ AT_ONCE = 0.01
 """The same, if a request is too early in any case, and only the advice counts the messages before it."""
 PAUSE = 0.15
 """Seconds after the first feedback message that the second run of a fast look is longer than the first."""
-GOAL_LIMIT = 8.0
+GOAL_LIMIT = 15.0
 """Seconds in which a goal must arrive once the client is on the graph."""
 END_LIMIT = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
 """Seconds in which the client must ask for the result."""
