@@ -1,8 +1,8 @@
-"""Clients whose server is late or missing: how long they wait, what they report meanwhile, and how they give up.
+"""Decides how clients behave if their server is late or missing: how long they wait, and how they give up.
 
-One rule holds for every client of the course. A client that ends and reports :data:`NOT_AVAILABLE` has given up well.
-A client that repeatedly reports that it waits may go on; the card then has a remark about limits. A function with a
-parameter ``patience_sec`` must wait that long.
+One rule holds for every client of the course. A client that ends and reports :data:`NOT_AVAILABLE` behaves well. A
+client that repeatedly reports that it waits may go on; the card then remarks that a robot also needs a time limit. A
+function with a parameter ``patience_sec`` must wait that many seconds.
 """
 
 from __future__ import annotations
@@ -22,46 +22,52 @@ if TYPE_CHECKING:
     from autograder.kit.model import Bench
 
 PATIENCE = "patience_sec"
-"""The name of the parameter that tells a notebook's function how long to wait. The same name is used in a part's
+"""The name of the parameter that tells a notebook's function how long to wait, and of the same value in a part's
 inputs.
 """
 GIVE_UP_LIMIT = 12.0
-"""Time limit in seconds: until then a client without a server must have ended, or have repeatedly said that it waits.
+"""The time limit in seconds for a client without a server. Until then it must have ended, or have repeatedly reported
+that it waits.
 """
 LATENESS = 1.5
 """The maximum delay in seconds between a client's start and the start of its late server."""
 LATE_AT_FIRST = 0.65
-"""A shorter delay in seconds, used while a later run without a server can still show that the client would have waited
-for :data:`LATENESS`.
+"""A shorter delay than :data:`LATENESS`, in seconds. It is used as long as a later run without a server can show
+whether the client would have waited longer.
 """
 CLOSELY = 0.5
-"""Seconds after a short patience within which a function that uses this patience as its limit has given up.
+"""The number of seconds by which a function may exceed a short patience and still counts as using this patience as its
+limit.
 
-A function with a constant of three quarters of a second or more waits longer, and a function with a shorter constant
-misses a server that comes after :data:`LATE_AT_FIRST`.
+A function with a constant limit is noticed. If the constant is three quarters of a second or more, the function waits
+too long. If it is shorter, the function misses a server that comes after :data:`LATE_AT_FIRST`.
 """
 PATIENCES = (6.5, 6.95)
 """The range, in seconds, from which a function's patience is drawn at random.
 
-No usual constant, such as 5 or 10, lies within this range, even with the tolerances below.
+No common constant, such as 5 or 10, is in this range, even with the tolerances below.
 """
 PATIENCES_WITHOUT_A_SERVER = {Pace.FAST: (0.2, 0.24), Pace.REAL_TIME: PATIENCES}
-"""Like :data:`PATIENCES`, for a run without a server, by pace. In that run the function waits for its whole patience.
+"""Like :data:`PATIENCES`, but for a run without a server, by pace. In such a run the function waits for its whole
+patience.
 
-A constant that is long enough for a late server is too long for the short range. A function that needs longer, such
-as one that waits in whole seconds, gets the long range in the second look. The waits of rclpy look four times a
-second, so they take a quarter of a second here.
+The short range exposes a constant limit that is long enough for a late server. A function that cannot keep to the short
+range, for example because it waits in whole seconds, gets the long range in the second look. rclpy's own waits check
+four times a second, so they take a quarter of a second here.
 """
 TOO_LONG = 2.0
-"""Seconds that a function may need beyond its patience, for making and destroying its node and for a slow machine."""
+"""The number of seconds by which a function may exceed its patience, to make and destroy its node and for a slow
+machine.
+"""
 SLACK = 1.1
-"""Like :data:`TOO_LONG`, in seconds, for a patience shorter than this. A slower function gets a longer patience in the
-second look.
+"""Like :data:`TOO_LONG`, in seconds, for a patience that is shorter than this value. A slower function gets a longer
+patience in the second look.
 """
 TOO_SHORT = 0.5
 """The minimum fraction of its patience that a function must wait."""
 PART_OF_A_WAIT = 1.0
-"""Seconds by which a function may end before its patience is over, because it may wait in whole seconds."""
+"""The number of seconds by which a function may end before its patience is over, because it may wait in whole seconds.
+"""
 NOT_AVAILABLE = Outcome("not available")
 """The words that a client must report if its service or action server is missing."""
 WAITING = Outcome("not available", "waiting")
@@ -69,15 +75,15 @@ WAITING = Outcome("not available", "waiting")
 AGAIN_AND_AGAIN = 3
 """The minimum number of times that a client must report that it is still waiting."""
 SAYS_SO_TO = 8.0
-"""The minimum time in seconds from the moment when the client was first seen to its last report that it waits. A client
-that reports every four seconds reaches this time; a client that stops after three tries does not.
+"""The minimum time in seconds from the first sight of the client to its last report that it waits. A client that
+reports every four seconds reaches this time. A client that stops after three tries does not.
 """
 _CLIENTS = ("client", "action_client")
 _AT_WORK = ("log", "called", "looked")
-"""The kinds of events that show that a node works or a function waits, even if the ROS graph does not show it."""
+"""The kinds of events that show that a node or function is running, even if the ROS graph does not show it."""
 MOMENT = 0.5
-"""Seconds within which repeated words count only once: a log line is recorded twice (printed and on /rosout), and a
-loop may be fast.
+"""Reports within this many seconds count only once. A log line is recorded twice (printed and on /rosout), and a loop
+may be fast.
 """
 
 
@@ -85,14 +91,14 @@ loop may be fast.
 
 
 def waited(part: Part) -> float:
-    """Return the seconds from the subject's start to its end; if it has not ended, to its last event."""
+    """Return the number of seconds from the subject's start to its end or, if it has not ended, to its last event."""
     start = part.first("subject", "started")
     end = part.ending or (part.events[-1] if part.events else None)
     return (end.t if end else 0.0) - (start.t if start else 0.0)
 
 
 def patience(part: Part) -> float | None:
-    """Return the seconds that the subject was told to wait; None if it has no parameter for this."""
+    """Return the number of seconds that the subject was told to wait; None if it has no parameter for this."""
     start = part.first("subject", "started")
     takes = start is not None and PATIENCE in start.data["accepted"]
     return float(part.inputs[PATIENCE]) if takes and PATIENCE in part.inputs else None
@@ -106,7 +112,7 @@ def drawn_patience(bench: Bench, between: tuple[float, float] = PATIENCES) -> fl
 def patience_without_a_server(bench: Bench, name: str) -> float:
     """Draw the number of seconds that a function is told to wait in the run without a server.
 
-    In the second look this is long only if the function did not keep to a short patience in the first one.
+    In the second look, the time is long only if the function did not keep to a short one in the first look.
 
     Args:
         bench: The bench of the scenario.
@@ -126,10 +132,10 @@ def await_it(bench: Bench) -> None:
 
 
 def says_that_it_waits(part: Part) -> bool:
-    """Return True if the subject repeatedly says that it waits, and not only at the beginning.
+    """Return True if the subject repeatedly reports that it waits, and not only at its beginning.
 
-    The beginning is the moment when its client was first seen; on a busy machine a program may need seconds to get
-    there.
+    The beginning is the moment when the judge first saw the client. On a busy machine a program may need seconds until
+    then.
     """
     looks = (event.t for event in part.of("interface") if any(map(event.data.get, _CLIENTS)))
     late = (next(looks, 0.0) + SAYS_SO_TO) / MOMENT
@@ -138,7 +144,7 @@ def says_that_it_waits(part: Part) -> bool:
 
 
 def _moments(part: Part, outcome: Outcome) -> set[int]:
-    """Return the times at which the subject reported this outcome, as multiples of :data:`MOMENT`."""
+    """Return the times at which the subject reported an outcome, in units of :data:`MOMENT`."""
     return {
         int(event.t / MOMENT)
         for event in part.events
@@ -147,7 +153,7 @@ def _moments(part: Part, outcome: Outcome) -> set[int]:
 
 
 def goes_on_waiting(part: Part) -> bool:
-    """Return True if the subject waits forever and may: it says that it waits, and was given no patience."""
+    """Return True if the subject waits forever and may do so: it reports that it waits, and was given no patience."""
     return bool(part.events) and part.ending is None and patience(part) is None and says_that_it_waits(part)
 
 
@@ -176,25 +182,26 @@ def objection(part: Part, others: Sequence[Part] = (), role: str = "") -> str:
 
 
 def _unsaid(part: Part, others: Sequence[Part]) -> str:
-    # If a busy machine delays discovery, a client that usually repeats this may have said it only once.
+    # A client that repeats its report counts as reporting even if the words also occur in other runs, where the server
+    # may have been discovered late.
     times = _moments(part, NOT_AVAILABLE)
     said_again = bool(times) and max(times) - min(times) > 1
     return "" if said_again else NOT_AVAILABLE.missing(part, others)
 
 
 def silent_end(part: Part, others: Sequence[Part], noun: str) -> Advice | None:
-    """Return the advice for a client that finds no server and ends without reporting it, or returns an answer anyway.
+    """Return the advice for a client that finds no server and ends without a report, or returns an answer.
 
     Args:
         part: The run without a server.
         others: Runs in which the subject had its server.
-        noun: The word for the missing thing, such as ``"service"``.
+        noun: The word for the server, such as ``"service"``.
     """
     if part.ending is None:
         return None
     if value := returned_answer(part):
         return Advice(
-            f"When the {noun} is not there, your function returns {value}: its caller takes that for the answer.",
+            f"If the {noun} is not available, your function returns {value}, which its caller takes for the answer.",
             "Raise TimeoutError instead, with a message that contains the words `not available`.",
         )
     if not _unsaid(part, others):
@@ -216,27 +223,30 @@ def returned_answer(part: Part) -> str:
 
 
 def broken_patience(part: Part) -> str:
-    """Return in words how a function's waiting time differs from its patience; empty if it kept to its patience."""
+    """Return in words how a function's wait differs from its patience; empty if it waited as long as it should."""
     limit = patience(part)
     if limit is None or part.ending is None:
         return ""
     slack = SLACK if limit < SLACK else TOO_LONG
     if max(limit * TOO_SHORT, limit - PART_OF_A_WAIT) <= waited(part) <= limit + slack:
         return ""
-    return f"gave up after {waited(part):.1f} s, where {PATIENCE} was {limit:g}"
+    return f"gave up after {waited(part):.1f} s, although {PATIENCE} was {limit:g}"
 
 
 def ended_at_once(part: Part) -> bool:
-    """Return True if a function that was told how long to wait ended far too early to have waited at all."""
+    """Return True if a function that was told how long to wait ended so early that it cannot have waited."""
     limit = patience(part)
     return limit is not None and part.ending is not None and waited(part) < limit * TOO_SHORT
 
 
 def remark(absent: str) -> Callable[[Evidence], str]:
-    """Return a function for the card's remark on a client that keeps waiting in ``absent``, the run with no server."""
+    """Return a function that returns a remark for the card if the client keeps waiting without a server.
+
+    ``absent`` is the name of the run without a server.
+    """
     words = (
-        "When there is no server, your client says again and again that it waits, and waits on. The task allows this; "
-        "a robot that must not wait for ever needs a limit as well, such as a number of tries."
+        "If there is no server, your client keeps waiting and reports this repeatedly. The task allows this. But a "
+        "robot that must not wait forever needs a limit as well, such as a number of tries."
     )
     return lambda evidence: words if goes_on_waiting(evidence.part(absent)) else ""
 
@@ -245,16 +255,16 @@ def remark(absent: str) -> Callable[[Evidence], str]:
 
 
 def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool]) -> bool:
-    """Return True if the subject reported a missing server and ended, although the server was available.
+    """Return True if the subject gave up: it reported a missing server and ended, although the server was available.
 
-    On the wire, a client that gave up looks like one that never meant to call: both just end. But a client that gave
-    up prints the same words whether the server is available or missing. Timing decides in which runs it ends too
-    early: a client that looks only once may find the server in some runs, in all or in none.
+    On the network, a client that gave up looks like one that never meant to call: both just end. But a client that gave
+    up prints the same words whether the server is available or missing. Timing decides in which runs it ends too early:
+    a client that checks only once may find the server in some runs, in all or in none.
 
     Args:
         served: The runs with a server. In the first one the server comes late.
         absent: The run without a server.
-        asked: Tells whether the subject sent the server a request in a run.
+        asked: Decides whether the subject sent a request to the server in a run.
     """
     if looked_for_nobody((absent, *served)):
         return False
@@ -267,9 +277,9 @@ def gave_up(served: Sequence[Part], absent: Part, asked: Callable[[Part], bool])
 
 
 def looked_for_nobody(parts: Iterable[Part]) -> bool:
-    """Return True if the subject ended well in each run, but was never seen to have a node or to wait.
+    """Return True if the subject ended in each run without an error, but never showed a node or a wait.
 
-    A notebook's function may end before the graph shows its node; then it is unknown whether it looked for a server.
+    A notebook's function may end before the graph shows its node. Then it is unknown whether it looked for a server.
     """
     return all(
         part.ending is not None and part.ending.name in ("exited", "returned") and not _was_seen(part)

@@ -1,8 +1,8 @@
-"""Whether a client is patient: with a server that comes late, and with answers that take a moment.
+"""Decides whether a client is patient: whether it waits for a late server and for late answers.
 
-On a quiet machine everything is available in milliseconds, so a client that hardly waits would look as right as one
-that waits. Therefore the judge is deliberately slow, as a real robot may be: slow enough to tell the two apart, and
-much faster than the few seconds that a client must allow for. If a student is waiting for a check cell, answers come
+On a quiet machine, everything is available in milliseconds, so a client that hardly waits would look as right as one
+that waits. Therefore the judge is deliberately slow, as a real robot may be: slow enough to show the difference, and
+much faster than the few seconds for which a client must wait. If a student is waiting for a check cell, answers come
 sooner.
 """
 
@@ -22,32 +22,33 @@ if TYPE_CHECKING:
     from autograder.kit.model import Bench, Mistake
 
 SOON = 0.3
-"""The server's delay in seconds in a repeated run, for a client that has just missed its server."""
+"""The server's delay in seconds when a run is repeated because the client has just missed its server."""
 ANSWERS_LATE, ANSWERS_SOON = 0.7, 0.12
-"""The delay of an answer in seconds: usually the first value; the second if a student is waiting, or if the client just
-missed an answer.
+"""Two delays of an answer in seconds. The first one is usual. The second one is used if a student is waiting, or if the
+client has just missed an answer.
 
-Neither delay equals a limit that is usual in programs, such as half a second.
+Neither delay equals a common time limit of programs, such as half a second.
 """
 PATIENT_WITH_AN_ANSWER = 0.9
-"""Seconds: a client that waited this long for an answer before giving up was patient. On a busy machine it may have
+"""A client that waited this many seconds for an answer before it gave up was patient. On a busy machine it may have
 missed the answer.
 """
 PATIENT_WITH_A_RESULT = 4.0
-"""Seconds: a client that waited this long for a goal's result before giving up was patient. The time is longer than for
-an answer, because feedback takes longer on a busy machine. It lies between the 3 and the 5 seconds that many clients
+"""A client that waited this many seconds for a goal's result before it gave up was patient. The time is longer than for
+an answer, because feedback takes longer on a busy machine. It is between the 3 and the 5 seconds that many clients
 wait.
 """
 TRIES = 3
-"""The maximum number of times that a patient client which missed its server or its answer is started again in real
-time: a slow machine may miss even an early answer. After a run of the fast look, the look in real time is the next try.
+"""The maximum number of times, in real time, that the judge starts a patient client again that has missed its server or
+its answer, because a slow machine may miss even an early answer. In the fast look this number is 0, because the look in
+real time is the next try.
 """
 PATIENT = 1.2
-"""Seconds: a client that waited this long for its server before giving up was patient. It may have missed the server
-by a moment.
+"""A client that waited this many seconds for its server before it gave up was patient. It may have missed the server by
+a moment.
 """
 LONG = 4.0
-"""Seconds: a client that waited this long for its server has not missed it by a moment, so one more run is enough."""
+"""A client that waited this many seconds for its server has not missed it by a moment, so one more run is enough."""
 
 
 def answers_late(bench: Bench) -> float:
@@ -56,18 +57,19 @@ def answers_late(bench: Bench) -> float:
 
 
 def late_at_first(bench: Bench) -> float:
-    """Return how many seconds late the server starts in the first run.
+    """Return the delay of the server in the first run, in seconds.
 
-    In this run the judge does not yet know how long the client waits: only the last run, without a server, shows that.
+    In the first run the judge does not yet know how long the client waits. Only the last run, without a server, shows
+    that.
     """
     return LATE_AT_FIRST if bench.pace is Pace.FAST else LATENESS
 
 
 def may_be_impatient(bench: Bench) -> bool:
-    """Return True if the run without a server, the last one, does not show that the client waits long enough.
+    """Return True if the last run, which has no server, does not show that the client waits long enough.
 
-    A function that was told how long to wait must wait that long; any other client must wait long. In real time the
-    result is False, because the server of the first run was already as late as it may be.
+    A function that was told how long to wait must wait that long; any other client must wait long. In real time, return
+    False, because the server of the first run was already as late as allowed.
     """
     absent = bench.seen()
     limit = patience(absent)
@@ -79,17 +81,17 @@ def may_be_impatient(bench: Bench) -> bool:
 
 
 def called_before_server(part: Part) -> bool:
-    """Return True if the last call was made before the server existed. ROS delivers such a request to no server.
+    """Return True if the client's last call was made before the server existed, so that no server received it.
 
-    Only notebooks record when they call. The judge compares these times with the start of its own server, so the
-    result does not depend on the machine's load.
+    Only the calls of a notebook are recorded with their times. They are compared with the start of the judge's own
+    server, so the result does not depend on the machine's load.
     """
     calls, serving = part.of("called"), part.first("serving")
     return bool(calls) and serving is not None and calls[-1].t < serving.t
 
 
 def called_too_early(called: str, wait: str) -> Mistake:
-    """Make the mistake of a client that calls without waiting for its server.
+    """Return the mistake of a client that calls without waiting for its server.
 
     Args:
         called: What the client did, in words; it completes a sentence that begins with "Your client".
@@ -102,11 +104,11 @@ def called_too_early(called: str, wait: str) -> Mistake:
     return mistake(
         "called_too_early",
         found,
-        f"Your client {called} before the server was there. Such a request is lost: a server that starts later never "
-        "gets it.",
-        f"Wait for the server before you call: write `if not your_client.{wait}(timeout_sec=5.0):`, and below it "
-        "report that the server is not available, and end. Without the parentheses the method is not called, and "
-        "nothing waits.",
+        f"Your client {called} before the server was available. Such a request is lost: a server that starts later "
+        "never gets it.",
+        f"Wait for the server before you call: write `if not your_client.{wait}(timeout_sec=5.0):`. Inside this "
+        f"`if`, report that the server is not available, and end. Do not forget the parentheses after {wait}: "
+        "without them the method is not called, and nothing waits.",
         certain=True,
     )
 
@@ -120,7 +122,7 @@ def was_patient_with_an_answer(part: Part, requests: Sequence[str]) -> bool:
     """Return True if a client that ended had waited long enough for the answer to its last request.
 
     Args:
-        part: What was seen of the client.
+        part: A run of the client.
         requests: The event kinds of the requests whose answers the judge holds back.
     """
     request = next((event for event in reversed(part.events) if event.kind in requests), None)
@@ -143,10 +145,9 @@ def _waited_since(part: Part, beginning: Event | None, seconds: float) -> bool:
 
 
 def await_goal(bench: Bench, server: ActionCounterpart, within: float) -> bool:
-    """Wait for the subject's goal. While its answer is held back, send the subject's node an unrelated request.
+    """Wait for the subject's goal. While the judge holds back the answer, it sends the subject's node another request.
 
-    Any node on the graph may send such a request. A client that takes the first event for its answer is right only by
-    chance.
+    Any node may send such a request. A client that takes its first event for the answer is right only by chance.
 
     Args:
         bench: The bench of the scenario.
@@ -163,14 +164,14 @@ def await_goal(bench: Bench, server: ActionCounterpart, within: float) -> bool:
 
 
 def hold_back(bench: Bench, kind: str, number: int = 1, seconds: float | None = None) -> None:
-    """Let time pass until a request has waited as long as a held-back answer waits.
+    """Wait until a request is as old as the delay of its answer.
 
-    This takes longer on a busy machine, where even a subject that hardly waits needs time to report that.
+    On a busy machine the wait is longer, because even a subject that hardly waits needs time to report something.
 
     Args:
         bench: The bench of the scenario.
-        kind: The event kind of the request.
-        number: The number of the request among those of this kind, from 1.
+        kind: The kind of the request's event.
+        number: The number of the request among those of its kind, counted from 1.
         seconds: The time from the request to its answer; by default that of :func:`answers_late`.
     """
     seen = bench.seen()
@@ -186,13 +187,13 @@ def again_while(
     done: bool,
     times: int | None = None,
 ) -> bool:
-    """Start a subject again while it keeps missing something that it waited for.
+    """Start a subject again while it keeps missing something for which it waited.
 
     Args:
         bench: The bench of the scenario.
-        missed: Tells, from the record of the last run, whether the subject missed something.
+        missed: Decides from the record of the last run whether the subject missed something.
         meet: Makes one more run. Returns True if the subject finished its work.
-        done: True if the subject finished its work in the run before.
+        done: True if the subject finished its work in the run that was made before this call.
         times: The maximum number of runs to make; by default :data:`TRIES` in real time, and none in the fast look.
 
     Returns:
@@ -207,22 +208,22 @@ def again_while(
 
 
 def _tries(bench: Bench) -> int:
-    """Return how many times a patient client is started again in this look."""
+    """Return how many times the judge starts a patient client again in this look."""
     return TRIES if bench.pace is Pace.REAL_TIME else 0
 
 
 def _missed(request: str) -> Callable[[Part], bool]:
-    """Return a function that decides whether a client sent no request of this kind, although it waited long enough."""
+    """Return a function that decides whether a client sent no such request although it waited long enough."""
     return lambda seen: not seen.of(request) and was_patient(seen)
 
 
 def _missed_by_a_moment(request: str) -> Callable[[Part], bool]:
-    """Return a function that decides the same, for a client that did not wait :data:`LONG`."""
+    """Like :func:`_missed`, but only for a client that waited less than :data:`LONG`."""
     return lambda seen: _missed(request)(seen) and not was_patient(seen, LONG)
 
 
 def looks_for_it(bench: Bench, part: Part, role: str) -> bool | None:
-    """Return whether a client was seen to look for the exercise's server, or for another one; None if none was seen."""
+    """Return True if the client looks for the exercise's server, False if for another one, None if for none."""
     found = part.endpoints(role)
     if not found:
         return None
@@ -254,7 +255,7 @@ def meets_late(
         return meet(SOON)
 
     def missed(seen: Part) -> bool:
-        # A client that waits for a different server would only wait once more, in vain.
+        # A client that waits for another server would only wait in vain once more.
         return looks_for_it(bench, seen, role) is not False and _missed(request)(seen)
 
     done = again_while(bench, missed, sooner, meet(lateness), 1)
@@ -277,7 +278,7 @@ def meets_late_action(
             the subject finished its work.
         requests: The event kinds of the requests whose answers the judge holds back.
         lateness: The delay of the server in the first run, in seconds.
-        held: The delay of these answers in the first run, in seconds; by default that of :func:`answers_late`.
+        held: The delay of these answers in the first run, in seconds; by default, the value of :func:`answers_late`.
 
     Returns:
         True if the subject finished its work in the last run.
@@ -294,7 +295,7 @@ def meets_late_action(
 def meets_present(
     bench: Bench, meet: Callable[[], bool], request: str, *, known: bool, wanted: int = 1
 ) -> bool:
-    """Run the subject with an available server. Repeat if a client that can call the server ended without calling.
+    """Run the subject with a server that is available. Repeat the run if the client ended without a call.
 
     A request that a client sends just before it ends is sometimes lost, so the client is started once more. On a very
     busy machine, a client may stop waiting before it discovers the server; a patient client is started several times.
@@ -303,8 +304,8 @@ def meets_present(
         bench: The bench of the scenario.
         meet: Makes one run; returns True if the subject finished its work.
         request: The event kind of the subject's request to the server.
-        known: True if the subject called a server in an earlier run. A subject that never calls is not started again.
-        wanted: The number of requests that it should send.
+        known: True if the subject called a server in an earlier run. If False, the subject is not started again.
+        wanted: The number of requests that the subject should send.
 
     Returns:
         True if the subject finished its work in the last run.

@@ -208,18 +208,18 @@ AT_ONCE = tuple((0.1 + t / 1000, "waiting") for t in range(200))
         pytest.param(_waits((1.0, "not available"), told=0.2, ends=1.1), "", id="waits a whole second"),
         pytest.param(
             _waits((1.5, "not available"), told=0.37, ends=1.5),
-            "gave up after 1.5 s, where patience_sec was 0.37",
+            "gave up after 1.5 s, although patience_sec was 0.37",
             id="has a patience as long as a late server takes",
         ),
         pytest.param(_waits((2.9, "not available"), told=1.5, ends=2.9), "", id="is slow to end"),
         pytest.param(
             _waits((5.1, "not available"), told=1.5, ends=5.1),
-            "gave up after 5.1 s, where patience_sec was 1.5",
+            "gave up after 5.1 s, although patience_sec was 1.5",
             id="has a patience of its own",
         ),
         pytest.param(
             _waits((0.1, "not available"), told=1.5, ends=0.1),
-            "gave up after 0.1 s, where patience_sec was 1.5",
+            "gave up after 0.1 s, although patience_sec was 1.5",
             id="does not wait at all",
         ),
         pytest.param(_waits((0.1, "not available"), ends=0.1), "", id="was not told how long"),

@@ -180,7 +180,7 @@ def _went_on_without_it(part: Part) -> bool:
 
 
 _COROUTINE = re2.compile(
-    # Warnings about methods are not matched. A method may be a callback, and rclpy warns that it was never awaited if
+    # Warnings about methods are not matched. A method may be a callback, and Python warns that it was never awaited if
     # the program ends before rclpy has run it.
     r"^<coroutine object (?P<returned>\S+) at |RuntimeWarning: coroutine '(?P<warned>[a-z]\w*)' was never awaited"
 )

@@ -1,10 +1,10 @@
-"""A recipe for a client of an action. The judge is the server.
+"""A recipe for an action client. The judge is the action server.
 
-Only a client that shows what it receives can be right: the judge's numbers are not Fibonacci numbers and not sorted,
-one of them occurs twice, and the result differs from the last feedback. The server comes a little late in one run,
-refuses the goal in another, aborts it in a third, and is absent in the last. If the run without a server does not show
-that the client would have waited longer, the first run is made again with a server that comes as late as the task
-allows. In the second look, a run in which nothing was wrong is not made again.
+The numbers that the judge sends are not Fibonacci numbers and not sorted, one of them occurs twice, and the result
+differs from the last feedback. So a client passes only if it shows what it receives. The server comes a little late in
+one run, refuses the goal in another, aborts it in a third, and does not exist in the last. If the run without a server
+does not show that the client would have waited longer, the first run is made again with a server that comes as late as
+the task allows.
 """
 
 from __future__ import annotations
@@ -63,35 +63,39 @@ if TYPE_CHECKING:
     from autograder.kit.model import Advice
 
 ORDERS = {LATE: (41, 46), REFUSED: (-9, -1), ABORTED: (0, 0), ABSENT: (11, 30)}
-"""For each part, the smallest and the largest order that the client gets. Negative numbers and 0 are valid orders."""
+"""For each part, the smallest and the largest order that the client may be given. Negative numbers and 0 are valid."""
 SHOWN_WITHIN = {Pace.FAST: 0.5, Pace.REAL_TIME: 1.5}
-"""The maximum time in seconds for a client to show a feedback message before the next one is sent."""
+"""The maximum time in seconds for a client to show a feedback message. After this time the next message is sent anyway.
+"""
 HASTE = {Pace.FAST: 0.1, Pace.REAL_TIME: 0.075}
-"""Like :data:`SHOWN_WITHIN`, in seconds, once the client has failed to show a message. With this time limit the goal's
-result comes after some 3.5 s, between the 3 and the 5 seconds that many clients wait.
+"""A shorter limit instead of :data:`SHOWN_WITHIN`, in seconds, after the client has failed to show a message. With this
+limit, the goal's result comes after about 3.5 s. This is between the 3 and the 5 seconds that many clients wait.
 """
 AT_PACE = 3
-"""The number of last feedback messages that are sent at the pace of the lab's server, even if the client has not shown
-the messages before. They are a fair test for a client that shows the newest message by a timer, and so misses earlier
-ones.
+"""The number of feedback messages at the end that are sent at the pace of the lab's server, whatever the client shows.
+A client that shows the newest message from a timer misses earlier messages, and these last ones are a fair test for it.
 """
 LAB_PACE = 0.5
-"""Seconds, in the client's time, between two feedback messages at the lab's pace."""
+"""The time in seconds between two feedback messages at the pace of the lab's server, by the client's clock."""
 RESULT = 28
-"""The minimum length of a result, long enough to detect a client that shows only the first ten or twenty numbers.
+"""The minimum length of a result. It is long enough to detect a client that shows only the first ten or twenty numbers.
 
-For a larger order the result has one number more than the order, as in the lab.
+For a larger order, the result has one number more than the order, as in the lab.
 """
 GOAL_LIMIT = 15.0
 """Time limit in seconds for a goal to arrive once the client is on the graph."""
 END_LIMIT = {Pace.FAST: 3.0, Pace.REAL_TIME: 8.0}
-"""Time limit in seconds for each of these: the client requests the result, reports it, or ends after a refusal."""
+"""The time limit in seconds for each of these steps: the client requests the result, reports it, or ends after a
+refusal.
+"""
 AFTERMATH = 1.0
-"""Seconds to wait, after a client has reported, for the client to end or print more."""
+"""After a client has reported the end of its goal, the judge waits this many seconds for the client to end or print
+more.
+"""
 
 
 def scenario(bench: Bench) -> None:
-    """Make four runs: first a goal succeeds at a late server; then, in random order, a refusal, an abort, no server."""
+    """Make four runs: first a late server; then, in random order, a refused goal, an aborted goal, and no server."""
     inputs = begin(bench, LATE)
     if not late(bench, inputs, late_at_first(bench)) or called_before_server(bench.seen()):
         return
@@ -109,7 +113,7 @@ def begin(bench: Bench, name: str) -> dict[str, Any]:
     """Begin a part, and return the inputs with which the subject is started."""
     order = bench.random.randint(*ORDERS[name])
     inputs = {
-        # On a command line, -3 could be mistaken for an option.
+        # A program gets no negative order, because -3 on a command line could be mistaken for an option.
         "order": order if bench.in_a_cell else abs(order),
         PATIENCE: patience_without_a_server(bench, name) if name == ABSENT else drawn_patience(bench),
     }
@@ -129,8 +133,8 @@ def late(bench: Bench, inputs: Mapping[str, Any], lateness: float, held: float =
         bench: The bench of the scenario.
         inputs: The inputs of the subject.
         lateness: The delay of the server, in seconds.
-        held: The delay of the answer to the goal, in seconds. Even if a student is waiting, this run has the longest
-            delay allowed, because only a long wait shows a client's limit.
+        held: The delay of the answer to the goal, in seconds. It is as long as allowed even if a student waits for the
+            check, because only a long delay shows whether a client's time limit is long enough.
     """
 
     def meet(seconds: float, answer: float) -> bool:
@@ -148,14 +152,15 @@ def late(bench: Bench, inputs: Mapping[str, Any], lateness: float, held: float =
 def meets_late_server(
     bench: Bench, inputs: Mapping[str, Any], lateness: float, held: float, shown_within: Mapping[Pace, float]
 ) -> bool:
-    """Start the subject, and start its server some seconds later. Return True if the subject finished its work.
+    """Start the subject, and its server some seconds later. Return True if the subject finished its work.
 
     Args:
         bench: The bench of the scenario.
         inputs: The inputs of the subject.
         lateness: The delay in seconds between the start of the client and of the server.
         held: The number of seconds for which the answer to the goal is held back.
-        shown_within: Time limit in seconds for showing each feedback message, until the client fails to show one.
+        shown_within: The time limit in seconds, by pace, for showing each feedback message, until the client fails to
+            show one.
     """
     action, type_name = bench.reference.only("action_client")
     start(bench, inputs)
@@ -169,7 +174,7 @@ def meets_late_server(
 def meets_server(
     bench: Bench, begin_it: Callable[[], object], *, accept: bool = True, prepared: bool = False
 ) -> ActionCounterpart:
-    """Start the subject, and start its server as soon as the judge has discovered the subject.
+    """Start the subject, and its server once the judge has discovered the subject. Return the server.
 
     If the server existed earlier, a client might discover it first. Then chance would decide whether the goal of a
     client that ends at once reaches the judge.
@@ -188,7 +193,7 @@ def meets_server(
 
 
 def aborted(bench: Bench, first: Part) -> None:
-    """Make one run with an aborted goal. ``first`` is the run with the late server."""
+    """Make one run in which the goal is aborted. ``first`` is the run with the late server."""
     if bench.before and not aborted_as_seen(bench.before) and bench.keep(ABORTED):
         return
     inputs = begin(bench, ABORTED)
@@ -202,7 +207,7 @@ def aborted(bench: Bench, first: Part) -> None:
 
 
 def needs_no_search(bench: Bench, first: Part) -> bool:
-    """Return True if the server may exist before the subject, as for a notebook's function that waits for answers."""
+    """Return True if the server may exist before the subject: for a function that has waited for answers before."""
     return bench.in_a_cell and bool(first.of("result_request"))
 
 
@@ -214,35 +219,35 @@ def works_on_a_goal(
     Args:
         bench: The bench of the scenario.
         server: The judge's server.
-        status: How to end the goal, such as ``"succeeded"``.
+        status: The status with which the goal ends, such as ``"succeeded"``.
         feedbacks: The number of feedback messages to send first.
-        shown_within: Time limit in seconds for showing each message, until the client fails to show one.
+        shown_within: The time limit in seconds for showing each message, until the client fails to show one.
     """
-    # The numbers are so large that a subject cannot print all possible ones.
+    # The numbers come from such a large range that a subject cannot print all of them.
     numbers = bench.random.sample(range(10**8, 10**9), feedbacks + 2)
     newest = bench.random.sample(range(10**8, 10**9), feedbacks)
     length = max(RESULT, bench.seen().inputs["order"] + 1)
     result = bench.random.sample(range(10**9, 2 * 10**9), length - 1)
-    # One number occurs twice, to catch clients that leave out repeated numbers. It is neither the first nor the last
-    # one: if those are missing, this is noticed in any case.
+    # One number occurs twice, to detect clients that drop repeated numbers. It is in the middle, because a missing
+    # number at either end would be noticed anyway.
     result.insert(-1, result[1])
     done = await_goal(bench, server, GOAL_LIMIT)
     if done:
-        # The first feedback must not come together with the answer to the goal. Otherwise chance would decide which of
-        # the two is received by a client that takes one event and ends. A client that goes on will next request the
-        # result.
+        # Wait before the first feedback. If it came together with the answer to the goal, chance would decide which of
+        # the two a client receives that handles one event and ends. A client that goes on next requests the result.
         server.await_result_request(SHOWN_WITHIN[bench.pace])
         action, _ = bench.reference.only("action_client")
         for count, last in enumerate(newest, start=2):
-            # The last number of each message is in no other message, so leaving out a message is always noticed.
+            # The last number of each message occurs in no other message, so each message that a client does not show is
+            # noticed.
             server.send_feedback(partial_sequence=[*numbers[:count], last])
             left = feedbacks + 1 - count
             if 0 < left < AT_PACE:
                 bench.pass_time(LAB_PACE, "action_client", action)
             elif not bench.wait_until(lambda seen: not unshown_feedback(seen.main), shown_within):
                 shown_within = HASTE[bench.pace]
-                # The client's queue holds ten messages, so wait until a client on a busy machine has taken those that
-                # are in it.
+                # The client's queue holds only ten messages. So wait until a client on a busy machine has processed
+                # those in the queue.
                 bench.settle()
         server.await_result_request(END_LIMIT[bench.pace])
         hold_back(bench, "result_request")
@@ -257,7 +262,10 @@ def works_on_a_goal(
 
 
 def is_done(evidence: Evidence) -> bool:
-    """Return True if the subject has ended, or, as a program may, has reported part of the result and still spins."""
+    """Return True if the subject has ended, or has printed something since its result was sent.
+
+    A program may report part of the result and then keep spinning.
+    """
     part = evidence.main
     result = part.first("result")
     return part.ending is not None or (result is not None and bool(part.said(after=result)))
@@ -285,7 +293,7 @@ def refuse(
     prepared: bool = False,
     may_stay: bool = False,
 ) -> None:
-    """Refuse the goal of the subject, and end the part.
+    """Refuse the subject's goal, and end the part.
 
     Args:
         bench: The bench of the scenario.
@@ -329,11 +337,11 @@ _WHAT_IS_SAID = (
     goals.ABORT_NOT_REPORTED,
     WAIT.silent_end(),
 )
-"""Criteria about what a client requests and reports. They are certain if the client ended by itself in every part."""
+"""Mistakes in what a client requests and reports. They are certain if the client ended by itself in every part."""
 
 
 def _not_by_refusal(mistake: Mistake) -> Mistake:
-    """Return the mistake, except for an error that only a refused goal causes; that is checked later."""
+    """Return a mistake that is not recognized if only a refused goal causes its error, which is checked later."""
 
     def recognise(evidence: Evidence) -> Advice | None:
         return None if goals.crashed_by_refusal(evidence) else mistake.recognise(evidence)
@@ -342,12 +350,13 @@ def _not_by_refusal(mistake: Mistake) -> Mistake:
 
 
 class ActionClient(SeenAsItIs):
-    """The recipe for a client of an action. Its views are the evidence itself, because several runs have a goal.
+    """The recipe for an action client. Both of its views are the whole evidence, because several runs have a goal.
 
     Args:
-        scenario: Drives the bench. The action's name and type are ``bench.reference.only("action_client")``.
-        ladder: The common mistakes, most specific first. They follow those that prevent a right goal, and precede
-            those that are checked only if nothing more specific fits.
+        scenario: The function that runs all parts of the exercise on a bench. The action's name and type are
+            ``bench.reference.only("action_client")``.
+        ladder: The mistakes of the exercise, most specific first. They are checked after mistakes that prevent any
+            right goal, and before mistakes that are checked only if nothing more specific is recognized.
     """
 
     roles = ("action_client",)
@@ -384,7 +393,8 @@ def sends_goals() -> ActionClient:
         *(replace(hang, certain=True) for hang in HANGS),
         common.AWAITS_IN_VAIN,
         common.went_deaf("action_client"),
-        # Never certain: a client that got no processor time may not have read its feedback when the result comes.
+        # This mistake is never certain: a client on a busy machine may not have read its feedback when the result
+        # comes.
         goals.FEEDBACK_NOT_SHOWN,
         *map(common.only_if_ended, _WHAT_IS_SAID),
         goals.STAYS_AFTER_REFUSAL,

@@ -1,4 +1,4 @@
-"""A recipe for a client that has a service add numbers. For its runs see :mod:`.service_runs`."""
+"""A recipe for a client that lets a service add numbers. For its runs see :mod:`.service_runs`."""
 
 from __future__ import annotations
 
@@ -36,19 +36,20 @@ if TYPE_CHECKING:
     from autograder.kit.recipes.service_runs import Run
 
 _SUM_NOT_SAID = Advice(
-    "The calls are right, but the sum is never said.",
-    "Log or print the field sum of the last answer that the service gave. In a notebook, return it, too.",
+    "The calls are right, but your program never prints the sum.",
+    "Log or print the field `sum` of the service's last answer. In a notebook, also return the sum.",
 )
 
 
 class Calls:
-    """The recipe for a client that has a service add numbers.
+    """The recipe for a client that lets a service add numbers.
 
     Args:
         calls: The number of calls of a client that has finished its work.
-        runs: Draws the runs with a service: the late one, the one with hidden changes, the one with large numbers.
-        kinds: Each draws numbers of one kind; the run without a service uses one of these kinds, too.
-        wanted: The right calls, in words.
+        runs: Draws the runs with a service: one with a late service, one with hidden numbers added, and one with large
+            numbers.
+        kinds: Functions that each draw numbers of one kind. One of them is chosen for the run without a service.
+        wanted: The right calls in words, for the card.
         right: Returns the numbers of each right call of a run, if the run has the right number of calls.
     """
 
@@ -67,26 +68,26 @@ class Calls:
         self._wanted, self._right = wanted, right
 
     def scenario(self, bench: Bench) -> None:
-        """Four runs: a late service, one with hidden changes, large numbers, and no service."""
+        """Make four runs: a late service, hidden numbers in the answers, large numbers, and no service."""
         runs = self._runs(bench.random)
         nobody = bench.random.choice(self._kinds)(bench.random)
         scenario(bench, runs, nobody, calls=self._calls)
 
     def seen(self, evidence: Evidence) -> Client:
-        """The subject, as it was seen."""
+        """Return the subject's client, as the judge saw it."""
         return Client(evidence)
 
     def expected(self, evidence: Evidence) -> Client:
-        """The reference solution, as it was recorded."""
+        """Return the client of the reference solution, as it was recorded."""
         return Client(evidence.reference)
 
     def is_right(self, part: Part) -> bool:
-        """True if a run has the right number of calls, each with the right numbers."""
+        """Return True if a run has the right number of calls, each with the right numbers."""
         made = requests(part)
         return len(made) == self._calls and list(map(pair, made)) == list(map(sorted, self._right(part)))
 
     def calls_right(self, evidence: Evidence) -> Finding:
-        """Each run has the right calls."""
+        """Decide whether each run has the right calls."""
         seen, wanted = self.seen(evidence), self._wanted
         wrong = next((part for part in seen.served if not self.is_right(part)), None)
         if wrong is None:
@@ -99,34 +100,37 @@ class Calls:
         return Finding(False, wanted, given + (", then ".join(made) or "no call"))
 
     def waits(self, evidence: Evidence) -> Finding:
-        """Decide whether the client calls even if the service comes late; another criterion judges the result."""
+        """Decide whether the client calls even if the service comes late. Another criterion judges the result."""
         late = self.seen(evidence).late
         called = bool(requests(late))
         return Finding(called, "waits, then calls", "it did" if called else how_it_went(late))
 
     def _too_many_calls(self, evidence: Evidence) -> int:
-        """Return the number of calls of a run with more than the reference solution makes."""
+        """Return the number of calls in a run with more calls than the reference solution makes; 0 if there is none."""
         counts = (len(requests(part)) for part in self.seen(evidence).served)
         return next((count for count in counts if count > self.expected(evidence).calls), 0)
 
     def _wrong_numbers(self, evidence: Evidence) -> str:
-        """Return those calls with wrong numbers, up to the reference's number of calls."""
+        """Return in words the calls of a run with wrong numbers; empty if there is none.
+
+        Return an empty text also if a run has too few or too many calls.
+        """
         found = self.calls_right(evidence)
         as_many = self.seen(evidence).called(self.expected(evidence).calls)
         return found.seen if as_many and not found.passed else ""
 
     def _no_call(self, evidence: Evidence) -> bool:
-        """True if the subject ends by itself and has a client, but makes no call."""
+        """Return True if the subject has a client and ends by itself, but makes no call."""
         seen = self.seen(evidence)
         return seen.had_client and any(part.ending and not requests(part) for part in seen.served)
 
     def _unreported(self, evidence: Evidence) -> Part | None:
-        """Return a run with the right calls, whose last answer is not reported."""
+        """Return a run with the right calls whose last answer is not reported; None if there is none."""
         answered = (part for part in self.seen(evidence).served if part.of("response"))
         return next((part for part in answered if self.is_right(part) and not reports(part)), None)
 
     def _another_sum(self, evidence: Evidence) -> tuple[int, str] | None:
-        """Return the last answer of that run, and the last reported line that has a different number."""
+        """Return the last answer of an unreported run, and the last line with a different number; None if none."""
         part = self._unreported(evidence)
         if part is None:
             return None
@@ -140,12 +144,13 @@ class Calls:
         return (braces_left(part) or _SUM_NOT_SAID) if part else None
 
     def _about_the_sum(self) -> Iterator[Mistake]:
-        """Yield the mistakes of a client whose calls are right."""
+        """Yield the mistakes of a client with right calls that does not report the sum."""
         another = mistake(
             "wrong_sum_reported",
             self._another_sum,
             "The service's last answer was {0[0]}, but your program said “{0[1]}”.",
-            "Report the field sum of the last answer as it is: all its digits, and no sum of your own.",
+            "Report the field `sum` of the last answer unchanged, with all its digits. Do not report a sum that you "
+            "computed yourself.",
         )
         for one in (another, Mistake("sum_not_reported", self._sum_not_said)):
             yield common.only_if_ended(one)
@@ -153,7 +158,7 @@ class Calls:
 
     @property
     def ladder(self) -> tuple[Mistake, ...]:
-        """The common mistakes, the most informative first."""
+        """The common mistakes, most specific first."""
         return (
             WAIT.the_wrong_way_round(),
             *CRASHES,
@@ -170,17 +175,18 @@ class Calls:
             mistake(
                 "too_many_calls",
                 self._too_many_calls,
-                "Your client called the service {} times, which is more than the task asks for.",
-                "Call once for each sum that you need, and wait for its answer.",
+                "Your client called the service {} times, but the task asks for fewer calls.",
+                "Call the service once for each sum that you need, and wait for the answer.",
                 certain=True,
             ),
             OWN,
             mistake(
                 "wrong_arguments",
                 self._wrong_numbers,
-                f"The numbers of a call are wrong ({{}}); the task asks for {self._wanted}.",
-                "Use the numbers that your code was given, with their minus signs, and none of your own: on a command "
-                "line, sys.argv[0] is the program itself. If you use one request object twice, fill it anew.",
+                f"A call has wrong numbers ({{}}); the task asks for {self._wanted}.",
+                "Use the numbers that your code was given, with their minus signs. On a command line, they begin "
+                "with sys.argv[1]; sys.argv[0] is the program's name. If you use the same request object twice, set "
+                "both fields again.",
                 certain=True,
             ),
             service_client_mistakes.ZERO_TAKEN_FOR_FAILURE,
@@ -192,8 +198,9 @@ class Calls:
                 "no_call",
                 self._no_call,
                 "Your client never called the service.",
-                "Make a request, fill a and b, and send it with call_async. Lines below a raise or a return, and "
-                "indented like it, are never reached. What you add up yourself is not the answer of the server.",
+                "Make a request, set its fields a and b, and send it with call_async. Check whether a return or "
+                "raise ends your function before the call. A sum that you compute yourself is not the server's "
+                "answer.",
             ),
             *self._about_the_sum(),
             WAIT.silent_end(certain=True),

@@ -1,18 +1,18 @@
 """The runs of a service client: the judge is the server, and behaves differently in each run.
 
-In one run the service comes late; in one it adds a hidden number to each sum, so that the client's report shows
-whether it used the answer; in one the numbers fill 64 bits; and in one there is no service. The answers always
-include a 0, which is easily mistaken for no answer, and negative numbers. In two runs one answer is held back for a
-while.
+In one run, the service comes late. In another, it adds a hidden number to each sum, so that the client's report shows
+whether the client used the answer. In a third, the numbers need 64 bits. In a fourth, there is no service. The answers
+always include a 0, which is easily mistaken for a missing answer, and negative numbers. In two runs, one answer is held
+back for a while.
 
-The service is first only a little late. If the run without a service does not show that the client would have waited
-for longer, the first run is made again with a service that comes as late as the task allows.
+At first, the service is only a little late. If the run without a service does not show that the client would have
+waited longer, the first run is made again with a service that comes as late as the task allows.
 
-The judge repeats a run only while that can still save points, and serves a client of another type of service in one
-run only.
+The judge repeats a run only while a repetition can still save points. A client of another type of service is served in
+one run only.
 
-The subject cannot tell in advance which run has no service: after the run with the late service, the others come in
-random order, with the same kinds of numbers and the same time limits.
+A subject cannot predict which run has no service: after the run with the late service, the others come in random order,
+with the same kinds of numbers and the same time limits.
 """
 
 from __future__ import annotations
@@ -57,9 +57,12 @@ if TYPE_CHECKING:
 CALL_LIMIT = 15.0
 """Time limit in seconds of wall time for a client to finish once its service exists."""
 AFTERMATH = 1.0
-"""Seconds for which a client that has reported its sum may continue, so that the judge sees what else it does."""
+"""The number of seconds for which a client may go on after it has reported its sum, so that the judge sees what else it
+does.
+"""
 SAYS_MORE = {Pace.FAST: 2.0, Pace.REAL_TIME: 5.0}
-"""Time limit in seconds for the sum, once a client has said something else about its last answer."""
+"""The time limit in seconds for reporting the sum, after the client has printed something else about its last answer.
+"""
 
 
 @dataclass(frozen=True)
@@ -69,8 +72,8 @@ class Run:
     Attributes:
         name: The part's name.
         numbers: The numbers that the subject must add.
-        answers: The service's answers to successive calls; to any further call it answers the sum.
-        held: The number, from 1, of the answer that is held back; 0 for none.
+        answers: The answers to the first calls, in order. Any later call gets the right sum.
+        held: The number of the answer, counted from 1, that is held back; 0 for none.
     """
 
     name: str
@@ -80,12 +83,12 @@ class Run:
 
 
 def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls: int) -> None:
-    """All runs with a service, and one without.
+    """Make all runs with a service, and one without.
 
     Args:
         bench: The bench of the scenario.
         runs: The runs with a service; the one with the late service comes first.
-        nobody: The numbers in the run without a service.
+        nobody: The numbers for the run without a service.
         calls: The number of calls of a subject that has finished its work.
     """
     late, *others = runs
@@ -95,7 +98,7 @@ def scenario(bench: Bench, runs: Sequence[Run], nobody: Sequence[int], *, calls:
     first = bench.seen()
     order: list[Run | None] = [*others, None]
     bench.random.shuffle(order)
-    # A client of another type of service meets no service of the judge's.
+    # A client of another type of service never reaches the judge's service.
     hangs = looks_for_it(bench, first, "client") is False
     served, impatient = [first], False
     for run in order:
@@ -137,28 +140,29 @@ def called(bench: Bench, run: Run, calls: int, earlier: Sequence[Part]) -> bool:
         True if the subject finished its work.
     """
     first = earlier[0]
-    # A client in the kernel that has reported an answer waits for answers, so its calls reach a service that existed
-    # before it, too, and it need not look for the service a second time.
+    # A notebook's client that has reported an answer is known to wait for answers. So its calls also reach a service
+    # that exists before the client, which then finds the service at once.
     prepared = bench.in_a_cell and reports(first)
-    # A client that kept an answer to itself has lost the points for the sum: nothing waits for a sum any more.
+    # A client that did not report an answer has lost the points for the sum, so the judge need not wait for a sum any
+    # more.
     silent = [part for part in earlier if is_silent(part, calls)]
     says_more = AFTERMATH if silent else SAYS_MORE[bench.pace]
     meet = partial(meets_service, bench, run, calls, prepared=prepared, says_more=says_more)
     done = meets_present(bench, meet, "request", known=bool(requests(first)), wanted=calls)
-    # If it also called too seldom, it has lost the points for its calls as well.
+    # A client that also made too few calls has lost the points for its calls, too.
     lost = any(len(requests(part)) < calls for part in silent)
     return _with_quick_answers(bench, run, calls, done, 0 if lost else 1 if silent else TRIES)
 
 
 def is_silent(part: Part, calls: int) -> bool:
-    """Return True if a client reported neither its last answer nor that to its call number ``calls`` (from 1)."""
+    """Return True if a client reported neither its last answer nor its answer number ``calls`` (from 1)."""
     return not reports(part) and not has_reported(part, calls)
 
 
 def _with_quick_answers(bench: Bench, run: Run, calls: int, done: bool, tries: int = TRIES) -> bool:
-    """End a run. If a patient client has missed an answer that was held back, first make the run again.
+    """End a run. If a patient client has missed an answer that was held back, first repeat the run without that delay.
 
-    In the fast look it is not made again, because the look in real time follows.
+    In the fast look the run is not repeated, because the look in real time follows.
     """
 
     def missed_an_answer(seen: Part) -> bool:
@@ -180,26 +184,27 @@ def meets_service(
     says_more: float | None = None,
     held_for: float | None = None,
 ) -> bool:
-    """Start the subject and serve it. Return True if the subject finished its work.
+    """Start the subject, and answer its calls. Return True if the subject finished its work.
 
     Args:
         bench: The bench of the scenario.
         run: The requests and answers.
         calls: The number of calls of a subject that has finished its work.
-        lateness: Seconds by which the service comes after its client.
-        prepared: True if the service comes before its client.
-        says_more: Time limit in seconds for the sum, once the client has said something else about its last answer; by
-            default :data:`SAYS_MORE`.
-        held_for: Seconds for which the answer is held back, from its request on. By default, a first answer is held
-            back as long as allowed even if a student waits, because only a long wait shows a client's limit.
+        lateness: The number of seconds by which the service starts after its client.
+        prepared: True if the service starts before its client.
+        says_more: The time limit in seconds for reporting the sum, after the client has printed something else about
+            its last answer; by default :data:`SAYS_MORE`.
+        held_for: The number of seconds from the request to its answer. By default, a first answer is held back as long
+            as allowed even if a student waits, because only a long delay shows whether a client's time limit is long
+            enough.
     """
     service, type_name = bench.reference.only("client")
     answer = answering(run.answers)
     server = bench.serve(service, type_name, answer, hold=run.held) if prepared else None
     bench.start(*run.numbers, patience_sec=bench.seen().inputs[PATIENCE])
     # The service starts when the judge has discovered the client. If it existed before, the client might discover it
-    # first, and chance would decide whether the call of a client that ends at once reaches the judge.
-    # A subject with another client waits for something else. One without a client may only be slow to show it.
+    # first. Then chance would decide whether the call of a client that ends at once reaches the judge. A subject with
+    # another client waits for something else. A subject without a client may only be slow to make it.
     if not bench.await_endpoint("client", service) and (
         bench.await_end(0.0) or bench.seen().endpoints("client")
     ):
@@ -210,8 +215,8 @@ def meets_service(
     if run.held and bench.wait_until(
         lambda seen: len(requests(seen.main)) >= run.held, CALL_LIMIT, quiet=HANGS_AFTER
     ):
-        # Meanwhile any node on the graph may send requests to the client's node, so an event is not necessarily the
-        # answer.
+        # While the answer is held back, other nodes may send requests to the client's node. So the first event that the
+        # client gets need not be the answer.
         bench.settle()
         hold_back(
             bench, "request", run.held, ANSWERS_LATE if run.held == 1 and held_for is None else held_for
@@ -227,15 +232,15 @@ def meets_service(
 
 
 def is_done(evidence: Evidence, calls: int) -> bool:
-    """True if the subject has ended or, as a program may, has reported the sum and keeps spinning.
+    """Return True if the subject has ended, or has reported the sum, as a program that spins on may.
 
-    A subject that has finished stays finished, even if one more call is on its way.
+    A subject that has finished counts as finished even if one more call is on its way.
     """
     return evidence.main.ending is not None or has_reported(evidence.main, calls)
 
 
 def has_spoken(evidence: Evidence, calls: int) -> bool:
-    """True if the subject has finished, or has at least said something about its last answer."""
+    """Return True if the subject has finished, or has printed something after its last answer."""
     enough = evidence.main.of("response")[calls - 1 :]
     return is_done(evidence, calls) or (bool(enough) and bool(new_words(evidence.main, enough[0])))
 
@@ -254,16 +259,17 @@ def unserved(bench: Bench, numbers: Sequence[int]) -> None:
 
 
 def hidden(random: Random) -> int:
-    """Return a number from a range that is so large that a program cannot print all of its numbers."""
+    """Return a random number from such a large range that a program cannot print all of its numbers."""
     return random.randint(10**9, 10**12)
 
 
 def answering(scripted: Sequence[int]) -> Callable[[Mapping[str, Any]], Mapping[str, Any]]:
-    """Return a service that gives these answers in order, and after them the sum of the two numbers."""
+    """Return a function that answers requests: first with the given answers, then with the right sum."""
     left = list(scripted)
     return lambda request: {"sum": left.pop(0) if left else _as_int64(request["a"] + request["b"])}
 
 
 def _as_int64(number: int) -> int:
-    # A client that adds in another order may exceed the range; C++ servers wrap around, rclpy's would crash.
+    # A client that adds the numbers in another order may exceed 64 bits. C++ servers then wrap around; rclpy's would
+    # crash.
     return (number + 2**63) % 2**64 - 2**63
