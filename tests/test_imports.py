@@ -137,7 +137,7 @@ def test_a_part_of_the_notebook_imports_only_what_is_below(part: str) -> None:
 def test_what_was_handed_in_is_parsed_by_a_desk_alone() -> None:
     of_the_class = {
         "rebuilding/named_cells.py",
-        "collecting/deciding/handed_out.py",
+        "collecting/deciding/has_work.py",
     }  # its own sources, and what it releases
     users = {
         path.relative_to(PACKAGE / "grading").as_posix()

@@ -8,7 +8,7 @@ from __future__ import annotations
 import autograder.notebook.cells.program_files  # noqa: F401  (defines the cell magic %%program)
 from autograder.notebook.checking import judge_link
 from autograder.notebook.checking.check import check
-from autograder.notebook.checking.watched_cells import unwatch, watch
+from autograder.notebook.checking.watch_mode import unwatch, watch
 from autograder.notebook.nodes import ros_session
 from autograder.notebook.nodes.background import spin_in_background, spinning
 from autograder.notebook.nodes.ros_session import RosSession

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from autograder.notebook.observing.graph_layout import Arrow, Point, lay_out
 from autograder.notebook.observing.live_picture import LivePicture, as_image, svg_page
 from autograder.notebook.observing.ros_graph import ChannelKind, GraphChannel, RosGraph, look, read_graph
-from autograder.notebook.observing.topic_traffic import TopicTraffic
+from autograder.notebook.observing.topic_rates import TopicTraffic
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

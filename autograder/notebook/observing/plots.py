@@ -14,7 +14,7 @@ import re2
 
 from autograder.cards.axis import round_step
 from autograder.notebook.observing.live_picture import LivePicture, as_image, svg_page
-from autograder.notebook.observing.topic_traffic import ANY, message_class
+from autograder.notebook.observing.topic_rates import ANY, message_class
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

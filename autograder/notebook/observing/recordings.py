@@ -19,7 +19,7 @@ from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPo
 from autograder.mcap_files import ROS_2, MessageFile, definition
 from autograder.notebook.observing.live_picture import GONE
 from autograder.notebook.observing.ros_graph import hidden_node
-from autograder.notebook.observing.topic_traffic import message_class
+from autograder.notebook.observing.topic_rates import message_class
 
 if TYPE_CHECKING:
     import os

@@ -13,7 +13,7 @@ from sensor_msgs.msg import LaserScan
 from std_srvs.srv import SetBool, Trigger
 
 from autograder.notebook.robot.motion import ROOM, START, STILL, TICK, Pose, Velocity, move
-from autograder.notebook.robot.walking import Walking
+from autograder.notebook.robot.walk_to_action import Walking
 
 if TYPE_CHECKING:
     from rclpy.time import Time

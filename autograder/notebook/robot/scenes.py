@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from std_msgs.msg import String
 
 from autograder.notebook.robot.motion import FASTEST, FASTEST_TURN, STILL, TICK, Velocity, towards
-from autograder.notebook.robot.walking import NEAR_ENOUGH
+from autograder.notebook.robot.walk_to_action import NEAR_ENOUGH
 
 if TYPE_CHECKING:
     from rclpy.node import Node

@@ -18,7 +18,7 @@ from small_robot_interfaces.action import WalkTo
 from std_srvs.srv import SetBool, Trigger
 
 from autograder.notebook.nodes.background import spin_in_background
-from autograder.notebook.robot import walking
+from autograder.notebook.robot import walk_to_action
 from autograder.notebook.robot.motion import START
 from autograder.notebook.robot.node import RAYS, RobotNode
 
@@ -80,7 +80,7 @@ def robot(ros: None) -> RobotNode:
 @pytest.fixture
 def endless(monkeypatch: pytest.MonkeyPatch) -> None:
     """No walk arrives, however long the machine takes for the rest of the test."""
-    monkeypatch.setattr(walking, "NEAR_ENOUGH", -1.0)
+    monkeypatch.setattr(walk_to_action, "NEAR_ENOUGH", -1.0)
 
 
 @pytest.fixture

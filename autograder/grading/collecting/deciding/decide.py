@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import re2
 
 from autograder.grading.classes.class_directory import in_zone
-from autograder.grading.collecting.deciding.handed_out import has_work
+from autograder.grading.collecting.deciding.has_work import has_work
 from autograder.grading.collecting.line import Line, Place, State
 from autograder.grading.rebuilding.desk import why_unreadable
 

@@ -141,7 +141,7 @@ window._JUPYTERLAB["ros2-course-buttons"] = (() => {
         if (!found || !kernel) return say("There is no check below this cell, or no kernel.");
         if (!NAME.test(found.subject)) return say("What is checked here is a file: it is checked when you run its check.");
         const call = `switch(${JSON.stringify(found.exercise)}, ${found.subject})`;
-        const said = await ask(kernel, "autograder.notebook.checking.watched_cells", call);
+        const said = await ask(kernel, "autograder.notebook.checking.watch_mode", call);
         say(said ?? `Run the cell with ${found.subject} first.`);
       }
 

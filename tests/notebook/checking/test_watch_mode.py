@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from autograder.messages.checks import SOCKET_VARIABLE
-from autograder.notebook.checking import watched_cells
+from autograder.notebook.checking import watch_mode
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -20,7 +20,7 @@ LIMIT = 180.0
 JUDGE = """
 import threading
 from autograder.notebook import unwatch, watch
-from autograder.notebook.checking import card_display, watched_cells
+from autograder.notebook.checking import card_display, watch_mode
 from autograder.notebook.checking.judge_link import JudgeUnreachable
 from autograder.verdict import CriterionResult, Diagnosis, State, Verdict
 
@@ -43,7 +43,7 @@ def converse(link, exercise, subject, place):
     text = CriterionResult("text", "Says the right string", 10.0, score == 10, "a", "b")
     return Verdict(exercise, "The talker", state, score, 10.0, (text,), Diagnosis("text", "It says b.", "Say a."))
 
-watched_cells.JudgeLink, watched_cells.converse = Link, converse
+watch_mode.JudgeLink, watch_mode.converse = Link, converse
 """
 TALKER = "class Talker:\n    text = {!r}"
 
@@ -167,13 +167,13 @@ def test_nothing_is_watched_while_a_class_is_graded_or_validated(notebook: Any, 
 
 def test_only_what_has_a_cell_can_be_watched() -> None:
     with pytest.raises(TypeError, match=r"watch\('lab', …\) takes your class or function"):
-        watched_cells.watch("lab", "ros2_ws")  # type: ignore[arg-type]
+        watch_mode.watch("lab", "ros2_ws")  # type: ignore[arg-type]
 
 
 CHECKED = """
 from types import SimpleNamespace
 scores[:] = [5.0, 10.0]
-watched_cells.watch_after(converse(None, "lab", Talker, SimpleNamespace(doing=str)), Talker)
+watch_mode.watch_after(converse(None, "lab", Talker, SimpleNamespace(doing=str)), Talker)
 """
 
 
@@ -181,18 +181,18 @@ def test_watching_begins_by_itself_after_a_check_that_showed_something_to_mend_u
     notebook: Any,
 ) -> None:
     found = Watched(notebook)
-    found.run(JUDGE + "watched_cells._ended_by_the_student = False", "judge")
+    found.run(JUDGE + "watch_mode._ended_by_the_student = False", "judge")
     found.run(TALKER.format("one"), "talker")
     found.run(CHECKED, "check")
     found.run(TALKER.format("two"), "talker")
     assert "10 of 10 points" in found.wait_for("10 of 10 points")
     found.run(
-        "assert watched_cells.switch('lab', Talker) == 'Talker is no longer checked automatically.'", "button"
+        "assert watch_mode.switch('lab', Talker) == 'Talker is no longer checked automatically.'", "button"
     )
     found.run(CHECKED, "check")
     found.run(TALKER.format("three"), "talker")
     assert len(found.cards) == 1, "the student has ended it"
-    found.run("assert 'whenever its cell is run' in watched_cells.switch('lab', Talker)", "button")
+    found.run("assert 'whenever its cell is run' in watch_mode.switch('lab', Talker)", "button")
     found.run(TALKER.format("four"), "talker")
     while sum("10 of 10 points" in shown[-1] for shown in found.cards.values()) < 2:
         found._hear("")  # to its end: a check that goes on would take the next test's score
@@ -231,8 +231,8 @@ def test_what_a_check_by_hand_has_found_is_not_looked_for_again(watched: Watched
     by_hand = """
 patient.clear()
 scores[:] = [7.0]
-watched_cells.watch_after(converse(None, "lab", Talker, SimpleNamespace(doing=str)), Talker)
+watch_mode.watch_after(converse(None, "lab", Talker, SimpleNamespace(doing=str)), Talker)
 """
     watched.run("from types import SimpleNamespace" + by_hand, "check")
     assert "7 of 10 points" in watched.wait_for("7 of 10 points")
-    watched.run("assert watched_cells._watches._thread is None", "other")
+    watched.run("assert watch_mode._watches._thread is None", "other")
