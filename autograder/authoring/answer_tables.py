@@ -107,7 +107,7 @@ class Listed:
 
     @property
     def base(self) -> Path | None:
-        """The path of the right answer that this answer edits; None if it is stored in a file, or is a workspace."""
+        """The path of the right answer from which an edit makes this answer; None if no edit makes it."""
         return self.file.parents[1] / KINDS[0] / self.entry.base if self.entry.base else None
 
     def text(self) -> str:

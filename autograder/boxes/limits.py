@@ -159,15 +159,15 @@ def open_files_of_a_box(wanted: int) -> int:
 
 
 def until(deadline: float) -> Left:
-    """Return a function for the seconds left until a moment on the monotonic clock."""
+    """Return a function that returns the seconds left until a moment on the monotonic clock."""
     return lambda: deadline - time.monotonic()
 
 
 def wall_time(seconds: float) -> Left:
-    """Return a function for the seconds left of this much wall time, counted from now."""
+    """Start a time limit of this many seconds of wall time. Return a function that returns the seconds left."""
     return until(time.monotonic() + seconds)
 
 
 def first_of(*lefts: Left) -> Left:
-    """Return a function for the seconds left until the first of several time limits ends."""
+    """Return a function that returns the seconds left until the first of several time limits ends."""
     return lambda: min(left() for left in lefts)

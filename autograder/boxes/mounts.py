@@ -156,10 +156,10 @@ def etc_files() -> Mapping[str, bytes]:
 
 @functools.cache
 def _proc_covers() -> tuple[str, ...]:
-    """Return the arguments that hide those files in ``/proc`` that affect the whole machine and are writable.
+    """Return bubblewrap's arguments that protect the writable files in ``/proc``, which affect the whole machine.
 
-    If the grader is root, the kernel treats the owner of a box's files as root. In a new ``/proc``, root may write to
-    settings of the machine (``/proc/sys``), even without any capability.
+    These arguments are needed if the grader is root: then the kernel treats the user of a box as root, too, and root
+    may write to the settings in ``/proc/sys`` even without any capability.
     """
     words: list[str] = []
     for path in sorted(Path("/proc").iterdir()):

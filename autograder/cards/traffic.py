@@ -50,7 +50,7 @@ class TrafficPart:
 
     @property
     def left_out(self) -> int:
-        """The number of moments that were left out."""
+        """The number of moments that the picture does not show, because the part has too many."""
         return sum(self.gaps.values())
 
     @property
@@ -80,7 +80,7 @@ class TrafficPart:
 
     @property
     def is_worth_a_picture(self) -> bool:
-        """True if there was any traffic on the graph or in the log. The card shows the end of a program elsewhere."""
+        """True if there was any traffic on the graph or in the log. The end of a program alone needs no picture."""
         return any(moment.lane != OWN_LANE for moment in self.moments)
 
 

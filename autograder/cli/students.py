@@ -64,7 +64,8 @@ def check(
     """Run a command as the subject of an exercise and print the verdict."""
     from autograder import course, exercises
 
-    # The folder of another person's program may contain a changed course, which must not judge the program.
+    # A course in this folder has its own code that judges. With --box the program may be another person's, who may have
+    # changed that code, so the course is not used then.
     if not boxed:
         course.use_the_one_around(Path.cwd())
     if exercise is None:

@@ -1,7 +1,7 @@
 """``python -m autograder.judge --socket PATH``: run the judge for one notebook.
 
 ``--attached LISTENER ORDERS`` instead runs a judge that a grader controls: it runs only the checks that the grader
-orders. Both arguments are file descriptors of inherited sockets.
+orders. LISTENER and ORDERS are file descriptors of inherited sockets.
 """
 
 from __future__ import annotations

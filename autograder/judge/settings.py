@@ -1,8 +1,8 @@
 """Set the environment variables that a judge's or subject's process needs before it imports ROS.
 
 A participant of Jazzy's Fast DDS announces itself every 3 s (measured). So an older participant often discovers a new
-process only seconds after the process has started. With the profile next to this file, the judge's participants
-announce themselves every 100 ms. Subjects do not need the profile.
+process only seconds after the process has started. Therefore the judge's participants use the profile next to this
+file, with which they announce themselves every 100 ms. Subjects do not need the profile.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ def ros_environment() -> dict[str, str]:
 def boxed_ros_environment() -> dict[str, str]:
     """Return the environment variables for judge and subject in two sandboxes that have only a network in common.
 
-    The discovery range is not limited to this machine here. If it were, rmw_fastrtps would ignore
+    The discovery range is not limited to this machine here, because rmw_fastrtps would then ignore
     ``FASTDDS_BUILTIN_TRANSPORTS`` and use shared memory (participant.cpp): judge and subject would discover each other,
-    but no message would arrive. No other program is on such a network anyway.
+    but no message would arrive. A limit is not needed, because no other program is on such a network.
     """
     return {**ros_environment(), "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
 
@@ -75,9 +75,9 @@ def subject_environment(domain_id: int, *, boxed: bool = False) -> dict[str, str
 
 
 def provide_log_folder() -> None:
-    """Create a folder for ROS logs unless ``ROS_LOG_DIR`` names one. The new folder is removed when this process ends.
+    """Create a folder for ROS logs unless ``ROS_LOG_DIR`` names one. It is removed when this process ends.
 
-    Without a folder rclpy fails to start, with "Failed opening file" from rcl_logging_spdlog.
+    This is needed because rclpy does not start without a folder: rcl_logging_spdlog reports "Failed opening file".
     """
     if not os.environ.get(_LOG_FOLDER):
         folder, owner = HeldFolder("autograder-ros-logs-"), os.getpid()

@@ -48,7 +48,7 @@ class ActionCounterpart(Protocol):
 
 
 class Caller(Protocol):
-    """A client of the judge for one service. Its calls are numbered from 0.
+    """A client with which the judge calls one service. Its calls are numbered from 0.
 
     It records these events: ``servers`` (how many servers of this name exist), ``asked`` and ``answered``.
     """
@@ -64,7 +64,7 @@ class Caller(Protocol):
 
 
 class ActionCaller(Protocol):
-    """A client of the judge for one action. Its goals are numbered from 0.
+    """A client with which the judge sends goals to one action. Its goals are numbered from 0.
 
     It records the events ``servers``, ``goal_sent``, ``goal_answer``, ``feedback_heard``, ``cancel_sent``,
     ``cancel_answer`` and ``result_heard``. All but ``servers`` contain the number of the goal.

@@ -1,9 +1,10 @@
 """A builder for exercises: it takes a recipe, and then criteria and mistakes as decorated functions.
 
-Each function gets two views of the same type, which the recipe makes from the evidence. The first view shows the
-student's subject, the second the reference solution. There are two ways to add a mistake. :meth:`Draft.knows` takes two
-texts with placeholders: ``{seen.counters[0]}`` quotes from a view, and ``{}`` stands for the value that was found. If a
-text needs more than placeholders, :meth:`Draft.mistake` decorates a function that returns the advice.
+Each function gets two views, which the recipe makes from the evidence: one of the student's subject, and one of the
+reference solution. A view is an object whose attributes are facts about a subject, such as the messages it sent. There
+are two ways to add a mistake. :meth:`Draft.knows` takes two texts with placeholders: ``{seen.counters[0]}`` quotes from
+the subject's view, and ``{}`` stands for the value that was found. If a text needs more than placeholders,
+:meth:`Draft.mistake` decorates a function that returns the advice.
 """
 
 from __future__ import annotations
@@ -24,7 +25,9 @@ View_co = TypeVar("View_co", covariant=True)
 Judge = Callable[[View, View], Finding]
 """A function that decides a criterion, given the view of the subject and the view of the reference solution."""
 Told = Callable[[View, View], Advice | None]
-"""A function that returns the advice about a mistake, given the two views; None if the subject did not make it."""
+"""A function that returns the advice about a mistake; None if the subject did not make this mistake. Its arguments are
+the view of the subject and the view of the reference solution.
+"""
 
 
 class Recipe(Protocol[View_co]):
@@ -49,7 +52,7 @@ class Recipe(Protocol[View_co]):
 
 
 class SeenAsItIs:
-    """The base class of a recipe whose two views are both the whole evidence."""
+    """The base class of a recipe whose criteria and mistakes get the whole evidence, not an extract from it."""
 
     def seen(self, evidence: Evidence) -> Evidence:
         """Return the evidence unchanged."""
@@ -125,7 +128,7 @@ class Draft(Generic[View]):
         late: bool = False,
         before: str = "",
     ) -> None:
-        """Add a known mistake that is described in two texts. Call this for the most specific mistakes first.
+        """Add a known mistake, described in two texts. Add specific mistakes first, because the first match counts.
 
         Args:
             key: A stable name, explained in ``docs/mistakes.md``.
@@ -135,8 +138,8 @@ class Draft(Generic[View]):
             next_step: What the student should do now, with the same placeholders.
             certain: True if the evidence proves the mistake however busy the machine was; or a function of the
                 subject's view that decides this.
-            late: True if a node that hangs or is not spun would show this mistake, too. Then the mistakes of such nodes
-                are checked first.
+            late: True if a node that hangs or is not spun would show this mistake, too. In that case the mistakes of
+                such nodes are checked before this one.
             before: The key of a mistake of the recipe, just before which the new mistake is checked; by default at one
                 of the two placeholders.
         """

@@ -96,8 +96,7 @@ class Part:
     def traceback(self) -> str:
         """The last traceback that the subject printed; empty if there is none.
 
-        A traceback that appears because the judge stopped the subject does not count. The value is cached, because most
-        mistakes need it.
+        A traceback does not count if it appears only because the judge stopped the subject.
         """
         for event in reversed(self.events):
             if event.kind == "subject" and event.data.get("traceback"):
@@ -312,7 +311,7 @@ class Evidence:
         return any(e.kind == "subject" and e.name in _OF_A_NOTEBOOK for part in self for e in part.events)
 
     def ever_had(self, role: str) -> bool:
-        """Return True if the subject had an endpoint of this role in any run, now or in the first look.
+        """Return True if the subject had an endpoint of this role in any run.
 
         If this is the second look, the first look (:attr:`before`) counts, too, because an endpoint that exists only
         briefly may be missed in one of them.

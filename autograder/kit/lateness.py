@@ -234,10 +234,10 @@ def looks_for_it(bench: Bench, part: Part, role: str) -> bool | None:
 def meets_late(
     bench: Bench, meet: Callable[[float], bool], role: str, request: str, lateness: float = LATENESS
 ) -> bool:
-    """Run the subject with a late server. If no request of a patient subject arrives, run it again.
+    """Run the subject with a late server. If no request arrives although the subject is patient, run it again.
 
-    The server is then less late. Either the subject ended just before the server started, or its request was lost
-    because it ended right after sending the request.
+    The next run has a smaller delay, because the subject may have ended just before the server started. Or its request
+    was lost, because the subject ended right after it sent the request.
 
     Args:
         bench: The bench of the scenario.

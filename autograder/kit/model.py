@@ -137,8 +137,8 @@ class Bench(Protocol):
     def keep(self, name: str) -> bool:
         """In the second look, reuse a part of the first look in which the subject ended by itself. Return True if so.
 
-        Use this for parts whose result does not depend on the pace. A part in which the subject was told how long to
-        wait is always run again.
+        Use this for parts whose result does not depend on the pace. But a part is always run again if the subject was
+        told how long to wait, because then its result depends on the pace.
         """
 
     def start(self, *arguments: Any, **options: Any) -> None:
@@ -154,8 +154,8 @@ class Bench(Protocol):
     def await_endpoint(self, role: str, name: str) -> bool:
         """Wait until the subject's endpoint is on the ROS graph and matched with the judge's.
 
-        The wait gives up once the subject has ended, or is known to have made all its endpoints. A subject that is not
-        yet spun is released if it may make the endpoint only in a callback.
+        The wait ends early once the subject has ended, or is known to have made all its endpoints. If a class of a
+        notebook is not yet spun and may make the endpoint in a callback, it is spun from then on.
 
         Args:
             role: ``"publisher"``, ``"subscription"``, ``"client"``, ``"action_client"``, ``"service"`` or
@@ -257,14 +257,14 @@ class Bench(Protocol):
         """
 
     def note_whether_it_spins(self) -> None:
-        """Send the subject's nodes a request that every node answers if it is spun. Record whether a node does not.
+        """Send the subject's nodes a request that every spun node answers, and record whether a node does not answer.
 
-        If a node does not answer, also record the stacks of the subject's threads. If the subject is a command, this
-        ends it.
+        If a node does not answer, also record the stacks of the subject's threads. If the subject is a command,
+        recording its stacks ends it.
         """
 
     def note_where_it_hangs(self) -> None:
-        """Record the stacks of the subject's threads. If the subject is a command, this ends it, so do it last."""
+        """Record the stacks of the subject's threads. Call this last, because it ends a subject that is a command."""
 
     def run_time(
         self,
@@ -302,7 +302,7 @@ class Bench(Protocol):
     def wait_until(
         self, condition: Callable[[Evidence], bool], within: float, *, quiet: float | None = None
     ) -> bool:
-        """Wait until a condition on the evidence of this part holds. The wait ends early if the subject has ended.
+        """Wait until a condition on the evidence of this part holds, or until the subject has ended.
 
         Args:
             condition: Returns True when the wait is over.

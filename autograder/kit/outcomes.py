@@ -1,8 +1,8 @@
 """Outcomes that a program must report, such as a rejected goal, in a line with a word that the task names.
 
-An exercise declares its outcomes, such as ``REJECTED = Outcome("rejected")``, and its task names the same words. One
-rule holds for all of them. An outcome is reported if, in its run, the program logs, prints, raises or returns a line
-with the word, and if this line, apart from numbers, does not also appear in runs with other outcomes.
+An exercise declares its outcomes, such as ``REJECTED = Outcome("rejected")``, and its task names the same words. An
+outcome counts as reported if, in the run with this outcome, the program logs, prints, raises or returns a line with the
+word. But a line that, apart from numbers, also appears in runs with other outcomes does not count.
 
 This rule has a known gap: a program also passes if, in each run, it prints a line with all words and a random word. The
 judge cannot tell this from ``canceled: True`` in one run and ``canceled: False`` in the others, which is a right

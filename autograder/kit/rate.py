@@ -1,8 +1,8 @@
 """Measures the rate of a talker: in simulated time if the talker follows it, otherwise in real time.
 
-In simulated time, intervals are exact, so all of them count. In real time, a busy machine may delay a message. So it is
-enough if several successive messages have the right rate, and one of them may be late. The times are those at which the
-publisher says it sent the messages, unless the times of arrival contradict them.
+In simulated time, intervals are exact, so all of them count. But in real time, a busy machine may delay a message, so
+it is enough if several successive messages have the right rate, and even one of these may be late. The times are those
+at which the publisher says it sent the messages, unless the times of arrival contradict them.
 """
 
 from __future__ import annotations
@@ -78,8 +78,9 @@ def rate_of(messages: Sequence[Event], wanted: float, row: int = ROW) -> Rate | 
     Args:
         messages: The messages that the judge received.
         wanted: The reference's interval, in seconds.
-        row: In real time, the number of successive messages that must have the right rate. The first such group
-            decides.
+        row: Used only in real time, where messages may be late: the number of successive messages in a group. The
+            result is the rate of the first group with the right rate; if no group has the right rate, the rate of the
+            last group.
     """
     if times := simulated(messages):
         return _exact(times, wanted) if len(times) > 1 else None
@@ -93,8 +94,8 @@ def sent_times(messages: Sequence[Event]) -> list[float]:
     """Return the time at which each message was sent: the publisher's own time if that is plausible.
 
     The publisher's times are better, because a busy judge receives messages late and close together. But a publisher
-    could report a false time, so each time is compared with the time of arrival. Both processes read the same machine's
-    clock.
+    could report a false time, so each time is compared with the time of arrival. They can be compared, because both
+    processes read the clock of the same machine.
     """
     return [_sent(event) for event in messages]
 
@@ -155,7 +156,8 @@ def _at_a_glance(times: Sequence[float], wanted: float) -> Rate:
 def confirmed(rate: Rate, before: Rate, wanted: float) -> bool:
     """Return True if a rate in real time confirms the wrong rate that was measured in simulated time.
 
-    A thread that sleeps in real time may seem slow in simulated time, although its real rate is right.
+    A thread that sleeps in real time may seem slow in simulated time although its real rate is right. In that case the
+    result is False.
     """
     wrong = abs(before.period - wanted) > SIMULATED_TOLERANCE * wanted
     return wrong and abs(rate.period - before.period) < abs(rate.period - wanted)

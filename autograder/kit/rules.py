@@ -53,7 +53,7 @@ SENT = values("sent")
 def got_through(seen: Part, expected: Part, *kinds: str) -> bool:
     """Return True if the subject was given as many inputs as the reference solution.
 
-    If not, the subject ended or hung before it had been given all inputs.
+    If the result is False, the subject ended or hung before it had been given all inputs.
 
     Args:
         seen: The record of the subject.
@@ -98,8 +98,8 @@ class StateRule:
     def when(self, holds: State) -> Judge[Part]:
         """Return a criterion that the subject's reports are right at all times at which a condition holds.
 
-        The subject must also report at least a quarter as often as the reference solution. Another criterion judges the
-        exact rate.
+        The subject must also report at least a quarter as often as the reference solution, so that silence is not
+        right. The exact rate is not judged here, but by another criterion.
         """
 
         def judge(seen: Part, expected: Part) -> Finding:
@@ -135,7 +135,7 @@ class StateRule:
     def _decided(self, part: Part, holds: State) -> Iterator[tuple[Any, Any]]:
         """Yield pairs of the required and the actual report, for each report at whose time only one content is right.
 
-        Reports are left out if the condition may not hold at their time.
+        A report is left out if the condition may not hold at the report's time.
         """
         for what, views in self._said(part):
             due, *others = map(self.rule, views)

@@ -1,9 +1,10 @@
 """The report on a workspace and its build, as one line of JSON in the output of the program that builds it.
 
-The judge observes a workspace's programs on the network. The report contains facts that are not visible there, such as
-the line at which the build failed. It is printed before the student's own program prints anything, and only the first
-report counts. One line may be too short for a large workspace. So the packages that the exercise needs come first, and
-the report says whether all their details fit: a package that was left out never counts as missing or wrong.
+The judge observes a workspace's programs on the network. The report adds facts that are not visible there, such as the
+line at which the build failed. A student's program cannot forge a report, because the true one is printed before the
+program prints anything, and only the first report counts. One line may be too short for a large workspace. So the
+packages that the exercise needs come first, and the report says whether all their details fit: a package that was left
+out never counts as missing or wrong.
 """
 
 from __future__ import annotations

@@ -31,7 +31,7 @@ MAX_FILES = 1_000
 MAX_BYTES = 4_000_000
 """The maximum size in bytes of all files together."""
 MAX_FILE = 500_000
-"""The maximum size of a file in bytes; written as text, it still fits into one message."""
+"""The maximum size of a file in bytes. The content of a file of this size, encoded as text, fits into one message."""
 MAX_PATH = 300
 """The maximum length of a path in bytes, including slashes."""
 MAX_NAME = 120

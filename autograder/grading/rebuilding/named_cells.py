@@ -53,7 +53,7 @@ class NamedCells:
 
     @functools.cached_property
     def _graded(self) -> dict[str, str]:
-        """Return the assignment for each mark of a graded cell that occurs in only one assignment."""
+        """Return the assignment for each name and id of a graded cell, if it occurs in only one assignment."""
         cells = [(assignment, cell) for (assignment, _), own in self._sources.items() for cell in own]
         often = Counter(
             mark for mark, _ in {(mark, assignment) for assignment, cell in cells for mark in _marks(cell)}
@@ -83,5 +83,5 @@ class NamedCells:
 
 
 def _marks(cell: SubmittedCell) -> set[str]:
-    """Return the marks of a cell: its name and its id, each with its kind in front."""
+    """Return the strings by which a cell is recognized: ``"name …"`` with its nbgrader name, ``"id …"`` with its id."""
     return {f"{kind} {mark}" for kind, mark in (("name", cell.grade_id), ("id", cell.identifier)) if mark}

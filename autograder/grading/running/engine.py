@@ -35,10 +35,10 @@ def cores() -> int:
 
 
 def at_once(processors: int, free_bytes: int) -> int:
-    """Return the default number of notebooks to execute at once. Each of them has ``BOX_BYTES`` of memory.
+    """Return the default number of notebooks to execute at once: as many as fit into memory with ``BOX_BYTES`` each.
 
-    There is also memory for one build per processor. A notebook that needs more memory than its share is executed
-    again, alone.
+    Memory for the grader itself and for one build per processor is subtracted first. The result is at most
+    ``_PER_CORE`` for each processor. A notebook that needs more than ``BOX_BYTES`` is later executed again, alone.
     """
     room = free_bytes - _RESERVE_BYTES - processors * BUILD_LIMITS.beside_bytes
     return max(1, min(processors * _PER_CORE, room // BOX_BYTES))

@@ -72,12 +72,12 @@ class Pair:
 
     @property
     def share(self) -> float:
-        """The fraction of the own words of the shorter answer that the common passages contain."""
+        """The common passages' share of the shorter answer: a fraction of the words that its student wrote."""
         return self.shared / min(self.one.length, self.other.length)
 
     @property
     def percent(self) -> str:
-        """The share in percent as text, rounded down, so that 100 % means that all own words are shared."""
+        """The share in percent as text, rounded down, so ``100 %`` means that the passages contain all these words."""
         return f"{int(100 * self.share)} %"
 
     @property

@@ -1,9 +1,9 @@
 """The judge's side of actions: a server that does only what the scenario tells it to, and a client that sends goals.
 
-Both record what they send and receive. Both use the three services and two topics of an action directly
-(design.ros2.org, "Actions"), without rclpy's ActionServer and ActionClient. rclpy's server decides by itself when to
-answer, and does not report a second request to cancel the same goal. This server answers when the scenario says so, and
-records each request. This client records each answer, including the refusal to cancel a goal.
+Both record what they send and receive. They use the three services and two topics of an action directly
+(design.ros2.org, "Actions"), because rclpy's classes hide too much: its ActionServer decides by itself when to answer,
+and does not report a second request to cancel the same goal. The server of this module answers when the scenario says
+so, and records each request. The client records each answer, including the refusal to cancel a goal.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ FEEDBACK_MATCH = 3.0
 
 
 class ScriptedActionServer:
-    """An action server that accepts all goals, or refuses all. The goal that was accepted last is the current one.
+    """An action server that accepts all goals, or refuses all. Its methods work on the goal that was accepted last.
 
     Attributes:
         services: The full names of the action's services.
@@ -94,7 +94,7 @@ class ScriptedActionServer:
                 strict=True,
             )
         ]
-        # rclpy answers a request as soon as its callback returns. LateAnswers delays the answer.
+        # By itself, rclpy answers a request as soon as its callback returns, so LateAnswers delays the answer.
         self._late = [
             LateAnswers(goals, goal_answer_takes, sending=self._note_goal_answer),
             LateAnswers(cancels, cancel_answer_takes, sending=self._note_cancel_answer),
@@ -221,8 +221,9 @@ class ScriptedActionServer:
         """Publish the current goal's status on the action's status topic.
 
         The server does this by itself if the status changes or the client requests the result, but not if it accepts a
-        goal. A client must learn from the answer, not from the status, whether its goal was accepted. A client that
-        reads the status finds UNKNOWN, the first status of a goal handle of rclpy, and is not right by chance.
+        goal. The reason is that a client must learn from the answer, not from the status, whether its goal was
+        accepted. A client that reads the status instead finds UNKNOWN, the first status of a goal handle of rclpy, so
+        it is not right by chance.
         """
         line = GoalStatus(goal_info=GoalInfo(goal_id=self._goal_id), status=self._status)
         self._statuses.publish(GoalStatusArray(status_list=[line]))

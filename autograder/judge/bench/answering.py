@@ -68,7 +68,7 @@ def once_it_is_set(made: threading.Event, take: Take) -> Take:
 
 
 class LateAnswers:
-    """Delays each answer of a service. The service goes on taking requests meanwhile.
+    """Delays each answer of a service, while the service goes on taking requests.
 
     Args:
         service: The service.

@@ -132,9 +132,9 @@ class TestBench:
         self.part(dropped.name, **dropped.inputs)
 
     def keep(self, name: str) -> bool:
-        """If the subject ended by itself in this part of the first look, reuse that record. Return True if reused.
+        """If the subject ended by itself in this part of the first look, reuse the part's record, and return True.
 
-        The record is not reused if the part's inputs say how long a function has to wait.
+        But return False if the part's inputs say how long a function has to wait, because the pace then matters.
         """
         known = self.before.part(name) if self.before else Part(name)
         if known.ending is None or patience(known) is not None:
@@ -152,8 +152,8 @@ class TestBench:
         self._presence.note_how_it_leaves()
         self._presence.note_whom_it_met()
         self._presence.note_short_life()
-        # After Ctrl-C, the old endpoints of the subject may stay on the graph for a while. Then the next part gets a
-        # new participant of the judge, which never discovers them.
+        # After Ctrl-C, the old endpoints of the subject may stay on the graph for a while. So the judge uses a new
+        # participant in the next part, because a new participant never discovers them.
         self._clean = self._subject.ended and not self._recorder.part().of("subject", INTERRUPTED)
         self.parts.append(self._recorder.part())
         self._subject.stop()
@@ -199,7 +199,7 @@ class TestBench:
     # --- the subject ---------------------------------------------------------------------------------------
 
     def start(self, *arguments: Any, **options: Any) -> None:
-        """Start the subject when its participant has discovered the judge's new endpoints and lost the removed ones."""
+        """Start the subject, but first wait until its process knows which endpoints the judge has added and removed."""
         if (self._there or self._gone) and not self._subject.knows(there=self._there, gone=self._gone):
             self.unmet = True
         if self._announcements is not None:
@@ -232,7 +232,7 @@ class TestBench:
         return self._recorder.wait(lambda: self._subject.ended, within)
 
     def await_endpoint(self, role: str, name: str) -> bool:
-        """Wait until the subject has this endpoint, matched with the judge's. Return False if it does not in time.
+        """Wait until the subject has this endpoint, matched with the judge's. Return False if the time is over before.
 
         If a notebook's class has not made the endpoint in the constructor, spin its node and wait again.
         """
@@ -248,7 +248,7 @@ class TestBench:
         return self._misnamed[name]["real"] if name in self._misnamed else name
 
     def await_node(self) -> bool:
-        """Wait for a node of the subject on the graph. A node of a subject that has already ended counts, too."""
+        """Wait for a node of the subject on the graph. Return True even if the subject had one and has ended."""
         return self._presence.await_node()
 
     def await_sign_of_life(self, within: float) -> bool:
@@ -299,7 +299,7 @@ class TestBench:
         return publisher
 
     def plant(self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]) -> None:
-        """Put a decoy node on the graph. The subject is started only when it has discovered the node's endpoints."""
+        """Put a decoy node on the graph. :meth:`start` then waits until the subject has discovered its endpoints."""
         assert self._decoys is not None
         self._there |= self._decoys.plant(name, publishes=publishes, subscribes=subscribes)
 
@@ -313,7 +313,7 @@ class TestBench:
         return server
 
     def call(self, service: str, type_name: str) -> RecordedCaller:
-        """Create a client of the subject's service. It is removed when the part ends."""
+        """Create a client of the subject's service, which is removed when the part ends."""
         caller = RecordedCaller(
             self.wire,
             self._recorder,
@@ -326,7 +326,7 @@ class TestBench:
         return caller
 
     def call_action(self, action: str, type_name: str) -> RecordedActionClient:
-        """Create a client of the subject's action. It is removed when the part ends."""
+        """Create a client of the subject's action, which is removed when the part ends."""
         caller = RecordedActionClient(
             self.wire,
             self._recorder,
@@ -355,12 +355,12 @@ class TestBench:
         return server
 
     def _get_ready_to_serve(self, name: str) -> None:
-        """Wait until existing clients are discovered, because unknown clients get no answer. Record the time."""
+        """Wait until existing clients are discovered, because unknown ones get no answer. Then record ``serving``."""
         self._recorder.take_in()
         self._recorder.record("serving", name)
 
     def _announce(self, services: Iterable[str]) -> None:
-        # The judge's participant may still see endpoints that the judge has removed. Subtract them.
+        # Subtract removed endpoints, because the judge's participant may still see them.
         self._there |= graph.server_endpoints(self.wire.node, services) - self._gone
 
     # --- time ----------------------------------------------------------------------------------------------
@@ -377,7 +377,7 @@ class TestBench:
         return self._time.run(seconds, until=until, quiet=quiet, step=step)
 
     def pass_time(self, seconds: float, role: str, name: str) -> None:
-        """Make ``seconds`` pass fast for a node in real time. If the node does not accept a fast clock, just wait."""
+        """Make ``seconds`` pass fast for a node in real time. If the node accepts no fast clock, wait instead."""
         self._time.lend(seconds, role, self._real(name))
 
     def let_wait(self, seconds: float) -> None:
@@ -385,7 +385,7 @@ class TestBench:
         self._recorder.wait(lambda: self._subject.ended, seconds, wall=True)
 
     def settle(self) -> None:
-        """Wait until the subject has handled the messages that it received. Nodes that do not answer are skipped."""
+        """Wait until the subject has handled the messages that it received, except nodes that do not answer."""
         self._time.settle()
 
     def await_attention(self) -> None:
@@ -400,8 +400,8 @@ class TestBench:
         """Request a parameter from each node of the subject, and record which node does not answer."""
         nodes = self._presence.counterparts()
         if not nodes:
-            # A program that has destroyed its nodes is about to end. Wait for the end, because the exit code and the
-            # last lines of output tell more than missing answers.
+            # A program that has destroyed its nodes is about to end, so wait for its end: the exit code and the last
+            # lines of output tell more than missing answers.
             self.await_end(MATCH)
         for node in nodes:
             if not self._subject.ended and not answers(self.wire, self._recorder, node):
@@ -428,8 +428,8 @@ class TestBench:
 
         def over() -> bool:
             nonlocal held
-            # Ask first whether the subject has ended. Then the evidence, read afterwards, has everything from before
-            # the end.
+            # Ask whether the subject has ended before reading the evidence, so that the evidence contains everything
+            # from before the end.
             ended = self._subject.ended
             held = condition(look())
             return held or ended

@@ -1,4 +1,4 @@
-"""Decoys: nodes that the judge puts on the graph only for a subject to find. They have endpoints, and do nothing."""
+"""Decoys: nodes that the judge puts on the graph only for a subject to find. They have endpoints, but do nothing."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class DecoyNodes:
     def plant(
         self, name: str, *, publishes: Mapping[str, str], subscribes: Mapping[str, str]
     ) -> set[Endpoint]:
-        """Put a node on the graph that publishes and subscribes to these topics, with the usual QoS. Nothing spins it.
+        """Put a node on the graph that publishes and subscribes to these topics, with the usual QoS, but is not spun.
 
         Returns:
             The identifiers of the node's endpoints on these topics.

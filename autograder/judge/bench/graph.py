@@ -58,7 +58,7 @@ def subject_nodes(judge: Node, keeper: str) -> list[NodeName]:
     Args:
         judge: The judge's node.
         keeper: The name of the node with which a notebook's check keeps its participant alive; empty if it has none.
-            One node with this name is ignored. A second node with this name belongs to the subject.
+            One node with this name is ignored, but a second node with this name belongs to the subject.
     """
     own = judge.get_name()
     seen = judge.get_node_names_and_namespaces()
@@ -104,8 +104,9 @@ class TopicEnd:
 def topic_ends(judge: Node) -> list[TopicEnd]:
     """Return the subject's publishers and subscriptions.
 
-    The query is by topic, because if two nodes have the same name, a query by node returns only one of them. And an
-    endpoint may be discovered before its node, because DDS announces them separately.
+    The query is by topic, not by node, for two reasons. If two nodes have the same name, a query by node returns the
+    endpoints of only one of them. And an endpoint may be discovered before its node, because DDS announces them
+    separately.
     """
     own = judge.get_name()
     return [
@@ -197,8 +198,9 @@ hexadecimal.
 def server_endpoints(node: Node, services: Iterable[str]) -> set[Endpoint]:
     """Return the DDS endpoints of the services that this node serves under these names.
 
-    In DDS, a service consists of a reader of requests and a writer of replies (rmw_fastrtps_shared_cpp,
-    namespace_prefix.cpp). A client considers the service ready when it has discovered both.
+    In DDS, a service consists of two endpoints: a reader of requests and a writer of replies (rmw_fastrtps_shared_cpp,
+    namespace_prefix.cpp). Both are returned, because a client considers the service ready only when it has discovered
+    both.
 
     Args:
         node: The node.

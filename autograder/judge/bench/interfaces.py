@@ -1,7 +1,7 @@
 """Finds ROS interfaces by name, converts messages to plain data, and computes type hashes.
 
-DDS discovery describes the definition of an interface by a type hash (REP-2016). The hash also depends on the name of
-the package.
+A type hash stands for the definition of an interface in DDS discovery (REP-2016). The hash also depends on the name of
+the package, so the same definition in two packages has two hashes.
 """
 
 from __future__ import annotations

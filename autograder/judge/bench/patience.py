@@ -1,7 +1,8 @@
 """Time limits for a student's program that get longer while the machine is busy.
 
-A limit that is generous on an idle machine is too short if thirty processes wait for a processor: a correct program
-would exceed it. So a second of the limit lasts longer while the machine is busy, up to ``SLOWEST`` seconds.
+A limit that is generous on an idle machine is too short if thirty processes wait for a processor, because even a
+correct program would exceed it. So a second of the limit lasts longer while the machine is busy, up to ``SLOWEST``
+seconds.
 """
 
 from __future__ import annotations

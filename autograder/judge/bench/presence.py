@@ -1,7 +1,7 @@
 """Watches the subject's nodes and endpoints on the ROS graph during one part, and records each change.
 
-The endpoints of a program disappear when it ends. So the result of each query is recorded at once. A second query could
-find less.
+The result of each query is recorded at once. A second query could find less, because the endpoints of a program
+disappear when it ends.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ class Settling:
     """Tells when a command's nodes and endpoints have not changed for a while.
 
     Args:
-        seconds: How long the nodes and endpoints must stay the same, in seconds of patience
-            (:mod:`autograder.judge.bench.patience`). On a busy machine, a program that has made its node may wait for a
-            processor before it makes its endpoints.
+        seconds: How long the nodes and endpoints must stay the same, in seconds that get longer on a busy machine
+            (:mod:`autograder.judge.bench.patience`). They have to get longer, because a program that has made its node
+            may have to wait for a processor before it can make its endpoints.
     """
 
     def __init__(self, seconds: float) -> None:
@@ -138,7 +138,7 @@ class Presence:
         )
 
     def await_node(self) -> bool:
-        """Wait for a node of the subject on the graph. Return True also if a subject that has ended had a node."""
+        """Wait for a node of the subject on the graph. Return True even if the subject had one and has ended."""
         nodes: list[graph.NodeName] = []
 
         def there() -> bool:
@@ -175,8 +175,8 @@ class Presence:
         def over() -> bool:
             nonlocal interface
             marker = self._subject.marker
-            # Look for the marker first. The subject announces it last, so if it is on the graph, the survey below finds
-            # all endpoints.
+            # Look for the marker before the survey. The subject announces the marker last, so if it is on the graph,
+            # the survey finds all endpoints.
             all_made = marker is not None and graph.shows(self._node, marker)
             interface = graph.survey(self._node)
             if there(interface) or self._subject.ended or all_made:
@@ -190,8 +190,8 @@ class Presence:
     def _await_appearance(self, condition: Callable[[], bool]) -> None:
         """Wait until a condition holds, at most :data:`APPEAR` seconds, longer if the subject starts more processes."""
         patience = Patience(APPEAR)
-        # A command's runner starts the command at once. So a process that begins in the second half of the time limit
-        # shows that something else, such as a build, is going on.
+        # A command's runner normally starts the command at once. So if a process begins in the second half of the time
+        # limit, something else goes on, such as a build.
         earlier: frozenset[int] | None = None
 
         def overdue() -> bool:

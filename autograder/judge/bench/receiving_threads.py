@@ -1,9 +1,9 @@
 """Waits until the middleware's threads have processed every message that has arrived.
 
-The judge learns of a program's end through a pipe, but of the program's messages through threads of the middleware. On
-a busy machine, the judge may learn of the end while such a thread, woken by a message, still waits for a processor. A
-message wakes its thread at once (futex(7), udp(7)), so a thread that sleeps has no message left. A thread that is awake
-has processed its messages when it goes to sleep.
+The judge learns of a program's end through a pipe, but of the program's messages through threads of the middleware. So
+on a busy machine, the judge may learn of the end while such a thread, woken by a message, still waits for a processor.
+This module therefore waits until each thread that is awake has gone to sleep. A sleeping thread has no message left,
+because a message wakes its thread at once (futex(7), udp(7)).
 """
 
 from __future__ import annotations

@@ -77,7 +77,7 @@ class Recorder:
     def in_this_part(self) -> Callable[..., None]:
         """Return a function like :meth:`record`, which records only in the current part and does nothing after that.
 
-        This is for threads that may still read a run's output when the next run begins.
+        Use this in threads that may still read a run's output when the next run begins.
         """
         number = self._number
 
@@ -151,13 +151,13 @@ class Recorder:
         quiet: float | None = None,
         wall: bool = False,
     ) -> bool:
-        """Wait until ``condition`` holds. It is checked again after every event.
+        """Wait until ``condition`` holds, which is checked again after every event.
 
         Args:
             condition: Called in the waiting thread, without holding the recorder's lock.
             within: The limit in seconds of patience (:mod:`autograder.judge.bench.patience`).
-            poll: Seconds until the condition is checked again without an event. Callers that query the graph, which
-                has no events, use a few milliseconds.
+            poll: Seconds until the condition is checked again without an event. A few milliseconds if the condition
+                queries the graph, because changes of the graph are no events.
             quiet: Give up earlier if nothing was recorded for this many seconds of patience.
             wall: True to count wall time: for a wait that is a step of the scenario and not a limit for the subject.
 

@@ -22,7 +22,7 @@ Answer = Callable[[Mapping[str, Any]], Mapping[str, Any]]
 
 
 class RecordedServer:
-    """A service that the judge offers until :meth:`close`. One answer may be held back until :meth:`release`.
+    """A service that the judge offers until :meth:`close`. It can hold one answer back until :meth:`release`.
 
     Attributes:
         services: A tuple with the full name of the service.
@@ -84,7 +84,7 @@ class RecordedServer:
         self._send(response, header)
 
     def release(self) -> None:
-        """Send the answer that was held back. No later answer is held back."""
+        """Send the answer that was held back, and hold back no later answer."""
         with self._holding:
             self._hold = 0
             held, self._held = self._held, []
@@ -105,7 +105,7 @@ lost.
 
 
 class Client(ABC):
-    """Base class of the judge's service client and action client. It waits for a server and counts servers.
+    """Base class of the judge's service client and action client, which waits for a server and counts servers.
 
     Args:
         wire: The judge's participant.
@@ -164,8 +164,8 @@ class RecordedCaller(Client):
         """Send all requests without waiting for an answer between them."""
         numbered = list(enumerate(requests, self._calls))
         self._calls += len(numbered)
-        # Record all calls before the first is sent. Otherwise chance would decide whether an answer is recorded before
-        # a later call.
+        # Record all calls before the first is sent, because otherwise chance would decide whether an answer is recorded
+        # before a later call.
         for number, fields in numbered:
             self._recorder.record("asked", self._name, call=number, fields=dict(fields))
         for number, fields in numbered:

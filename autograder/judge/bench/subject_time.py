@@ -2,9 +2,9 @@
 
 In simulated time the judge publishes ``/clock`` in steps, so that seconds take milliseconds. After each step, the judge
 sends requests to the subject's parameter service. The answers prove that the subject's executor has called the timers
-of this step, so the result does not depend on how busy the machine is. A subject that does not follow the clock
-(``time.sleep``, or a loop that spins only sometimes) reveals itself: it publishes while the clock stands still, or its
-executor answers slowly. Then the judge looks again in real time.
+of this step, so the result does not depend on how busy the machine is. Some subjects do not follow the clock, because
+they call ``time.sleep`` or spin only sometimes. The judge notices this if the subject publishes while the clock stands
+still, or if its executor answers slowly, and then looks again in real time.
 """
 
 from __future__ import annotations
@@ -62,9 +62,9 @@ _QUESTION = GetParameters.Request(names=[_SIM_TIME])
 class NodeClock:
     """Publishes ``/clock`` for one node of the subject, and checks whether the node keeps up.
 
-    An answer from the node's parameter service proves that its executor has made a round since the request. An executor
-    takes one request of a service in each round (rclpy/executors.py, ``_take_service``). So if three requests are sent
-    together, their answers prove three rounds, and take as long as one answer.
+    An answer from the node's parameter service proves that the node's executor has made a round since the request. An
+    executor takes only one request of a service in each round (rclpy/executors.py, ``_take_service``). So the answers
+    to three requests that are sent together prove three rounds.
     """
 
     def __init__(self, wire: Wire, recorder: Recorder, node: NodeName) -> None:
@@ -102,9 +102,9 @@ class NodeClock:
     def lend(self, seconds: float, until: Callable[[], bool]) -> bool:
         """Make a node in real time follow simulated time for some seconds, so that its timers fire sooner.
 
-        This shows within milliseconds what a program's timers would do in the next seconds. The node's clock continues
-        from its current time, and the node follows real time again afterwards, so nothing that the node has begun is
-        lost. Code that uses no ROS clock, such as a thread that sleeps, does not get faster.
+        This shows within milliseconds what a program's timers would do in the next seconds. The node loses nothing that
+        it has begun, because its clock continues from its current time and then follows real time again. But code that
+        uses no ROS clock, such as a thread that sleeps, does not get faster.
 
         Args:
             seconds: The maximum number of simulated seconds.
@@ -158,7 +158,7 @@ def _is_there(future: Any, limit: float) -> bool:
 
 
 def answers(wire: Wire, recorder: Recorder, node: NodeName, limit: float = PATIENT_ANSWER) -> bool:
-    """Return True if a node answers a request for a parameter in time. Every node that is spun can do that."""
+    """Return True if a node answers a request for a parameter in time, as every node can that is spun."""
     client = wire.node.create_client(GetParameters, f"{node.full}/get_parameters")
     try:
         return ask(recorder, client, _QUESTION, limit) is not None
@@ -206,8 +206,8 @@ class SimulatedClock(NodeClock):
         Returns:
             True if the subject's executor answered after each step.
         """
-        # Round the end as each step is rounded. Otherwise the floating-point sum could be slightly later than the last
-        # step, and the loop would make one more.
+        # Round the end as each step is rounded. Otherwise the end, a floating-point sum, could be slightly later than
+        # the last step, and the loop would make one step too many.
         end = round(self._now + seconds, 6)
         while self._now < end and not until():
             began = time.monotonic()
@@ -287,7 +287,7 @@ class SubjectTime:
         return True
 
     def lend(self, seconds: float, role: str, name: str) -> None:
-        """Lend a simulated clock to the node with this endpoint (:meth:`NodeClock.lend`). If it refuses, just wait."""
+        """Lend a simulated clock to the node with this endpoint (:meth:`NodeClock.lend`), or wait if it refuses."""
         for node in graph.owners(self._wire.node, role, name):
             if node.full not in self._deaf:
                 with contextlib.closing(NodeClock(self._wire, self._recorder, node)) as clock:
@@ -298,7 +298,8 @@ class SubjectTime:
     def settle(self) -> None:
         """Wait until the subject has handled the messages that it received.
 
-        To be sure, each node has to answer two new requests. A node that has failed to answer in this part is skipped.
+        Each node has to answer two requests, one after the other, so that its executor has made a whole round in
+        between. A node that failed to answer before, in this part, is left out.
         """
         limit = ANSWER_LIMIT if self._pace is Pace.FAST else PATIENT_ANSWER
         for node in self._presence.counterparts():
@@ -310,17 +311,17 @@ class SubjectTime:
     def await_attention(self) -> None:
         """Wait until each node that the judge is matched with has discovered the judge's publishers.
 
-        The judge sends each node a request from a new client. The judge's announcements arrive in order (DDSI-RTPS,
-        8.5.4), so a node that can answer the new client has discovered the older publishers, too.
+        For this, the judge sends each node a request from a new client. The judge's announcements arrive in order
+        (DDSI-RTPS, 8.5.4), so a node that can answer the new client has discovered the older publishers, too.
         """
         for node in self._presence.counterparts():
             if not self._subject.ended:
                 answers(self._wire, self._recorder, node, MATCH)
 
     def _follow_clock(self) -> bool:
-        """Return True if the subject follows the judge's simulated clock.
+        """Make the subject follow the judge's simulated clock, if possible. Return True if it follows.
 
-        The judge tries to take over the subject's time only once, as soon as the judge has an endpoint.
+        The judge tries this only once, in the first call after it has made a publisher or a subscription.
         """
         tried = self._clock is not None or self._clock_refused
         if not tried and (self._presence.subscriptions or self._presence.publishers):
@@ -342,8 +343,8 @@ class SubjectTime:
         self._open.callback(stepped.close)
         if stepped.take_over() and stepped.stands_still(self._silence()):
             return stepped
-        # The subject may still switch to simulated time later, and then its timers stand still, because the judge does
-        # not step the clock. So only a new run in real time can decide.
+        # The subject may still switch to simulated time later. Its timers would then stand still, because the judge
+        # does not step the clock. So only a new run in real time can decide.
         self._recorder.simulated_now = None
         if self._presence.subscriptions:
             self._doubt()

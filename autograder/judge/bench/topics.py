@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from autograder.judge.bench.recorder import Recorder
     from autograder.judge.bench.wire import Wire
 
-# This QoS is reliable like that of the course's listener, so the judge hears a publisher only if that listener can hear
-# it. The queue is longer, so that nothing is lost while the judge is slow.
+# This QoS is reliable like that of the course's listener, so the judge hears a publisher only if the listener can hear
+# the publisher. But the queue is longer, so that nothing is lost while the judge is slow.
 _AS_THE_LISTENER = QoSProfile(depth=1000)
 _AS_A_LATE_LISTENER = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _LOG_HISTORY = QoSProfile(
@@ -31,7 +31,7 @@ _LOG_HISTORY = QoSProfile(
 
 
 class RecordedEndpoint:
-    """A publisher or subscription of the judge. It records endpoints that match, and those with incompatible QoS.
+    """A publisher or subscription of the judge, which records matching endpoints and endpoints with incompatible QoS.
 
     Attributes:
         matched: The number of the subject's endpoints that are matched with this endpoint now.
@@ -91,9 +91,9 @@ class RecordedSubscription(RecordedEndpoint):
         )
 
     def _hear(self, message: Any, info: Any) -> None:
-        # The sequence number, which the publisher counts, shows how many messages were sent before this subscription
-        # could receive any. The time stamp of the publisher does not depend on the transport (rmw_message_info_t;
-        # provided by rmw_fastrtps).
+        # The publisher's sequence number shows how many messages were sent before this subscription could receive any.
+        # The publisher's time stamp shows when a message was sent, however long its transport took. (rmw_fastrtps
+        # provides both in rmw_message_info_t.)
         self._recorder.record(
             "message",
             self.topic,

@@ -36,8 +36,8 @@ class JudgeFailed(RuntimeError):
 class _QuietNode(Node):
     """A node whose endpoints report only the QoS events that were requested.
 
-    By default, rclpy gives each endpoint two events that only log a warning. The executor would check all of them in
-    each round, and a check in simulated time has some hundred rounds.
+    By default, rclpy gives each endpoint two events that only log a warning. They would cost time, because the executor
+    checks all events in each round, and a check in simulated time has some hundred rounds.
     """
 
     def create_publisher(self, *arguments: Any, **options: Any) -> Any:
@@ -50,7 +50,7 @@ class _QuietNode(Node):
 
 
 class Wire:
-    """The judge's DDS participant on one ROS domain, with one node. Each has its own ROS context and thread.
+    """The judge's DDS participant on one ROS domain, with one node, and with its own ROS context and thread.
 
     Attributes:
         node: The judge's node. It has no parameter services and no log topic, so that it adds almost nothing to the
@@ -113,8 +113,9 @@ class Wire:
     def _take_one_of_each(self, patience: Patience) -> bool:
         """Let the executor take at most one message from each endpoint. Return False if the time is up first.
 
-        An executor begins each round with its tasks and then takes what has arrived (rclpy/executors.py,
-        _wait_for_ready_callbacks). So two tasks, one after the other, enclose one whole round.
+        For this, two tasks are given to the executor, one after the other. An executor begins each round with its tasks
+        and then takes what has arrived (rclpy/executors.py, _wait_for_ready_callbacks), so between two tasks there is
+        one whole round.
         """
         for _ in range(2):
             done = threading.Event()
@@ -128,7 +129,7 @@ class Wire:
         return True
 
     def close(self) -> None:
-        """Stop spinning, join the thread and leave the domain. An unjoined thread would abort the interpreter."""
+        """Stop spinning, join the thread and leave the domain. An unjoined thread would later abort the interpreter."""
         with self._closing:  # Wait: another thread may be in take_in.
             self._closed = True
         self.executor.shutdown(timeout_sec=1.0)

@@ -1,4 +1,4 @@
-"""Run a judge on inherited file descriptors. The fork server in the judge's sandbox calls this module."""
+"""Run a judge on inherited file descriptors, as the fork server in the judge's sandbox does."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def environment(*, boxed: bool) -> dict[str, str]:
 
     :func:`autograder.judge.settings.prepare_judge` sets the same ROS variables in a process that already runs.
 
-    ``ROS_LOG_DIR`` is not included, because the folder for logs is inside the sandbox.
+    ``ROS_LOG_DIR`` is not among them, because the folder for logs is inside the sandbox.
     """
     return {
         **course.variables(),
@@ -77,7 +77,8 @@ _INTERFACES = (
 def imports() -> None:
     """Import the judge, every exercise, the course's interfaces and their compiled type supports.
 
-    Then a forked check starts without importing. No node and no thread is created here, so forking stays safe.
+    A check that is forked later then needs no imports. Forking stays safe, because no node and no thread is created
+    here.
     """
     for name in ("subjects.command_subject", "subjects.remote_subject", "verdicts.trial"):
         importlib.import_module(f"autograder.judge.{name}")

@@ -75,7 +75,7 @@ def converse(connection: socket.socket, order: Open | None) -> Report:
         subject = RemotePath(lines)
     else:
         subject = RemoteSubject(lines, is_class=first.kind == "class")
-    # If the load of the machine may have spoiled the check, a student's check ends without a verdict. A grader gets a
+    # If the load of the machine may have spoiled the check, a student gets no verdict. A grader, however, gets a
     # verdict that is marked as crowded, and repeats the check while nothing else runs.
     seed = own_seed(wanted.seed, exercise.id)
     report, checked = _report(exercise, subject, seed, wanted, marks_crowded=order is not None)

@@ -2,8 +2,8 @@
 
 Also remove the shared memory that killed programs of earlier checks have left behind. If discovery is limited to this
 machine, rmw_fastrtps creates half a megabyte of shared memory for each participant, even if no transport uses it
-(participant.cpp). A program that is killed does not remove its memory, which stays in use until ``fastdds shm clean``
-runs. In one day, killed programs left 12 GB.
+(participant.cpp). A program that is killed does not remove its memory, so the memory stays in use until ``fastdds shm
+clean`` runs. In this way 12 GB were lost in one day.
 """
 
 from __future__ import annotations
@@ -38,13 +38,13 @@ its owner has only just created it.
 
 @contextlib.contextmanager
 def lease(*, alone: bool = False) -> Iterator[int]:
-    """Reserve a free domain id while the block runs. If the process crashes, the id becomes free, too.
+    """Reserve a free domain id while the block runs. The id becomes free again even if the process crashes.
 
     Shared memory that killed programs of earlier checks left behind is removed first.
 
     Args:
-        alone: True if only the judge and its subject are on this network. Then a random domain id is used if none is
-            free, so a subject that has taken the ports of all domains does not stop its check.
+        alone: True if only the judge and its subject are on this network. In that case a random domain id is used if
+            none is free, so that a subject cannot prevent its check by taking the ports of all domains.
 
     Raises:
         NoFreeDomainError: All domains are in use.

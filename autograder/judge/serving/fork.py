@@ -42,7 +42,7 @@ class ChildResult:
 
 
 class Child:
-    """A forked child process that computes some bytes. Create it only while this process has no other threads."""
+    """A forked child process that computes some bytes. Create it only while this process has a single thread."""
 
     def __init__(self, work: Callable[[], bytes], limit: float, *, close: Sequence[int] = ()) -> None:
         """Fork and start the child.
@@ -112,7 +112,7 @@ class Child:
         return ChildResult(None, f"the judge's process ended with {how} before it reached a verdict")
 
     def done(self) -> bool:
-        """Return True if the child has ended. A child whose time limit is over is killed first."""
+        """Return True if the child has ended. If its time limit is over, kill it first."""
         ready, _, _ = select.select([self.reading], [], [], 0.0)
         if ready:
             self.result(within=1.0)

@@ -100,7 +100,7 @@ class JudgeProcess:
         self.stop()
 
     def open(self, exercise_id: str, *, record: bool = False) -> None:
-        """Allow the notebook to request one check of this exercise.
+        """Allow the notebook to request a single check of this exercise.
 
         Raises:
             JudgeDied: The judge does not run any more.

@@ -1,7 +1,7 @@
 """Serve checks: a judge process that has imported everything forks a child for each requested check.
 
-The judge process has imported ROS but created no node and no thread. So forking is safe, and each check begins with a
-new DDS participant, which discovers the subject at once.
+Forking is safe, because the judge process has imported ROS but created no node and no thread. Each check begins with a
+new DDS participant, because a new participant discovers the subject at once.
 """
 
 from __future__ import annotations
@@ -106,8 +106,8 @@ class JudgeServer:
             return msgspec.json.encode(Report())
         outcome = child.result(within=CLOSE_LIMIT)
         if outcome.hurried:
-            # The cell ended before its check did: the notebook gave up, and the judge did not fail. So report no
-            # trouble.
+            # The cell ended before its check did. In that case the notebook gave up and the judge did not fail, so
+            # report no trouble.
             return msgspec.json.encode(Report())
         if outcome.data is None or b"\n" in outcome.data:
             trouble = outcome.trouble or "the judge sent more than one report"
@@ -122,7 +122,7 @@ class JudgeServer:
 
 
 def _refuse(connection: socket.socket, why: str) -> None:
-    """Read a request, then refuse it. Closing with unread data would lose the answer (unix(7), ECONNRESET)."""
+    """Read a request, then refuse it. If it were unread at closing, the refusal would be lost (unix(7), ECONNRESET)."""
     with contextlib.suppress(OSError):
         connection.settimeout(REFUSE_LIMIT)
         connection.recv(65536)
@@ -130,7 +130,7 @@ def _refuse(connection: socket.socket, why: str) -> None:
 
 
 def run(path: Path) -> None:
-    """Serve every notebook that connects, until stdin is closed. Everything that is printed goes to stderr."""
+    """Serve every notebook that connects, until stdin is closed. Redirect everything printed to stderr."""
     answers = private_stdout()
     sys.stdout = sys.stderr
     try:

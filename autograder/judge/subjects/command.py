@@ -105,7 +105,7 @@ def is_path(exercise: Exercise, command: Sequence[str], cwd: Path | None) -> boo
 
 
 def _search_path(cwd: Path | None) -> str | None:
-    # shutil.which looks up names without a slash in these folders. The command's working folder is one of them.
+    # shutil.which looks up names without a slash in these folders, of which the command's working folder is one.
     return os.environ.get("PATH") if cwd is None else f"{os.environ.get('PATH', '')}:{cwd}"
 
 
@@ -118,7 +118,7 @@ def _packed(checked: Checked | None) -> bytes:
 def checked_here(
     exercise: Exercise, command: Sequence[str], seed: str, cwd: Path | None, box: Box | None = None
 ) -> tuple[Verdict, Checked | None]:
-    """Judge a command in this process, a child forked for that. The evidence is None if the judge failed."""
+    """Judge a command in this process, which was forked for it. The evidence is None if the judge failed."""
     settings.prepare_judge(boxed=box is not None)
     if box is not None:
         box.enter()

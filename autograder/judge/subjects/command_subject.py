@@ -44,10 +44,10 @@ LEFTOVERS = 1.0
 
 
 class Box(Protocol):
-    """A sandbox that keeps commands from the user's files and network. The judge's process joins this network."""
+    """A sandbox with its own network, which keeps commands from the user's files and network."""
 
     def enter(self) -> None:
-        """Move this process into the sandbox's network. Call this once, before ROS is imported.
+        """Move this process, the judge, into the sandbox's network. Call this once, before ROS is imported.
 
         Raises:
             OSError: This machine does not allow it.
@@ -120,8 +120,8 @@ class CommandSubject(InOwnProcesses):
     def _in_the_child(self) -> None:
         if self._box is not None:
             self._box.limit()
-        # If the judge was started in the background of a shell, it ignores SIGINT. Its subjects must not ignore SIGINT,
-        # too.
+        # If the judge was started in the background of a shell, it ignores SIGINT, but its subjects must not inherit
+        # this.
         signal.signal(signal.SIGINT, signal.SIG_DFL)
         die_with_parent()
 
@@ -145,8 +145,9 @@ class CommandSubject(InOwnProcesses):
     def stack(self) -> str:
         """Abort the command, and return the stacks that Python's faulthandler prints.
 
-        The process that hangs may be a child of the command: ``ros2 run`` starts the student's program and waits for
-        it. So children are aborted first. They are aborted one at a time, so that their stacks do not mix.
+        Children of the command are aborted first, because the process that hangs may be one of them. For example,
+        ``ros2 run`` starts the student's program and waits for it. Only one child at a time is aborted, so that the
+        stacks do not mix.
         """
         process = self._process
         if process is None or self.ended:
@@ -181,8 +182,8 @@ class CommandSubject(InOwnProcesses):
             reader.start()
         code = process.wait()
         for reader in readers:
-            # All output must be read before the end is recorded. The wait has a limit, because a grandchild may hold
-            # the pipe open.
+            # Read all output before recording the end. But wait only up to a limit, because a grandchild may hold the
+            # pipe open.
             reader.join(timeout=READ_LIMIT)
         if self._dying.is_set():
             record("subject", "aborted", code=code)  # the command did not end by itself: the judge aborted it

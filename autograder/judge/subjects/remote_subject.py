@@ -1,7 +1,7 @@
 """A subject that a notebook's kernel runs when the judge requests it.
 
-A Node class or a function runs inside the kernel, with the same DDS participant in all runs. For a workspace or a
-launch file, the kernel starts a new process for each run.
+If the subject is a Node class or a function, it runs inside the kernel, with the same DDS participant in all runs. If
+the subject is a workspace or a launch file, the kernel starts a new process for each run.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ class RemoteSubject:
         self._tell(checks.Meet(fresh, sorted(there), sorted(gone), max(0.0, self._news_left)))
         self._answered.wait(max(0.0, self._news_left) + STOP_LIMIT)
         self._news_left -= time.monotonic() - asked_at
-        # A notebook that has disconnected cannot answer. The run begins without an answer, and gets no points.
+        # A notebook that has disconnected cannot answer, so the run begins without an answer. It will get no points.
         return self._seen_as_told or self._gone.is_set()
 
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
@@ -114,8 +114,8 @@ class RemoteSubject:
         if self._is_class and not recorder.wait(
             lambda: self._marker is not None or self.ended, CONSTRUCT_LIMIT
         ):
-            # The constructor itself may do all of the work, for example spin. So go on and judge the subject like a
-            # program.
+            # The constructor may not have returned because it does all of the work itself, for example spins. So go on
+            # and judge the subject like a program.
             recorder.record("subject", "never_constructed")
 
     def interrupt(self) -> None:
@@ -125,8 +125,8 @@ class RemoteSubject:
     def release(self) -> None:
         """Have the notebook spin the node.
 
-        A node with a timer or thread may now make more endpoints. So the marker is dropped, because it no longer shows
-        that all endpoints exist.
+        A node with a timer or thread may make more endpoints once it is spun. So the marker, which shows that all
+        endpoints exist, is dropped.
         """
         if self._may_make_more:
             self._marker, self._may_make_more = None, False

@@ -34,10 +34,10 @@ class Subject(Protocol):
         """True until the packages of a workspace are built for the first time; False if nothing has to be built."""
 
     def renew(self) -> None:
-        """Use a new participant for the next run. An old one would discover the judge's new participant only slowly."""
+        """Use a new participant for the next run: an old one would discover the judge's new one only slowly."""
 
     def knows(self, *, there: set[Endpoint], gone: set[Endpoint]) -> bool:
-        """Wait until the participant of the next run sees the judge's new endpoints, and the removed ones no longer.
+        """Wait until the next run's participant has discovered the judge's new endpoints, and lost the removed ones.
 
         Without this wait, a subject could still see a service of an earlier run and call it.
 
@@ -46,7 +46,7 @@ class Subject(Protocol):
             gone: The removed endpoints.
 
         Returns:
-            False if the participant did not get there within a generous time limit, or if the notebook does not answer.
+            False if this did not happen within a generous time limit, or if the notebook does not answer.
         """
 
     def start(self, recorder: Recorder, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
@@ -56,7 +56,7 @@ class Subject(Protocol):
         """Spin the node of a run that was held back after the constructor."""
 
     def interrupt(self) -> None:
-        """Send Ctrl-C, as a terminal does. If the run then ends, it counts as ended by itself."""
+        """Send Ctrl-C, as a terminal does. If the run ends after that, it counts as ended by itself."""
 
     @property
     def ended(self) -> bool:

@@ -1,7 +1,7 @@
 """Measures how overloaded the machine was during a look in real time, so that no right answer fails because of it.
 
-The load average (getloadavg(3)) would be the wrong measure. It is a mean over at least a minute, so it still counts
-programs that ended before the look, and hardly counts those that started with the look.
+The load average (getloadavg(3)) would be the wrong measure, because it is a mean over at least a minute: it still
+counts programs that ended before the look, and hardly counts those that started with the look.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _EVERY = 0.1
 
 
 class TooBusy(JudgeFailed):
-    """The subject did not pass, perhaps because the machine was overloaded. So there is no verdict."""
+    """There is no verdict: the subject did not pass, but perhaps only because the machine was overloaded."""
 
 
 class OutOfTime(BaseException):
@@ -83,7 +83,7 @@ class Crowding:
 class Hurry:
     """Ends a check after :data:`ANSWER_WITHIN` seconds if the machine is so busy that time limits get longer.
 
-    If the machine is not busy, a check takes as long as its exercise needs.
+    If the machine is not busy, the check is not ended: it may take as long as its exercise needs.
 
     Args:
         runnable: Returns the number of threads that run or wait for a processor now.

@@ -1,7 +1,7 @@
 """Limits the time in which the judge computes a verdict from a subject's output and messages.
 
-The output comes from a student's program, and some output would keep a criterion busy almost forever. The limit is in
-processor time, so it has the same effect on a busy machine as on an idle one.
+A limit is needed because some output of a student's program would keep a criterion busy almost forever. The limit is in
+processor time, so that it has the same effect on a busy machine as on an idle one.
 """
 
 from __future__ import annotations

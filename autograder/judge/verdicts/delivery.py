@@ -1,7 +1,8 @@
 """Tests whether this machine still delivers messages, so that no right answer fails because its messages are lost.
 
 The kernel limits the memory of all sockets of a machine, and the number of epoll watches of each user, sandboxes
-included. If either is used up, a node starts without an error and receives little or nothing (udp(7), epoll(7)).
+included. If either is used up, a node still starts without an error, but it receives little or nothing (udp(7),
+epoll(7)).
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ _ARRIVES_WITHIN = 10.0
 
 
 class NotDelivered(JudgeFailed):
-    """The subject did not pass, perhaps because this machine lost messages. So there is no verdict."""
+    """There is no verdict: the subject did not pass, but perhaps only because this machine lost messages."""
 
 
 def delivers() -> bool:

@@ -40,7 +40,7 @@ message can have this name.
 
 
 class NoEvidence(ValueError):
-    """The bytes are not evidence. The exception's text says why."""
+    """The bytes are not evidence, for the reason in the exception's text."""
 
 
 class KeptLook(msgspec.Struct, frozen=True):

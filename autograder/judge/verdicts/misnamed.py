@@ -12,8 +12,9 @@ if TYPE_CHECKING:
 def misnamed(evidence: Evidence, verdict: Verdict) -> dict[str, dict[str, str]]:
     """Return the endpoints to which the subject gives a wrong name; the keys are the right names, as in the task.
 
-    In all parts, the subject must have no endpoint with the right name, role and type, and exactly one other endpoint
-    with this role and type. If there are two others, it is unclear which one was meant, so none is returned.
+    An endpoint counts as misnamed if, in all parts, the subject has no endpoint with the right name, role and type, but
+    exactly one other endpoint with this role and type. If there are two others, neither is returned, because it is
+    unclear which one was meant.
 
     Args:
         evidence: The evidence of a look in which the judge used the names in the task.

@@ -32,9 +32,9 @@ class NotRecordable(RuntimeError):
 def record(exercise: Exercise, subject: Subject, *, domain_id: int) -> Reference:
     """Record the reference solution's endpoints, then run the scenario on it.
 
-    If the solution fails in a look, the machine may be the cause: on a busy machine, a goal may end before it is
-    canceled, or the first message may be lost. So the scenario is run again, unless the mistake is certain or the time
-    limit of a check is over.
+    If the solution fails in a look, the cause may be a busy machine, on which a goal may end before it is canceled, or
+    the first message may be lost. So the scenario is run again, unless the mistake is certain or the time limit of a
+    check is over.
 
     Returns:
         The recording of the first look in which the solution was right; if there is none, of the last look.
@@ -91,8 +91,8 @@ def _interface(exercise: Exercise, subject: Subject, domain_id: int) -> dict[str
                 # The solution may make more endpoints after the first one, so wait until it has made all.
                 shown = bench.await_any_endpoint(())
                 found |= {role: found.get(role, {}) | shown[role] for role in shown}
-        # The programs of a workspace or launch file may run one after the other. Then only the endpoints of the
-        # exercise's roles are the same in each recording.
+        # The programs of a workspace or launch file may run one after the other. In that case only the endpoints of the
+        # exercise's roles are the same in each recording, so only they are recorded.
         return {role: found[role] for role in exercise.roles} if exercise.runner else found
     finally:
         bench.close()

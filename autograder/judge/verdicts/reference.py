@@ -1,7 +1,7 @@
 """Reads and writes reference outputs: what the reference solutions do on the wire, as JSON that people can review.
 
-The file contains only what the task determines, such as messages, requests and answers. It does not contain what
-differs from run to run, such as wall times, random node names and the order of log lines from two channels.
+The file contains only what the task determines, such as messages, requests and answers. Facts that differ from run to
+run are left out, such as wall times, random node names and the order of log lines from two channels.
 """
 
 from __future__ import annotations
@@ -114,8 +114,8 @@ def _events(part: Part) -> list[dict[str, Any]]:
     # Leave out the feedback and the result of a canceled goal: how far the goal gets depends on the machine.
     canceled = {event.data["goal"] for event in kept if event.kind == "cancel_sent"}
     kept = [e for e in kept if not (e.kind in _ON_THE_WAY and e.data["goal"] in canceled)]
-    # Goals that run at the same time share one part. Sort the events by goal, with the answer before the feedback,
-    # because their order depends on the machine.
+    # If goals run at the same time in one part, the order of their events depends on the machine. So sort the events by
+    # goal, with the answer before the feedback.
     kept.sort(key=lambda event: (event.data.get("goal", 0), event.kind not in ("goal_sent", "goal_answer")))
     start = next((event.sim for event in kept if event.sim is not None), None)
     return [_event(event, start) for event in kept]

@@ -148,7 +148,7 @@ def _time(event: Event, start: float | None) -> float:
 
 
 def _began(event: Event) -> bool:
-    """Return True if the event only says that the subject has started or was constructed. Such events are not shown."""
+    """Return True if the event only says that the subject has started or was constructed, which is not shown."""
     return event.kind == "subject" and event.name in ("started", "constructed")
 
 
@@ -231,8 +231,8 @@ def _astray(part: Part, reference: Reference, title: str, start: float | None) -
 def _missed(part: Part, reference: Reference, title: str, start: float | None) -> Iterator[Moment]:
     """Yield the reference solution's first messages that the subject did not send, if both had the same inputs.
 
-    The time of a message is counted from the input before it. A task without inputs asks only for intervals. So its
-    times are counted from the subject's first message or, if there is none, from the first log line.
+    The time of a message is counted from the input before it. But if the task has no inputs, it asks only for
+    intervals, so the times are counted from the subject's first message or, if there is none, from the first log line.
     """
     known = next(
         (one for one in reference.parts if one.name == part.name and one.inputs == part.inputs), None
@@ -266,7 +266,7 @@ def _missed(part: Part, reference: Reference, title: str, start: float | None) -
 def _given_the_same(part: Part, known: Part) -> bool:
     """Return True if the contents of all inputs, which may be random, are those of the reference solution's run.
 
-    A subject that ended early has fewer of them.
+    If the subject ended early, only the inputs that it got are compared.
     """
     mine, theirs = (
         [(e.kind, e.name, e.data.get("fields")) for e in one.events if e.kind in _INPUTS]
@@ -288,14 +288,15 @@ def _after_inputs(known: Part) -> Iterator[tuple[int, Event, float]]:
 def _not_come(due: Sequence[_Said], came: Sequence[_Said], near: float, *, carried: bool) -> list[_Said]:
     """Return the expected messages that did not come, each with the time at which it was due.
 
-    A message has come if its time is right, or if the interval from the message before it is right. So if one message
-    is missing, late or superfluous, the next ones do not count as missing, too.
+    An expected message has come if a message with its label arrived at the right time, or at the right interval after
+    the message before it. The interval is compared because a missing or superfluous message shifts all later ones.
 
     Args:
         due: Time and label of each message of the reference solution.
         came: Time and label of each message of the subject.
         near: Seconds by which a message may be early or late.
-        carried: True if a late message delays the next ones, because no input determines when they are due.
+        carried: True if the subject sends by its own timer, so that a late message delays the next ones; False if each
+            message answers an input, so that the input alone determines when it is due.
     """
     missed = []
     last, shift = -1, 0.0

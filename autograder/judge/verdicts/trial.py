@@ -57,8 +57,8 @@ class Checked:
     Attributes:
         verdict: The verdict.
         evidence: The evidence from which the verdict was derived.
-        crowded: True if the verdict is not a pass and may be unfair. Then nothing proves a mistake, and either the
-            machine was too busy in the look in real time, or the subject had not discovered the judge's endpoints.
+        crowded: True if the verdict is not a pass and may be unfair: nothing proves a mistake, and either the machine
+            was too busy in the look in real time, or the subject had not discovered the judge's endpoints.
     """
 
     verdict: Verdict
@@ -117,7 +117,8 @@ def _check(
         with limited():
             verdict = judge(exercise, evidence, seed)
         names = {} if verdict.passed or exercise.runner else misnamed(evidence, verdict)
-        # A wrong name fails one criterion. For the other criteria, a new look uses the names that the subject uses.
+        # A wrong name should fail only one criterion. So in a new look, the judge uses the subject's names, to decide
+        # the others.
         if names:
             look_at = partial(look_at, names=names)
             try:
@@ -159,7 +160,7 @@ def _check(
 def _is_explained(
     exercise: Exercise, evidence: Evidence, verdict: Verdict, names: Mapping[str, object]
 ) -> bool:
-    """Return True if a mistake is certain. If there are wrong names, they must also explain all failed criteria."""
+    """Return True if the failed criteria need no second look, because a mistake is certain that explains them."""
     failed = sum(not criterion.passed for criterion in verdict.criteria)
     return is_certain(exercise, evidence) and not (names and failed > len(names))
 
@@ -175,7 +176,7 @@ def _so_far(verdict: Verdict) -> str:
 
 
 def decide(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
-    """Return the verdict that follows from evidence. If that takes too long, the verdict is a fail."""
+    """Return the verdict that follows from evidence; a fail if it takes too long to compute."""
     try:
         with limited():
             return judge(exercise, evidence, seed)
@@ -220,7 +221,7 @@ def look(
 
 
 def judge(exercise: Exercise, evidence: Evidence, seed: str) -> Verdict:
-    """Return the verdict that follows from the evidence. The caller has to limit the time."""
+    """Return the verdict that follows from the evidence. Call this within :func:`.deciding.limited`."""
     lost = {event.data["costs"]: event for part in evidence for event in part.of("misnamed")}
     criteria = tuple(
         CriterionResult(c.name, c.title, c.points, finding.passed, _cut(finding.expected), _cut(finding.seen))
@@ -256,8 +257,8 @@ def _with_name(finding: Finding, wrong: Event | None) -> Finding:
 def diagnose(exercise: Exercise, evidence: Evidence) -> tuple[Diagnosis, str]:
     """Return the diagnosis of the first known mistake in the evidence, and the traceback that shows it, if any.
 
-    Other tracebacks are not returned. A student would take them for the mistake, although they may come from another
-    run and a correct line.
+    Other tracebacks are not returned, because a student would take them for the mistake, although they may come from
+    another run and a correct line.
     """
     found = _recognised(exercise, evidence)
     if found is not None:

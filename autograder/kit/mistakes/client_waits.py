@@ -46,8 +46,8 @@ class Wait:
     def had_server(self, evidence: Evidence) -> list[Part]:
         """Return the runs in which a report that the server is missing is wrong, because the client had its server.
 
-        In the first run the server comes late, so the client may report a missing server there. That run is therefore
-        left out. It is included only if the client sent no request in it and looked for no other server.
+        The first run is usually left out, because its server comes late, so the client may report there that the server
+        is missing. It is included only if the client sent no request in it and looked for no other server.
         """
         late, *others = self.runs(evidence)
         found = [part for part in others if self.asked(part)]
@@ -59,7 +59,7 @@ class Wait:
     def _looks_elsewhere(self, evidence: Evidence) -> bool:
         """Return True if the client looked for a server with another name or type than the exercise asks for.
 
-        A wrong name always counts. A wrong type counts only if the client kept waiting in the run without a server.
+        A wrong name always counts, but a wrong type only if the client kept waiting in the run without a server.
         """
         name, kind = evidence.reference.only(self.role)
         looked_for = [found for part in evidence for found in part.endpoints(self.role).items()]
@@ -134,7 +134,7 @@ class Wait:
     def _gives_up_where_served(self, evidence: Evidence) -> str:
         """Return the client's line about a missing server if it prints that only with a server; otherwise empty.
 
-        The line appears in each run with a server, but not in the run without one.
+        This is so if the line appears in each run with a server, but not in the run without a server.
         """
         absent, served = evidence.part(self.absent), self.runs(evidence)
         if not absent.events or NOT_AVAILABLE.lines(absent):

@@ -145,8 +145,8 @@ def everything_twice(role: str) -> Mistake:
         pairs = [times[text] for text in heard[:-1]]
         if len(heard) < 4 or sum(count == 2 for count in pairs) < len(pairs) * 0.7:
             return False
-        # Each publisher numbers its own messages, so equal numbers show that there are two publishers. A text that a
-        # single publisher repeats much later has another number: that publisher counts in a circle.
+        # Each publisher numbers its own messages, so equal numbers show that there are two publishers. A single
+        # publisher that counts in a circle also repeats texts, but each time with another number.
         numbers = [event.data.get("number") for event in messages]
         return len(set(numbers)) < len(numbers) or sum(a == b for a, b in pairwise(heard)) >= len(heard) // 3
 
@@ -196,7 +196,7 @@ def spinning(role: str) -> tuple[Mistake, ...]:
 
 
 def _was_spun(part: Part, role: str) -> bool:
-    # The judge may have missed what the node did first. Therefore a stack in which a thread spins counts, too.
+    # A stack in which a thread spins counts, too, because the judge may have missed what the node did first.
     return worked(part, role) or something_spins(part)
 
 
@@ -262,7 +262,7 @@ def twin(part: Part) -> str:
 def only_if_ended(mistake: Mistake) -> Mistake:
     """Return a mistake that is recognized only if the subject ended by itself in each run.
 
-    It counts as certain, because the judge stopped no run, so timing had no influence.
+    The mistake counts as certain, because timing has no influence on runs that the judge did not stop.
     """
 
     def recognise(evidence: Evidence) -> Advice | None:

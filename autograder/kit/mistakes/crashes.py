@@ -30,9 +30,10 @@ def traceback_of(evidence: Evidence) -> str:
     """Return the traceback of the subject's last crash in any part; empty if there is none.
 
     Two kinds of traceback are not crashes: a TimeoutError, because a client is asked to raise it if there is no server;
-    and an error in a thread that still uses ROS when the main program shuts ROS down. An accidental error comes before
-    an exception that was raised on purpose, such as for a refused goal. A traceback that was cut off, because two
-    threads printed at the same time, counts only if no complete one exists.
+    and an error in a thread that still uses ROS when the main program shuts ROS down. If there are several crashes, an
+    accidental error is preferred to an exception that was raised on purpose, for example for a refused goal. A
+    traceback that was cut off, because two threads printed at the same time, is returned only if there is no complete
+    one.
     """
     last_first = [part.traceback for part in reversed(list(evidence)) if part.traceback]
     shown = sorted(last_first, key=lambda text: is_cut_off(text.split("\n")))

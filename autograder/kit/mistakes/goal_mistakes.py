@@ -105,7 +105,7 @@ RESULT_OF_REJECTED_GOAL = mistake(
 def crashed_by_refusal(evidence: Evidence) -> Advice | None:
     """Return advice if the client goes on after its goal was rejected, until an exception stops it.
 
-    In all other parts, the client must have had no such exception.
+    If the client has such an exception in another part, too, the refusal is not the cause, so None is returned.
     """
     crashed = [part for part in evidence if part.traceback and not on_purpose(part.traceback)]
     if [part.name for part in crashed] != [REFUSED]:

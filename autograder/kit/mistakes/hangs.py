@@ -2,7 +2,8 @@
 
 The stacks come from Python's faulthandler, with the innermost call first. The judge requests them if a subject that
 should still be running has fallen silent. In rclpy 7.1, ``Client.call`` waits in ``client.py``, the action client's
-blocking calls in ``action/client.py``, and ``Rate.sleep`` in ``timer.py``; callbacks run below ``executors.py``.
+blocking calls in ``action/client.py``, and ``Rate.sleep`` in ``timer.py``. Callbacks are called from ``executors.py``,
+so their lines come before its lines.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ _SPINS = {
 
 @dataclass(frozen=True)
 class Frame:
-    """One call in a stack. ``rclpy`` is the file in rclpy that contains the call; empty for other code."""
+    """One call in a stack; ``rclpy`` is the file of rclpy that contains the call, and empty for other code."""
 
     rclpy: str
     function: str

@@ -1,7 +1,7 @@
 """Mistakes recognized from a traceback: each entry has a pattern, the cause and the next step.
 
-The patterns match messages of rclpy 7.1 and of Python; each message was reproduced. The first pattern that matches
-decides, so the order matters.
+The patterns match messages of rclpy 7.1 and of Python. The order of the entries matters, because the first pattern that
+matches decides.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ KNOWN = (
     Crash(
         "not_initialized",
         r"NotInitializedException|rclpy\.init has not been called|context (?:must be initialized|is not valid)"
-        # The last alternative matches an executor that is made before ROS was started. rclpy.spin makes one itself.
+        # The last alternative matches an executor that is made before ROS was started, for example by rclpy.spin.
         r"|guard_condition\.py\".*\n.*self\._context\.handle",
         "The node was made before ROS was started or after ROS was shut down.",
         "In a notebook, call start_ros() before you make a node. In a program, call rclpy.init() before you make a "

@@ -1,7 +1,8 @@
 """Explains Python's own errors in beginners' programs: the meaning of each message, and the next step.
 
-The rows match messages of Python 3.11 and 3.12 and of rclpy 7.1. The first row that matches decides. Add a row only if
-two answers in the bank, or a question asked in public, need it, because the card quotes Python's own message anyway.
+Each entry of the list matches a message of Python 3.11 and 3.12 or of rclpy 7.1, and the first entry that matches
+decides. Add an entry only if two answers in the bank, or a question asked in public, need it, because the card quotes
+Python's own message anyway.
 """
 
 from __future__ import annotations
@@ -196,8 +197,8 @@ RUNNING: Sequence[Row] = (
         "field, as in {{message.data}}. To add numbers, first convert the string to a number with int(...).",
     ),
     (
-        # The executor stores its nodes in a set, so each node needs a hash. A notebook's traceback omits rclpy's own
-        # lines.
+        # The executor stores its nodes in a set, so each node needs a hash. The pattern matches only the error, because
+        # a notebook's traceback omits the lines of rclpy.
         r"(?:\A|rclpy/executors\.py\".*\n(?: .*\n){1,2})TypeError: unhashable type: '(?P<class>\w+)'",
         "ROS cannot store your node, because the class {class} has no hash. A class loses its hash if it has "
         "@dataclass or a method __eq__.",
@@ -206,7 +207,7 @@ RUNNING: Sequence[Row] = (
         "If your class has a method __eq__, delete it.",
     ),
     (
-        # In a program, the traceback shows the line of rclpy that reads node.subscriptions. A notebook's traceback
+        # In a program, the traceback shows the line of rclpy that reads node.subscriptions, but a notebook's traceback
         # omits it.
         rf"(?:\bspin\w*\((?P<class>[A-Za-z_]\w*)[,)].*\n(?:.*\n)*?|node\.subscriptions.*{MARKS})"
         r"TypeError: 'property' object is not iterable",
@@ -226,7 +227,7 @@ RUNNING: Sequence[Row] = (
         "needed, pass the whole list. Add two numbers with +, not with sum.",
     ),
     (
-        # rclpy raises this error when it calls the callback. A notebook's traceback omits rclpy's own lines.
+        # rclpy raises this error when it calls the callback. A notebook's traceback, however, omits the lines of rclpy.
         r"(?:\A|rclpy/(?:executors|task)\.py\".*\n(?: .*\n){1,2})TypeError: '(?P<kind>\w+)' object is not callable",
         "ROS needs a method as the callback, but got a value of the type {kind}.",
         "Look at the line that passes the callback, such as create_timer(...). Pass the method's name with self. "

@@ -41,8 +41,8 @@ def _does_not_wait_for_answers(evidence: Evidence) -> bool:
 def _gave_up_on_its_answer(part: Part, served: Sequence[Part]) -> bool:
     """Return True if the client printed something unusual before its answer came, such as a line about a timeout.
 
-    A line is unusual if the client prints it in no run in which it reports the answer. The answer may be sent while the
-    client is already ending, because a process takes time to end.
+    A line is unusual if the client prints it in no run in which it reports the answer. The client may have given up
+    although its process still existed when the answer was sent, because a process takes time to end.
     """
     asked, given = part.first("request"), part.first("response")
     quick = [other for other in served if other is not part and reports(other)]
@@ -56,9 +56,10 @@ def _gave_up_on_its_answer(part: Part, served: Sequence[Part]) -> bool:
 def _made_nothing_of_its_answer(part: Part) -> bool:
     """Return True if the subject ended at its first answer and did nothing that shows that it used the answer.
 
-    A use of the answer is another call, or a number that is derived from the answer. The answer may be sent while a
-    client that did not wait for it is already ending, because a process takes time to end. The caller does not use this
-    function for a client of one call without an exception, which may just not have reported the sum.
+    A client uses the answer if it makes another call, or prints a number that is derived from the answer. A client that
+    did not wait for its answer may still exist when the answer is sent, because a process takes time to end. The caller
+    does not use this function for a client that makes one call and raises no exception, because such a client may only
+    have forgotten to report the sum.
     """
     if part.ending is None or len(requests(part)) != 1 or len(part.of("response")) != 1:
         return False

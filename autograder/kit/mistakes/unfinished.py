@@ -96,7 +96,7 @@ def ended_too_early(evidence: Evidence) -> Advice | None:
         )
     roles = evidence.reference.interface.keys()
     if roles and roles <= {"client", "action_client"}:
-        return None  # A client that did something may end. The criteria say what is missing.
+        return None  # If a client did something, its end is no mistake: the criteria say what is missing.
     asked = evidence.main.of("asked")
     is_open = len(asked) > len(evidence.main.of("answered"))
     when = (
@@ -138,7 +138,7 @@ def _returned_at_once(evidence: Evidence) -> bool:
 def _without_node(evidence: Evidence) -> str:
     """Return the beginning of the sentence "No node of yours appeared on the graph."; empty if the subject had a node.
 
-    The first words differ if the subject has ended.
+    If the subject has ended, the beginning says this, too.
     """
     if any(part.had_node or any(map(part.of, ("log", "request", "goal", "message"))) for part in evidence):
         return ""

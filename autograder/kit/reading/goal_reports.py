@@ -71,8 +71,9 @@ def asked_for(part: Part) -> list[int]:
 def left_at_once(part: Part, answer: str = "goal_answered") -> bool:
     """Return True if the subject was already ending when the judge sent an answer that it had held back.
 
-    The last requests of an ending process may be lost, so no decision may depend on them. A printed traceback shows
-    that a process is ending; a process that ends without a traceback may take a while to end.
+    Use this because the last requests of an ending process may be lost, so no decision may depend on them. A printed
+    traceback shows that a process was already ending; without a traceback, a process that ends soon after the answer
+    counts as well.
     """
     if part.ending is None:
         return False
@@ -89,7 +90,7 @@ def left_at_once(part: Part, answer: str = "goal_answered") -> bool:
 def _stayed_for_more(part: Part, answer: Event) -> bool:
     """Return True if the client lived until its result was sent, or for a while after a request.
 
-    A request is one for the result, or one to cancel the goal.
+    The request is for the result, or to cancel the goal.
     """
     assert part.ending is not None
     end, later = part.ending.t, part.events[part.events.index(answer) :]
@@ -158,15 +159,15 @@ def reports_result(part: Part) -> bool:
     if result is None or part.first("result_request") is None:
         return False
     numbers = [str(number) for number in _sequence(result)]
-    # A log line is recorded twice: as output and on /rosout. Each kind is searched alone, so that one copy cannot
-    # complete the other.
+    # A log line is recorded twice: as output and on /rosout. Search each kind of event alone, so that the numbers of
+    # one copy are not added to those of the other.
     ways = ([event for event in part.events if event is result or event.kind == way] for way in _WAYS)
     return any(_are_in_order(numbers, replace(part, events=events).said(after=result)) for events in ways)
 
 
 def _are_in_order(numbers: Sequence[str], lines: Sequence[str]) -> bool:
-    # Only digits are compared, whatever the client prints between the numbers. The numbers are long and random, so the
-    # other digits in the lines do not match them by chance.
+    # Only digits are compared, because a client may print anything between the numbers. Other digits in the lines do
+    # not match by chance, because the numbers are long and random.
     digits, place = re2.sub(r"\D", "", " ".join(lines)), 0
     for number in numbers:
         place = digits.find(number, place)
@@ -183,7 +184,7 @@ _SEQUENCE = re2.compile(r"[\[(]|[a-z.]+\((?:'\w', )?[\[(]|[a-z.]+\((?:'\w')?\)")
 def returned_instead(part: Part, wanted: Sequence[int]) -> str:
     """Return the wrong value that a function returned, as its repr; empty if the value is right or nothing returned.
 
-    A tuple, an array or any other sequence counts as a list. A message object that contains a sequence does not.
+    A tuple, an array or any other sequence counts as a list, but a message object that contains a sequence does not.
     """
     if part.returned is None:
         return ""
@@ -214,14 +215,14 @@ def refused_as_seen(evidence: Evidence) -> str:
 
 
 def all_but(evidence: Evidence, name: str) -> list[Part]:
-    """Return the runs with a goal, except the named one. In each of them the goal ended in another way."""
+    """Return the runs with a goal, except the named run. In these other runs the goal ended in other ways."""
     return [part for part in evidence if part.name != name and part.first("goal")]
 
 
 def aborted_as_seen(evidence: Evidence) -> str:
     """Return in words what is wrong with the client's report of an aborted goal; empty if nothing is wrong.
 
-    The client may read the status from the topic of statuses and not from the result.
+    A client that reads the status from the topic of statuses, and not from the result, is right, too.
     """
     part = evidence.part(ABORTED)
     if not part.events:

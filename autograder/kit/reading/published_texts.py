@@ -69,10 +69,10 @@ class Publisher:
 
     @cached_property
     def greetings(self) -> int:
-        """The number of messages before the publisher began to count. They have other words than the later ones.
+        """The number of messages before the publisher began to count. Their words differ from those of later messages.
 
-        The judge receives such a message only by chance if it is published as soon as the publisher exists, so it must
-        not change the verdict.
+        These messages must not change the verdict: if they are published as soon as the publisher exists, the judge
+        receives them only by chance.
         """
         begins = self.templates.index(Counter(self.templates).most_common(1)[0][0]) if self.texts else 0
         around = last_numbers(self.texts[begins - 1 : begins + 1]) if begins else []
@@ -93,7 +93,7 @@ class Publisher:
 
     @property
     def step(self) -> int:
-        """The difference between the first two numbers; 0 if the publisher does not count. Use it for the reference."""
+        """The difference between the reference's first two numbers; 0 if the reference does not count."""
         first = self.counters[:2]
         return first[-1] - first[0] if first else 0
 
@@ -135,10 +135,10 @@ class Publisher:
     def endpoints(self) -> dict[str, str]:
         """The subject's publishers as topic -> type; empty for a program that ended at once.
 
-        Chance decides whether the graph shows the publishers of such a program.
+        The publishers of such a program are left out, because chance decides whether the graph shows them.
 
-        A notebook's class stays until its publishers are known, so they always count. A publisher with an incompatible
-        QoS counts if the mismatch was recorded well before the end.
+        A notebook's class does not end before its publishers are known, so they always count. A publisher with an
+        incompatible QoS counts only if the mismatch was recorded well before the end.
         """
         ending, misfit = self.part.ending, self.part.first("mismatch", self.topic)
         met = (

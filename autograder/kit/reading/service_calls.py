@@ -108,8 +108,9 @@ def returns_another(part: Part) -> bool:
 def says_otherwise(part: Part) -> bool:
     """Return True if the client returns or prints something that contradicts the last answer.
 
-    A right report elsewhere does not help. A notebook's function that raised an exception counts as a contradiction,
-    because it returned no answer; so does a line with the answer and the wrong sign.
+    The result is True even if the client reports the answer rightly elsewhere. An exception in a notebook's function
+    also counts as a contradiction, because the function returned no answer; so does a line with the answer and the
+    wrong sign.
     """
     if returns_another(part) or (part.ending is not None and part.ending.name == "raised"):
         return True

@@ -138,9 +138,9 @@ class Frame:
 def invented(part: Part, sent: Sequence[str]) -> list[str]:
     """Return the texts that the subject claims to have heard although they were never sent.
 
-    The surrounding words are taken from the first line that contains a sent text. A line with the same words around
-    another text is invented. If the subject reported none of the sent texts, every line with a quoted text counts as
-    invented.
+    The first line with a sent text shows which words the subject puts around a text. If the subject puts the same words
+    around a text that was not sent, this text is invented. If the subject reported none of the sent texts, every quoted
+    text counts as invented.
     """
     found = _frames(part, sent)
     if not found:
@@ -193,9 +193,9 @@ def _in_frames(part: Part, sent: Sequence[str], frames: set[Frame]) -> Iterator[
 def repeated(part: Part, sent: Sequence[str]) -> dict[str, int]:
     """Return the texts that were reported more often than they were sent, each with its count.
 
-    Only reports with the same surrounding words, made in the same way, count. Logging and printing are two ways, and so
-    are two loggers. Only the words of a text's first report count, because a line with other words may mention the text
-    again. Words that differ only in a number, such as a time, count as the same.
+    A report is counted only if its other words are those of the text's first report, because a line with other words
+    may mention the text again. (Words that differ only in a number, such as a time, count as the same.) A report that
+    is both logged and printed, or logged by two loggers, is counted once.
     """
     channels: dict[tuple[str, ...], list[str]] = {}
     for channel, line in _by_channel(part):

@@ -29,7 +29,7 @@ while it works.
 
 
 class SendsGoals(SeenAsItIs):
-    """The recipe for an action server. Its two views are the whole evidence, because several runs have several goals.
+    """The recipe for an action server. Its views are the whole evidence, because the goals are in several runs.
 
     Args:
         scenario: The function that runs all parts of the exercise on a bench. The action's name and type are

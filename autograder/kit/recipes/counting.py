@@ -1,7 +1,7 @@
 """Criteria and mistakes about the texts and the numbers that a publisher sends.
 
-The messages of the reference solution define what is right: the text around the number, the first number, and the step
-from one number to the next.
+The messages of the reference solution define the right text around the number, the right first number, and the right
+step from one number to the next.
 """
 
 from __future__ import annotations
@@ -164,9 +164,9 @@ class Counting:
 def _first_number(seen: Publisher, expected: Publisher) -> int | None:
     """Return the number in the publisher's first message, even if the judge could not receive it; None if unknown.
 
-    A loop may publish before any subscriber can receive the message. DDS numbers the messages, so the judge knows how
-    many it missed. If the count from the reference's first number to the first received one is shorter, some of the
-    missed messages did not count.
+    A loop may publish before any subscriber can receive the message, so the first received number may be a later one.
+    The judge knows how many messages it missed, because DDS numbers them, and counts back from the received number. If
+    the publisher would then have begun before the reference's first number, some of the missed messages had no number.
     """
     first = counters(seen.texts[seen.greetings :][:1])
     return first[0] - expected.step * (seen.number_of_first - 1) if first else None

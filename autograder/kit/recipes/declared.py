@@ -1,8 +1,8 @@
 """The common part of declared exercises: the author declares the right output, and the kit makes everything else.
 
-The kit makes the scenario, the criteria and the mistakes. A ``Relay`` listens on one topic and publishes on another. A
-``Machine`` has a state that a service changes and a topic reports. The author describes a common wrong answer as a
-variant of the function that returns the right output.
+The kit makes the scenario, the criteria and the mistakes. For example, a ``Relay`` is a node that listens on one topic
+and publishes on another, and a ``Machine`` is a node with a state that a service changes and a topic reports. The
+author declares the right output as a function, and each common wrong answer as a variant of this function.
 """
 
 from __future__ import annotations

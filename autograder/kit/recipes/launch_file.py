@@ -1,9 +1,9 @@
 """A recipe for a launch file that starts a publisher and a listener, and remaps their topic to a new name.
 
 The judge listens to the publisher and publishes to the listener, both under the new name. The remapping must come from
-the launch file, not from the programs' code. So the launch reports the command line of each process, which shows its
-remapping rules. The judge then starts each program again without its rule: if the program still uses the new name, the
-name is in its code.
+the launch file, not from the programs' code, and the judge checks this in two ways. First, the runner of the launch
+reports the command line of each process, which shows its remapping rules. Then the judge starts each program again
+without its rule: if the program still uses the new name, the name is in its code.
 """
 
 from __future__ import annotations
@@ -128,10 +128,10 @@ class Launched:
 
     @property
     def without_rules(self) -> list[tuple[str, ...]]:
-        """The programs to start again without their rules, each as its package, its name and its arguments.
+        """The programs to start again without their remapping rules, each as its package, its name and its arguments.
 
-        These are the programs that used the new name. A program whose rule was not recognized is started without
-        arguments, because they may contain a rule in another form.
+        These are the programs that used the new name. If a program's rule was not recognized, the program is started
+        without arguments, because they may contain the rule in another form.
         """
         ends = self._talk | self._listen
         there = [one for one in self._processes if {0, _lower(one.pid)} & ends]
@@ -144,20 +144,20 @@ class Launched:
 
     @property
     def talkers(self) -> int:
-        """The number of programs that publish under the new name. Additional subscribers do no harm."""
+        """The number of programs that publish under the new name."""
         return len(self._talk)
 
     @property
     def given_a_rule(self) -> int:
-        """The number of programs that use the new name and got a rule for it."""
+        """The number of programs that use the new name and were started with a remapping rule for it."""
         return len(self._given & (self._talk | self._listen))
 
     @property
     def moved_by_rules(self) -> bool:
-        """True if each program that uses the new name got a rule for it.
+        """True if each program that uses the new name was started with a remapping rule for this name.
 
-        An endpoint of an unknown process may belong to any process with a rule. Subscribers that are not programs of
-        the package, such as ``ros2 topic echo``, need no rule.
+        An endpoint of an unknown process counts as remapped if any process has such a rule, because it may belong to
+        that process. Subscribers that are not programs of the package, such as ``ros2 topic echo``, are ignored.
         """
         given, listen = self._given, self._listen
         listeners = listen & (given | self._own) or listen
@@ -174,8 +174,8 @@ class Launched:
         return self._has_one_of_its_own(self._listen)
 
     def _has_one_of_its_own(self, side: set[int]) -> bool:
-        # The student's package may have a different name. Then a rule shows which processes are its programs. An
-        # endpoint of an unknown process, 0, may belong to any program.
+        # The student's package may have a different name. Then a remapping rule shows which processes are its programs.
+        # An endpoint of an unknown process (0) counts, because it may belong to any program.
         without_a_rule = (self._talk | self._listen) & self._own - self._given
         return bool(side & (self._own | self._given) or 0 in side or without_a_rule)
 
@@ -188,7 +188,7 @@ class Launched:
 
     @property
     def rules(self) -> list[str]:
-        """The names that the programs' rules replace."""
+        """The names that the programs' remapping rules replace."""
         return [old for process in self._processes for old, _ in remappings(process.argv)]
 
     @property

@@ -53,7 +53,7 @@ class Call:
 class Machine(Declared):
     """An exercise about a node with a state that a service changes, and a topic that reports each change.
 
-    The last message must also reach subscribers that join late.
+    The node must also send its last message to subscribers that join late.
 
     Args:
         exercise_id: The lab's folder and the file's name, such as ``"lab_8_1.mode"``.
@@ -85,9 +85,9 @@ class Machine(Declared):
         self._late_after, self._field = late_after, field
 
     def replies(self, field: str, points: float, title: str, words: str = "") -> None:
-        """Add the criterion that a field of each reply is right. Its name is that of the field.
+        """Add the criterion that a field of each reply is right. The field's name is also the criterion's key.
 
-        Replies for which ``step`` does not return this field are not compared.
+        A reply is not compared if ``step`` does not return this field for it.
 
         Args:
             field: The field of the reply.

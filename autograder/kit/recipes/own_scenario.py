@@ -81,7 +81,7 @@ def once_met(happens: Callable[[Met], bool]) -> Callable[[Bench], None]:
 
 
 class OwnScenario:
-    """The recipe for a subject with endpoints of given roles. Its view is the record of the first part.
+    """The recipe for a subject with endpoints of given roles. A view is the record of the subject's first part.
 
     Args:
         scenario: The scenario, for example one made by :func:`once_met`. If you write it yourself,
@@ -106,7 +106,7 @@ class OwnScenario:
     def expected(self, evidence: Evidence) -> Part:
         """Return the record of the reference solution, including its endpoints.
 
-        While the reference is being recorded, return the record that is being made.
+        While the reference is being recorded, there is no earlier record, so the new one is returned.
         """
         if not evidence.reference.parts:
             return self.view(evidence.main)
@@ -206,7 +206,7 @@ def _in_words(role: str, endpoints: Mapping[str, str]) -> str:
 class OwnLadder(SeenAsItIs):
     """The recipe for a subject without endpoints, such as a function that only reads the ROS graph.
 
-    The exercise lists the common mistakes that the subject may show. The view of this recipe is the whole evidence.
+    The views are the whole evidence, and the exercise itself lists the common mistakes.
 
     Args:
         scenario: The function that runs all parts of the exercise on a bench.

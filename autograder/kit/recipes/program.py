@@ -1,4 +1,4 @@
-"""A recipe for a program of a package. The judge builds and runs the program, which must have a node and log a line."""
+"""A recipe for a program of a package, which the judge builds and runs. It must have a node and log a line."""
 
 from __future__ import annotations
 
@@ -148,7 +148,8 @@ class Program:
         if programs.entry_point(evidence, self._entry):
             return Finding(False, expected, "built, but its entry point points to nothing")
         seen = Ran(evidence)
-        # A program that raised an exception did start. Other criteria judge what it failed to do.
+        # A program that raised an exception did start, so this criterion holds. Other criteria judge the exception's
+        # effects.
         ran = seen.has_node or bool(seen.words) or any(part.traceback for part in evidence)
         return Finding(ran, expected, "built and started" if ran else "the program did nothing")
 

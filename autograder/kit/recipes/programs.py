@@ -90,7 +90,7 @@ class Program:
 
 
 class _OneProgram:
-    """A bench for the scenario of one program's node. Other methods than these are passed on to the judge's bench."""
+    """A bench for the scenario of one program's node. It passes all other methods on to the judge's bench."""
 
     def __init__(self, bench: Bench, program: Program) -> None:
         self._bench, self._program = bench, program
@@ -142,8 +142,8 @@ def _its_own_end(parts: Sequence[Part]) -> str:
     # A program that had fallen silent counts as hung even if it ended after the judge had requested its stacks.
     if any(part.ending is None or part.of("stack") for part in parts):
         return "did not end"
-    # A program may report with an exception that it waited in vain. But if it raised an exception in every run, it
-    # never did its work.
+    # One exception is allowed, because a program may report with it that it waited in vain. But if the program raised
+    # an exception in every run, it never did its work.
     return "failed each time" if all(_before_ctrl_c(part).traceback for part in parts) else ""
 
 
@@ -309,8 +309,8 @@ def _of_the_view(mistake: Mistake, program: Program, evidence: Evidence) -> Advi
 class _Wrong:
     """Recognizes mistakes in a program that fails its criterion.
 
-    The decision whether the program fails is stored, because there are about a hundred mistakes: each decision may take
-    a tenth of a second of the few seconds that the judge has for all of them.
+    Whether the program fails is decided once and stored, because a decision may take a tenth of a second. There are
+    about a hundred mistakes, and the judge has only a few seconds for all of them.
     """
 
     def __init__(self, program: Program) -> None:

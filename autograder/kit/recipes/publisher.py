@@ -1,4 +1,4 @@
-"""A recipe for a publisher. The judge listens in simulated time if possible, and longer if something looks wrong."""
+"""A recipe for a publisher, to which the judge listens in simulated time if possible."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Hears:
     Args:
         messages: The number of messages to wait for at first, in simulated time.
         long_run: The number of messages to wait for in simulated time if they take little time, or if something looks
-            wrong. Some faults show only late.
+            wrong. It is larger, because some faults show only late.
     """
 
     roles = ("publisher",)
@@ -66,12 +66,12 @@ class Hears:
         self._variable = "self.count"
 
     def each_text(self, judge: Judge[Publisher]) -> Judge[Publisher]:
-        """Mark a criterion as one about single messages. A wrong rate is diagnosed only if this criterion holds."""
+        """Mark the criterion about the text of each message. While it fails, a wrong rate is not diagnosed."""
         self._text = judge
         return judge
 
     def whole_course(self, judge: Judge[Publisher]) -> Judge[Publisher]:
-        """Mark a criterion as one about all messages together. If it fails, the judge waits for more messages."""
+        """Mark the criterion about the series of messages. While it fails, the judge waits for more messages."""
         self._course = judge
         return judge
 
@@ -114,7 +114,8 @@ class Hears:
     def _enough(self, before: Evidence | None) -> int:
         """Return how many messages to wait for in real time.
 
-        If the first look received enough messages in simulated time, the rate alone decides the number.
+        If the first look received enough messages in simulated time, wait only for as many as show the rate. Otherwise
+        wait for as many as show that the publisher goes on.
         """
         return self._row(before) if before is not None and self._is_simulated(before) else PERSISTENT
 
@@ -155,12 +156,12 @@ class Hears:
     # --- criteria --------------------------------------------------------------------------------------------
 
     def says_text(self) -> Callable[[Evidence], Finding]:
-        """Return the criterion that each text equals the reference's, apart from the number. Also add its mistakes."""
+        """Return the criterion that each text, apart from the number, is the reference's. Also add its mistakes."""
         self._text = counting.says_text
         return self._criterion(counting.says_text)
 
     def counts(self, variable: str = "self.count") -> Callable[[Evidence], Finding]:
-        """Return the criterion that the numbers are those of the reference. Also add its mistakes.
+        """Return the criterion that the numbers are those of the reference. Also add mistakes about numbers.
 
         The number of a message is the last whole number in its text, or its field if that is a number. The first number
         and the step are those of the reference solution, which may count down.
@@ -197,8 +198,8 @@ class Hears:
         wanted = reference_period(evidence.reference)
         messages = evidence.main.of("message", topic)
         before = self._simulated_rate(evidence.before)
-        # Simulated time is exact, but real time on a busy machine is not. If a program ends by itself, chance decides
-        # how many messages the judge received in simulated time.
+        # Simulated time is exact, but real time on a busy machine is not. However, if a program ends by itself, chance
+        # decides how many messages the judge received in simulated time.
         exact = (
             evidence.before
             and before
@@ -342,7 +343,8 @@ def reference_period(reference: Reference) -> float:
 def _was_faster(messages: Sequence[Event], wanted: float) -> bool:
     """Return True if simulated time passed faster than real time, so no callback can have slept for a period.
 
-    On a busy machine, the judge waits for a callback that sleeps, and would then measure an exact rate.
+    This is checked because, on a busy machine, the judge waits for a callback that sleeps, and would then measure an
+    exact rate although time did not pass faster.
     """
     times = [message.t for message in messages]
     return median(after - before for before, after in pairwise(times)) < wanted

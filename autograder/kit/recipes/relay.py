@@ -197,11 +197,11 @@ class Relay(Declared):
 
 
 class Hub(Relay):
-    """A node that listens on several topics, and publishes a value computed from all inputs so far. It may also serve.
+    """A node that publishes a value computed from all inputs so far, on several topics. It may also have services.
 
     The arguments are those of :class:`Relay`, with these differences: each of ``gives`` is a :class:`To`, and ``due``
-    gets inputs with a ``name`` and a ``value``. After a call of a service, ``due`` returns a :class:`Reply`. A node
-    that serves has the role ``"service"``, too.
+    gets inputs with a ``name`` and a ``value``. If the last input is a call of a service, ``due`` returns a
+    :class:`Reply`. If the node has a service, ``"service"`` must be one of ``roles``.
     """
 
     def answers(self, name: str, points: float, title: str, words: str = "") -> None:
@@ -240,8 +240,8 @@ class Hub(Relay):
             else:
                 raise ValueError(f"gives: {name!r} is not one of {', '.join([*speakers, *callers])}")
             met.bench.settle()
-            # Inputs on several topics may overtake each other, so the subject gets time for each. If a message is due,
-            # this ends when it comes.
+            # Inputs on several topics may overtake each other, so the subject gets time for each input. If an input
+            # makes a message due, this time ends when the message comes.
             due = [one for one in _outputs_due(inputs[:number], self._due) if not isinstance(one, Reply)]
             speaks = name in speakers and self._due(inputs[:number]) is not SILENCE
             met.bench.run_time(PAUSE, until=partial(_heard, met, len(due)) if speaks else None)

@@ -29,11 +29,11 @@ _ELSEWHERE = ("mgła", "łąka", "řeka", "erdő", "tűz")
 
 
 def random_texts(random: Random) -> list[str]:
-    """Return random texts, each with two words and a number. None contains another.
+    """Return random texts, each with two words and a number. No text is contained in another text.
 
-    In each series, one text comes twice in a row. Others are unusual: with the greeting of many talkers before or after
-    it; long and in capitals; with braces and a percent sign; with letters beyond ASCII and two spaces; or without any
-    space.
+    In each series, one text comes twice in a row. Some texts are unusual: they have the greeting of many talkers before
+    or after the words, are long and in capitals, contain braces and a percent sign, contain letters beyond ASCII and
+    two spaces, or contain no space.
     """
     count = 1 + TRIES * AT_PACE + SINGLY
     words = [f"{random.choice(_WORDS)} {random.choice(_WORDS)}" for _ in range(count)]

@@ -1,4 +1,4 @@
-"""A recipe for a service server. The judge makes single calls, then several calls at once, then one more."""
+"""A recipe for a service server, to which the judge sends single calls, then several calls at once, then one more."""
 
 from __future__ import annotations
 

@@ -116,8 +116,8 @@ class ServiceType(SeenAsItIs):
             return Finding(False, expected, workspace.seen_of_build(report))
         if report.missing:
             return Finding(False, expected, f"built; no {report.missing}")
-        # A generated file with the right name proves little. A program that serves the type proves that the type was
-        # generated.
+        # A generated file with the right name proves little, but a program that serves the type proves that the type
+        # was generated.
         served = evidence.main.first("type", SERVICE) is not None
         return Finding(
             served, expected, "built" if served else "built, but no program can use the generated type"

@@ -1,4 +1,4 @@
-"""A recipe for a subscriber that must report each text that it receives. No program can guess the judge's texts."""
+"""A recipe for a subscriber that must report each text it receives. No program can guess the texts: they are random."""
 
 from __future__ import annotations
 
@@ -201,8 +201,8 @@ def subscribes(evidence: Evidence) -> Finding:
 def _subscriptions(part: Part, topic: str) -> dict[str, str]:
     """Return the types of the subscriptions by topic; none for a program that ended before the judge sent a text.
 
-    For such a program, chance decides whether the graph shows its subscriptions. A notebook's class is not spun until
-    its subscriptions are known, so they always count.
+    The subscriptions of such a program are left out, because chance decides whether the graph shows them. A notebook's
+    class is not spun until its subscriptions are known, so they always count.
     """
     ending, sent = part.ending, part.first("sent", topic)
     met = ending is None or part.first("subject", "constructed") or (sent and _is_before(part, sent, ending))
@@ -216,7 +216,8 @@ def _is_before(part: Part, event: Event, other: Event) -> bool:
 def _missing(evidence: Evidence) -> list[Event]:
     """Return the texts that were not reported.
 
-    If the listener reported all texts of one series at the pace, the other series at the pace do not count.
+    Several series of texts are sent at the talker's pace. If the listener reported all texts of one of them, texts of
+    the others do not count as missing.
     """
     part, sent = evidence.main, _sent(evidence)
     silent = [event for event in sent if not is_said(_text(event), part, after=event)]

@@ -1,7 +1,7 @@
 """A recipe for a node that reports each change of a state; the author writes how inputs and time decide the state.
 
-Time alone may change the state. For example, it is ``"lost"`` after a second without a message, and ``"back"`` with the
-next message.
+Time alone may change the state. For example, the state becomes ``"lost"`` after a second without a message, and
+``"back"`` with the next message.
 """
 
 from __future__ import annotations
@@ -95,8 +95,8 @@ class Watch(Declared):
     def says(self, name: str, state: Any, points: float, title: str, words: str = "") -> None:
         """Add the criterion that the node reports a state in time whenever that state begins.
 
-        A state does not count as missed if it ends before the time limit, or if the node did not report the previous
-        state.
+        A state does not count as missed in two cases: it ended before the time limit, or the node did not report the
+        previous state either.
 
         Args:
             name: A stable key for the criterion.
@@ -243,8 +243,8 @@ class Watch(Declared):
             )
 
     def _happens(self, met: Met) -> bool:
-        # This wait is in real time, because the clock of the subject is not simulated yet. A time that the subject
-        # stored now would be useless later.
+        # This wait is in real time. Simulated time begins with the step after it, before the first input, because a
+        # real time that the subject stored at the first input could not be compared with later simulated times.
         met.bench.wait_until(lambda evidence: bool(self._subject.seen(evidence).of("message")), self._waits)
         met.bench.run_time(STEP)
         for given, seconds in self._gives:
@@ -254,7 +254,7 @@ class Watch(Declared):
         return bool(self._subject.view(met.bench.seen()).of("message"))
 
     def _spans(self, seen: Part, rule: State) -> list[Span]:
-        """Return the intervals of the states that the subject must report according to a rule, in order."""
+        """Return each state that the subject must report, with the time from its begin to its end, in order of time."""
         sent = seen.of("sent")
         if not sent:
             return []

@@ -240,7 +240,8 @@ def _remove(base: Path, folder: Path, used: float | None) -> bool:
             return False  # another process has locked the entry
         if not _is_at(lock, file) or _last_use(folder) != used:
             return False  # another process has just removed, made or used the entry
-        # Remove the marker first. If removing the rest fails, the entry then counts as an interrupted build.
+        # Remove the marker of a complete build first, so that the entry counts as an interrupted build if the removal
+        # of the other files fails.
         (folder / _MARKER).unlink(missing_ok=True)
         shutil.rmtree(folder, ignore_errors=True)
         file.unlink(missing_ok=True)

@@ -1,7 +1,7 @@
 """Builds a student's own workspace, in a notebook or a terminal on the student's own computer.
 
-In a graded notebook, builds are requested from the grader instead, and a check uses the same build as ``colcon build``.
-The box receives the build as an archive, and does not see the folder in which it was made.
+In a graded notebook, builds are requested from the grader instead, both for a check and for the command ``colcon
+build`` in a cell. The notebook's box cannot see the grader's folders, so it receives each build as an archive.
 """
 
 from __future__ import annotations

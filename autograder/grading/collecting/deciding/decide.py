@@ -119,9 +119,10 @@ def _of_group(place: Place, group: list[Line], looks: Looks) -> Iterator[_Why]:
 
 
 def _people(place: Place, pool: Sequence[Line], _: Looks) -> list[tuple[Line, str]]:
-    """Return the files that belong to a student only by a name that several people have.
+    """Return the files that are linked to a student only by a name, if several people have this name.
 
-    In Canvas a person always has the same number; in other systems, one number in each download.
+    Several people have the name if the LMS gives it several numbers. In Canvas, a person has the same number in every
+    download, so the numbers of all downloads are compared. In other systems, only numbers in the same download are.
     """
     numbers: dict[str, set[str]] = defaultdict(set)
     of_systems = [one for one in pool if one.lms in _ONE_NUMBER]
